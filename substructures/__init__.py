@@ -1,0 +1,36 @@
+"""Multibody dynamics of mechanisms with tree structure from stored, coupled formulas (P. Maisser's algebraised Lagrange formalism).
+
+>>> from substructures import Definition, TreeSpec, catalogue, couple, derive
+>>> part = derive(Definition.read(catalogue.load("simple-pendulum")))
+>>> tree = TreeSpec.read({"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]})
+>>> couple(tree, {"p": part}).coordinates
+('p.q1',)
+"""
+
+from substructures import catalogue
+from substructures.definition import Definition
+from substructures.errors import Fault, InvalidDocument, InvalidProgram, MissingValue, SubstructuresError, TooLarge
+from substructures.expr.program import Program
+from substructures.model import Model, couple
+from substructures.part import Formula, Part, derive
+from substructures.tree import Instance, TreeSpec, read_instance
+
+__all__ = [
+    "Definition",
+    "Fault",
+    "Formula",
+    "Instance",
+    "InvalidDocument",
+    "InvalidProgram",
+    "MissingValue",
+    "Model",
+    "Part",
+    "Program",
+    "SubstructuresError",
+    "TooLarge",
+    "TreeSpec",
+    "catalogue",
+    "couple",
+    "derive",
+    "read_instance",
+]

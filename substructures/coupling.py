@@ -1,0 +1,227 @@
+"""Coupling of stored substructures: one pass from the leaves (payloads), one from the root (twists, gravity).
+
+Works from the stored programs alone: the inside of a substructure (its E, Z, own U, Omega, metric, Christoffel
+symbols and composites) is replayed with its symbols renamed or bound; only the host's columns are carried to its
+joints, where their products with the stored momenta give the coupled entries (mathematics.md, sections 5 and 6).
+Measured against expressing those products in the interface frame (f, n, K), this needs fewer operations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.replay import replay
+from substructures.loads import wrench_about_origin
+from substructures.mechanics.base_functions import Columns, Twist, carried, transport
+from substructures.mechanics.inertia import Inertia
+from substructures.mechanics.joints import Link, lean_rotation, path
+from substructures.mechanics.linear3 import E3, IDENTITY, ZERO, Matrix, S, Vector
+from substructures.mechanics.linear3 import add, apply, cross, dot, multiply, transpose
+from substructures.mechanics.metric import JointMomentum, christoffel_block, joint_momentum, pairing
+from substructures.part import Part
+from substructures.skeleton import INTERFACE
+from substructures.stored import Stored
+
+WORLD = -1
+
+#: outputs of a stored program that coupling uses
+USED = (
+    *("E.tilt", "E.turn", "E.full", "Z", "tau", "U", "Omega", "subtree.m", "subtree.s", "subtree.J"),
+    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("frame.E", "frame.position", "load.at", "load.vector"),
+)
+
+
+@dataclass
+class Mounted:
+    """A part in a tree: host (index of an earlier one, or WORLD) and frame of the host, constant placement, bindings."""
+
+    part: Part
+    host: int
+    frame: int
+    E: Matrix
+    position: Vector
+    bindings: dict[str, Expr]
+    first: int = 0  #: index of its first coordinate in the tree
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Gravity acceleration in a frame, rotation world -> frame, origin in the world."""
+
+    gamma: Vector
+    R: Matrix
+    r: Vector
+
+    def beyond(self, link: Link) -> Pose:
+        """The pose of the next frame."""
+        columns = [link.rotation.forward(column) for column in transpose(self.R)]
+        R = transpose((columns[0], columns[1], columns[2]))
+        return Pose(link.rotation.forward(self.gamma), R, add(self.r, apply(transpose(self.R), link.Z)))
+
+
+@dataclass
+class State:
+    """What the two passes know of a mounted part."""
+
+    stored: Stored
+    links: list[Link]
+    tau: list[S]
+    momenta: list[JointMomentum]
+    outside: Columns = field(default_factory=dict)
+    columns: list[Columns] = field(default_factory=list)  #: host's and own columns at every joint
+    interface: Pose | None = None
+    poses: list[Pose] = field(default_factory=list)  #: of every joint frame
+
+    def pose(self, carrier: int) -> Pose:
+        """Of joint frame k, or of the interface (-1)."""
+        pose = self.interface if carrier == INTERFACE else self.poses[carrier]
+        assert pose is not None
+        return pose
+
+
+@dataclass
+class Coupled:
+    """The result, by indices of the tree's coordinates."""
+
+    metric: dict[tuple[int, ...], S]
+    christoffel: dict[tuple[int, ...], S]
+    gravity: list[S]
+    forces: list[S]
+    potential: S
+    states: list[State]
+
+
+def couple_parts(graph: Graph, mounted: Sequence[Mounted], gravity: Vector) -> Coupled:
+    """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them."""
+    n = 0
+    for part in mounted:
+        part.first, n = n, n + part.part.dof
+    states, total = _pass_up(graph, mounted)
+    result = Coupled({}, {}, [0] * n, [0] * n, -dot(gravity, total.s), states)
+    for m, state in zip(mounted, states, strict=True):
+        _place(m, state, mounted, states, gravity)
+        _twists(m, state)
+        _dynamics(m, state, result)
+        _gravity(m, state, result)
+        _applied(m, state, result)
+    return result
+
+
+def _pass_up(graph: Graph, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
+    """Replays every program with the inertia of what is mounted on it; the total is about the world's origin."""
+    payload: list[dict[int, Inertia]] = [{} for _ in mounted]
+    states: list[State] = [None] * len(mounted)  # type: ignore[list-item]
+    total = Inertia()
+    for i in reversed(range(len(mounted))):
+        m = mounted[i]
+        states[i] = state = _replayed(graph, m, payload[i])
+        whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
+        if m.host == WORLD:
+            total = total + _moved(whole, m.E, m.position)
+        else:
+            _pay(graph, mounted, payload, m, whole)
+    return states, total
+
+
+def _moved(inertia: Inertia, E: Matrix, position: Vector) -> Inertia:
+    return inertia.turned_back(lean_rotation(E, 1, 0)).shifted(position)
+
+
+def _pay(graph: Graph, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia) -> None:
+    """Add the composite of a part to what the carrier of its frame has to carry."""
+    host = mounted[m.host].part
+    frame = Stored(replay(host.program, graph, mounted[m.host].bindings, ("frame.E", "frame.position")))
+    E, position = frame.matrix("frame.E", m.frame), frame.vector("frame.position", m.frame)
+    carrier = host.frame_carriers[m.frame]
+    inertia = _moved(_moved(whole, m.E, m.position), E, position)
+    payload[m.host][carrier] = payload[m.host].get(carrier, Inertia()) + inertia
+
+
+def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
+    own = Stored(replay(m.part.program, graph, m.bindings, ("inertia.m", "inertia.s", "inertia.J")))
+    bindings = dict(m.bindings)
+    for k, symbols in m.part.inertia_symbols.items():
+        carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
+        values = (carried_here.m, *carried_here.s, *carried_here.J)
+        bindings |= {s: v if isinstance(v, Expr) else graph.number(v) for s, v in zip(symbols, values, strict=True)}
+    stored = Stored(replay(m.part.program, graph, bindings, USED))
+    joints = m.part.skeleton.joints
+    links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
+    momenta = [joint_momentum(j, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
+    return State(stored, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)
+
+
+def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[State], gravity: Vector) -> None:
+    """Host columns at the interface; poses of the interface and of all joint frames."""
+    if m.host == WORLD:
+        state.interface = Pose(lean_rotation(m.E, 1, 0).forward(gravity), m.E, m.position)
+    else:
+        host, h = states[m.host], mounted[m.host]
+        link = frame_link(h, host, m.frame, m.E, m.position)
+        carrier = link.parent
+        source = host.outside if carrier == INTERFACE else host.columns[carrier]
+        slides = h.first + carrier if carrier != INTERFACE and host.links[carrier].s else None
+        state.outside = {a: carried(twist, link, a == slides) for a, twist in source.items()}
+        state.interface = host.pose(carrier).beyond(link)
+    for link in state.links:
+        state.poses.append(state.pose(link.parent).beyond(link))
+
+
+def frame_link(m: Mounted, state: State, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
+    """A frame (body or port) of a part, and a constant placement in it, as a link from O of the carrier."""
+    E_f, r_f = state.stored.matrix("frame.E", frame), state.stored.vector("frame.position", frame)
+    x, y, z = add(r_f, apply(transpose(E_f), position))
+    carrier = m.part.frame_carriers[frame]
+    tau = 0 if carrier == INTERFACE else state.tau[carrier]
+    return Link(carrier, 0, lean_rotation(multiply(E, E_f), 1, 0), (x, y, z + tau))
+
+
+def _twists(m: Mounted, state: State) -> None:
+    """The host's columns carried to every joint, and the stored own ones."""
+    state.columns = transport(state.links, state.outside)
+    for c in range(len(state.links)):
+        for a in path(state.links, c):
+            state.columns[c][m.first + a] = Twist(state.stored.vector("U", c, a), state.stored.vector("Omega", c, a))
+
+
+def _dynamics(m: Mounted, state: State, result: Coupled) -> None:
+    """The stored own entries, and the products of host columns with the joint momenta."""
+    first, own = m.first, state.stored.outputs
+    result.metric |= {(first + a, first + c): x for (a, c), x in own["metric"].entries.items()}
+    result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in own["christoffel"].entries.items()}
+    if not state.outside:
+        return
+    for c, momentum in enumerate(state.momenta):
+        columns = state.columns[c]
+        for a in state.outside:
+            result.metric[a, first + c] = pairing(columns[a], momentum.p, momentum.H)
+        block = christoffel_block(first + c, columns, momentum, inside=first)
+        result.christoffel |= {(a, b, first + c): x for (a, b), x in block.items()}
+
+
+def _gravity(m: Mounted, state: State, result: Coupled) -> None:
+    """Q_c = gamma_c . p_c."""
+    for c, (pose, momentum) in enumerate(zip(state.poses, state.momenta, strict=True)):
+        q = dot(pose.gamma, momentum.p)
+        result.gravity[m.first + c] = q
+        result.forces[m.first + c] = q + state.stored.scalar("applied", c)
+    result.potential = result.potential + state.stored.scalar("potential")
+
+
+def _applied(m: Mounted, state: State, result: Coupled) -> None:
+    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
+    for i, (carrier, moment, world) in enumerate(m.part.wrenches):
+        vector = state.stored.vector("load.vector", i)
+        if world:
+            vector = apply(state.pose(carrier).R, vector)
+        force, n = wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
+        columns = state.outside if carrier == INTERFACE else state.columns[carrier]
+        if carrier != INTERFACE:
+            n = add(n, cross((0, 0, state.tau[carrier]), force))
+        for a, twist in columns.items():
+            if carrier != INTERFACE and a == m.first + carrier and state.links[carrier].s:
+                twist = Twist(add(twist.U, E3), twist.Omega)
+            result.forces[a] = result.forces[a] + pairing(twist, force, n)

@@ -1,0 +1,254 @@
+"""The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
+
+Meaning (names, expressions, physics) is checked by :mod:`substructures.substructure`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from decimal import Decimal
+from functools import cached_property
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from substructures.documents import write_json
+from substructures.errors import Fault, InvalidDocument
+
+NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
+LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
+MAX_BODIES = 500
+
+
+def _number(value: Any) -> Any:
+    """Exact number or expression text; floats are taken by their shortest decimal text."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str)):
+        raise PydanticCustomError("number-expected", "expected a number or an expression")
+    if isinstance(value, float):
+        value = Decimal(repr(value))
+    if isinstance(value, Decimal) and not value.is_finite():
+        raise PydanticCustomError("number-not-finite", "the number is not finite")
+    return value
+
+
+Number = Annotated[
+    int | Decimal | str,
+    BeforeValidator(_number),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "maxLength": 10000}]}),
+]
+Vector = tuple[Number, Number, Number]
+Name = Annotated[str, Field(pattern=NAME)]
+LibraryName = Annotated[str, Field(pattern=LIBRARY_NAME)]
+
+
+class Model(BaseModel):
+    """Base of all document parts: frozen, unknown fields refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Parameter(Model):
+    """A named constant; without a value it has to be given with every evaluation."""
+
+    value: Number | None = Field(None, description="default, in the unit given; a number or a constant expression")
+    unit: str = Field("", max_length=64, description="SI unit")
+    description: str = Field("", max_length=2000)
+
+
+class Placement(Model):
+    """A constant offset: position of the origin, then fixed-axis roll, pitch, yaw (URDF)."""
+
+    position: Vector = Field((0, 0, 0), description="m")
+    rpy: Vector = Field((0, 0, 0), description="rad")
+
+
+class PortRotation(Model):
+    """Rotation of a port by fixed-axis roll, pitch, yaw."""
+
+    rpy: Vector = Field((0, 0, 0), description="rad")
+
+
+class Joint(Model):
+    """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg for trees), or a placement."""
+
+    type: Literal["revolute", "prismatic", "fixed", "universal", "spherical", "cylindrical", "planar", "free"]
+    coordinate: Name | tuple[Name, ...] | None = Field(None, description="coordinate name(s); rad or m")
+    psi: Number = Field(0, description="rad")
+    theta: Number = Field(0, description="rad")
+    d: Number = Field(0, description="m")
+    sigma: Number = Field(0, description="m")
+    phi: Number = Field(0, description="rad; offset (revolute) or constant (prismatic)")
+    tau: Number = Field(0, description="m; constant (revolute) or offset (prismatic)")
+    placement: Placement | None = None
+    axis: tuple[Number, Number, Number] | None = Field(None, description="joint axis in the placed frame (constant)")
+    stiffness: Number | tuple[Number, ...] = Field(0, description="N m/rad or N/m")
+    rest: Number | tuple[Number, ...] = Field(0, description="rad or m; where the joint spring is at rest")
+    damping: Number | tuple[Number, ...] = Field(0, description="N m s/rad or N s/m")
+    armature: Number | tuple[Number, ...] = Field(0, description="kg m^2 or kg; rotor inertia seen at the joint")
+    limits: tuple[Number, Number] | tuple[tuple[Number, Number], ...] | None = Field(None, description="rad or m")
+
+
+class InertiaTensor(Model):
+    """Entries of the inertia tensor; xy = -integral of x y dm."""
+
+    xx: Number = Field(0, description="kg m^2")
+    yy: Number = Field(0, description="kg m^2")
+    zz: Number = Field(0, description="kg m^2")
+    xy: Number = Field(0, description="kg m^2")
+    xz: Number = Field(0, description="kg m^2")
+    yz: Number = Field(0, description="kg m^2")
+    about: Literal["com", "origin"] = "com"
+
+
+class Body(Model):
+    """A rigid body and the joint that carries it; mass centre and inertia in the body frame."""
+
+    name: Name
+    parent: Name
+    joint: Joint
+    mass: Number = Field(0, description="kg")
+    com: Vector = Field((0, 0, 0), description="m")
+    inertia: InertiaTensor = InertiaTensor()
+
+
+class Port(Model):
+    """A frame fixed in a body, on which other substructures may be mounted."""
+
+    name: Name
+    body: Name
+    position: Vector = Field((0, 0, 0), description="m")
+    rotation: PortRotation = PortRotation()
+
+
+class Point(Model):
+    """A point fixed in a body."""
+
+    body: Name
+    at: Vector = Field((0, 0, 0), description="m")
+
+
+class ForceLoad(Model):
+    """A force at a point of a body."""
+
+    type: Literal["force"]
+    body: Name
+    at: Vector = Field((0, 0, 0), description="m")
+    vector: Vector = Field(description="N")
+    frame: Literal["body", "world"] = "body"
+
+
+class TorqueLoad(Model):
+    """A free moment on a body."""
+
+    type: Literal["torque"]
+    body: Name
+    vector: Vector = Field(description="N m")
+    frame: Literal["body", "world"] = "body"
+
+
+class SpringLoad(Model):
+    """A linear spring and damper between two points."""
+
+    type: Literal["spring"]
+    from_: Point = Field(alias="from")
+    to: Point
+    stiffness: Number = Field(0, description="N/m")
+    damping: Number = Field(0, description="N s/m")
+    length: Number = Field(0, description="m; unstretched")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+
+class JointLoad(Model):
+    """A generalised force on a coordinate."""
+
+    type: Literal["joint"]
+    coordinate: Name
+    force: Number = Field(description="N m or N")
+
+
+Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad, Field(discriminator="type")]
+
+
+class Input(Model):
+    """A named input of the loads; 0 when not given."""
+
+    unit: str = Field("", max_length=64)
+    description: str = Field("", max_length=2000)
+
+
+class Definition(Model):
+    """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
+
+    name: LibraryName
+    title: str = Field("", max_length=200)
+    description: str = Field("", max_length=20_000)
+    tags: tuple[Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")], ...] = Field((), max_length=32)
+    license: str = Field("", max_length=200)
+    source: str = Field("", max_length=4000)
+    parameters: dict[Name, Parameter] = Field({}, max_length=5000)
+    inputs: dict[Name, Input] = Field({}, max_length=500)
+    bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
+    ports: tuple[Port, ...] = Field((), max_length=500)
+    loads: tuple[Load, ...] = Field((), max_length=1000)
+
+    @classmethod
+    def read(cls, data: Any) -> Definition:
+        """A definition from plain data. Raises InvalidDocument with a pointer to every fault."""
+        return read_model(cls, data)
+
+    @cached_property
+    def bytes(self) -> bytes:
+        """Canonical bytes of what was given (defaults left out)."""
+        return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
+
+    def canonical(self) -> bytes:
+        """Canonical bytes (RFC 8785, numbers as their decimal text)."""
+        return self.bytes
+
+    @property
+    def digest(self) -> str:
+        """``sha256:`` and 64 hex digits of the canonical bytes."""
+        return "sha256:" + hashlib.sha256(self.bytes).hexdigest()
+
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def read_model(model: type[M], data: Any) -> M:
+    """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers."""
+    if not isinstance(data, Mapping):
+        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise InvalidDocument(_faults(error, data)) from None
+
+
+def _faults(error: ValidationError, data: Any) -> list[Fault]:
+    return [
+        Fault(_pointer(e["loc"], e["type"] == "missing", data), e["type"].replace("_", "-"), _message(e))
+        for e in error.errors(include_url=False)
+    ]
+
+
+def _message(error: Any) -> str:
+    shown = repr(error["input"])
+    return str(error["msg"]) + ("" if error["type"] == "missing" or len(shown) > 80 else f", found {shown}")
+
+
+def escape(key: object) -> str:
+    """One step of an RFC 6901 pointer."""
+    return str(key).replace("~", "~0").replace("/", "~1")
+
+
+def _pointer(loc: tuple[int | str, ...], missing: bool, data: Any) -> str:
+    """The pointer of a pydantic location, without the steps that pydantic adds for unions and map keys."""
+    pointer, here = "", data
+    for step in loc[:-1] if missing else loc:
+        known = step in here if isinstance(here, Mapping) else isinstance(here, (list, tuple)) and isinstance(step, int)
+        if known:
+            pointer, here = f"{pointer}/{escape(step)}", here[step]
+    return f"{pointer}/{escape(loc[-1])}" if missing else pointer

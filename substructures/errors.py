@@ -1,0 +1,68 @@
+"""Exceptions of the package.
+
+::
+
+    SubstructuresError
+    |-- InvalidDocument      a definition, tree, expression or request that cannot be used: faults with pointers
+    |-- TooLarge             something exceeds a limit: what, size, limit
+    |-- InvalidProgram       a stored program that is damaged or of an unknown version: position
+    `-- MissingValue         a symbol that needs a number has none: name
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing wrong in a document. ``pointer`` is an RFC 6901 pointer into it, ``code`` is for programs."""
+
+    pointer: str
+    code: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.pointer or '/'}: {self.message}"
+
+
+class SubstructuresError(Exception):
+    """Root of all exceptions raised on purpose."""
+
+
+class InvalidDocument(SubstructuresError):
+    """A document or request that cannot be used; ``faults`` says where and why."""
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(map(str, self.faults)))
+
+    @classmethod
+    def at(cls, pointer: str, code: str, message: str) -> InvalidDocument:
+        """The exception for a single fault."""
+        return cls([Fault(pointer, code, message)])
+
+
+class TooLarge(SubstructuresError):
+    """Something exceeds a limit; nothing was done."""
+
+    def __init__(self, what: str, size: int, limit: int) -> None:
+        self.what, self.size, self.limit = what, size, limit
+        super().__init__(f"{what} has size {size:,}; the limit is {limit:,}")
+
+
+class InvalidProgram(SubstructuresError):
+    """A stored program that cannot be read; ``position`` is the index of the first bad operation, if any."""
+
+    def __init__(self, message: str, position: int | None = None) -> None:
+        self.position = position
+        super().__init__(message if position is None else f"operation {position}: {message}")
+
+
+class MissingValue(SubstructuresError):
+    """A symbol that needs a number has none."""
+
+    def __init__(self, name: str, message: str = "") -> None:
+        self.name = name
+        super().__init__(message or f"'{name}' has no value: give one, or a default in its definition")

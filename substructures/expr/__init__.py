@@ -1,0 +1,1 @@
+"""Scalar expressions: a hash-consed graph, programs, parser, evaluators. Knows no mechanics."""

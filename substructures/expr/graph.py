@@ -1,0 +1,262 @@
+"""Scalar expressions as a hash-consed graph: one node per function (mathematics.md, section 8).
+
+Every node carries the fingerprint of its formula (see :mod:`substructures.expr.fingerprint`), and the graph
+keeps one node per fingerprint. Building a formula that is equal, as a function, to an existing one (or to its
+negative) therefore returns the existing one: zero and one fold away, ``sin(q)**2 + cos(q)**2`` is ``1``,
+rotations are orthonormal and the addition theorems apply themselves, all by one dictionary lookup.
+
+>>> graph = Graph()
+>>> x, y = graph.symbol("x"), graph.symbol("y")
+>>> (x + y) * (x - y) is x * x - y * y
+True
+>>> x * 0, 2 * x / x
+(0, 2)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from decimal import Decimal
+from fractions import Fraction
+from math import isqrt
+from typing import Union
+
+from substructures.errors import TooLarge
+from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
+
+Number = Union[int, Fraction, Decimal]
+Scalar = Union["Expr", int, Fraction, Decimal]
+
+#: Constants are exact; numerator and denominator may have this many bits.
+MAX_BITS = 4096
+MAX_EXPONENT = 64
+
+
+class Expr:
+    """A node: operation, arguments, exact value (constants), name (symbols), fingerprint, creation index."""
+
+    __slots__ = ("graph", "op", "args", "value", "fp", "index")
+
+    def __init__(self, graph: Graph, op: str, args: tuple[Expr, ...], value: int | Fraction | str | None, fp: int):
+        self.graph, self.op, self.args, self.value, self.fp = graph, op, args, value, fp
+        self.index = len(graph.table)
+        graph.table[fp] = self
+
+    @property
+    def is_number(self) -> bool:
+        """True for an exact integer or rational."""
+        return self.op == "int" or self.op == "rat"
+
+    @property
+    def is_zero(self) -> bool:
+        """True when the formula is the zero function."""
+        return self.fp == 0
+
+    def __add__(self, other: Scalar) -> Expr:
+        if other.__class__ is not Expr:
+            other = self.graph.number(other)  # type: ignore[arg-type]
+        fp = (self.fp + other.fp) % PRIME  # type: ignore[union-attr]
+        found = self.graph.table.get(fp)
+        return found if found is not None else self.graph._sum(self, other, fp)  # type: ignore[arg-type]
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Scalar) -> Expr:
+        return self + -(other if other.__class__ is Expr else self.graph.number(other))  # type: ignore[arg-type,operator]
+
+    def __rsub__(self, other: Scalar) -> Expr:
+        return -self + other
+
+    def __mul__(self, other: Scalar) -> Expr:
+        if other.__class__ is not Expr:
+            other = self.graph.number(other)  # type: ignore[arg-type]
+        fp = self.fp * other.fp % PRIME  # type: ignore[union-attr]
+        found = self.graph.table.get(fp)
+        return found if found is not None else self.graph._product(self, other, fp)  # type: ignore[arg-type]
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Expr:
+        if self.op == "neg":
+            return self.args[0]
+        fp = PRIME - self.fp if self.fp else 0
+        found = self.graph.table.get(fp)
+        if found is not None:
+            return found
+        if self.is_number:
+            return Expr(self.graph, self.op, (), -self.value, fp)  # type: ignore[operator]
+        return Expr(self.graph, "neg", (self,), None, fp)
+
+    def __truediv__(self, other: Scalar) -> Expr:
+        return self.graph._quotient(self, self.graph.number(other) if not isinstance(other, Expr) else other)
+
+    def __rtruediv__(self, other: Scalar) -> Expr:
+        return self.graph.number(other) / self if not isinstance(other, Expr) else other / self
+
+    def __pow__(self, n: int) -> Expr:
+        if abs(n) > MAX_EXPONENT:
+            raise ValueError(f"exponent {n} is beyond the limit of {MAX_EXPONENT}")
+        if n < 0:
+            return self.graph.one / self**-n
+        result, square = self.graph.one, self
+        while n:
+            if n & 1:
+                result = result * square
+            n >>= 1
+            if n:
+                square = square * square
+        return result
+
+    def __repr__(self) -> str:
+        if self.op in ("int", "rat", "sym"):
+            return str(self.value)
+        return f"<{self.op} {self.index}>"
+
+
+class Graph:
+    """The nodes of one derivation. Nodes of different graphs must not be mixed."""
+
+    def __init__(self) -> None:
+        self.table: dict[int, Expr] = {}
+        self.zero = Expr(self, "int", (), 0, 0)
+        self.one = Expr(self, "int", (), 1, 1)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def number(self, value: Number) -> Expr:
+        """An exact constant; a Decimal is taken as its decimal text. Floats are refused."""
+        if isinstance(value, Decimal):
+            value = Fraction(value)
+        if isinstance(value, Fraction) and value.denominator == 1:
+            value = value.numerator
+        if not isinstance(value, (int, Fraction)) or isinstance(value, bool):
+            raise TypeError(f"exact number expected, not {type(value).__name__}: {value!r}")
+        fp = rational(value)
+        found = self.table.get(fp)
+        if found is not None:
+            return found
+        return Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp)
+
+    def symbol(self, name: str) -> Expr:
+        """The symbol of this name."""
+        fp = keyed("symbol", name)
+        return self.table.get(fp) or Expr(self, "sym", (), name, fp)
+
+    @property
+    def pi(self) -> Expr:
+        """pi, written acos(-1) in programs."""
+        return self.function("acos", self.number(-1))
+
+    def sum(self, terms: Iterable[Expr]) -> Expr:
+        """Sum of any number of terms."""
+        result = self.zero
+        for term in terms:
+            result = result + term
+        return result
+
+    def _sum(self, a: Expr, b: Expr, fp: int) -> Expr:
+        found = self.table.get(PRIME - fp)
+        if found is not None:
+            return -found
+        if a.is_number and b.is_number:
+            return self._folded(a.value + b.value)  # type: ignore[operator]
+        if a is b:
+            return self.number(2) * a
+        if _negative(b):
+            if _negative(a):
+                return -Expr(self, "add", (-a, -b), None, PRIME - fp)
+            return Expr(self, "sub", (a, -b), None, fp)
+        if _negative(a):
+            return Expr(self, "sub", (b, -a), None, fp)
+        return Expr(self, "add", (a, b), None, fp)
+
+    def _product(self, a: Expr, b: Expr, fp: int) -> Expr:
+        found = self.table.get(PRIME - fp)
+        if found is not None:
+            return -found
+        if a.is_number and b.is_number:
+            return self._folded(a.value * b.value)  # type: ignore[operator]
+        if _negative(a) or _negative(b):
+            positive = (-a if _negative(a) else a) * (-b if _negative(b) else b)
+            return positive if positive.fp == fp else -positive
+        if b.is_number:
+            a, b = b, a
+        if b.op == "mul" and b.args[0].is_number:
+            return (a * b.args[0]) * b.args[1] if a.is_number else b.args[0] * (a * b.args[1])
+        if a.op == "mul" and a.args[0].is_number:
+            return a.args[0] * (a.args[1] * b)
+        if a.op == "sqrt" or b.op == "sqrt":
+            square = _square_of_root(a, b)
+            if square is not None:
+                return square
+        return Expr(self, "mul", (a, b), None, fp)
+
+    def _quotient(self, a: Expr, b: Expr) -> Expr:
+        if b.fp == 0:
+            raise ZeroDivisionError("division by zero")
+        if b.is_number:
+            return a * self.number(Fraction(1) / b.value)  # type: ignore[operator,arg-type]
+        fp = a.fp * pow(b.fp, -1, PRIME) % PRIME
+        found = self.table.get(fp)
+        if found is not None:
+            return found
+        if _negative(a) or _negative(b):
+            positive = (-a if _negative(a) else a) / (-b if _negative(b) else b)
+            return positive if positive.fp == fp else -positive
+        return Expr(self, "div", (a, b), None, fp)
+
+    def _folded(self, value: int | Fraction) -> Expr:
+        size = max(value.numerator.bit_length(), value.denominator.bit_length())
+        if size > MAX_BITS:
+            raise TooLarge("an exact number (in bits)", size, MAX_BITS)
+        return self.number(value)
+
+    def sqrt(self, x: Expr) -> Expr:
+        """Principal square root; exact for squares of rationals."""
+        if x.is_number:
+            value = Fraction(x.value)  # type: ignore[arg-type]
+            if value < 0:
+                raise ValueError(f"square root of the negative number {value}")
+            outside, inside = _split_square(value)
+            root = self.number(outside)
+            return root if inside == 1 else root * self.function("sqrt", self.number(inside))
+        return self.function("sqrt", x)
+
+    def function(self, op: str, *args: Expr) -> Expr:
+        """A function the field knows nothing about, except the square roots of 2, 3, 5 and 7."""
+        fp = None
+        if op == "sqrt" and args[0].op == "int":
+            fp = square_root(args[0].value)  # type: ignore[arg-type]
+        if fp is None:
+            fp = keyed(op, *(a.fp for a in args))
+        return self.table.get(fp) or Expr(self, op, args, None, fp)
+
+
+def _negative(x: Expr) -> bool:
+    return x.op == "neg" or (x.is_number and x.value < 0)  # type: ignore[operator]
+
+
+def _square_of_root(a: Expr, b: Expr) -> Expr | None:
+    """sqrt(x) sqrt(x) = x, also with one of them inside a product."""
+    if a.op != "sqrt":
+        a, b = b, a
+    if a is b:
+        return a.args[0]
+    if b.op == "mul" and a in b.args:
+        return a.args[0] * (b.args[1] if b.args[0] is a else b.args[0])
+    return None
+
+
+def _split_square(value: Fraction) -> tuple[Fraction, int]:
+    """value = outside**2 * inside with a small square-free part taken out by trial division."""
+    inside = value.numerator * value.denominator
+    outside = Fraction(1, value.denominator)
+    root = isqrt(inside)
+    if root * root == inside:
+        return outside * root, 1
+    for p in (2, 3, 5, 7, 11, 13):
+        while inside % (p * p) == 0:
+            inside //= p * p
+            outside *= p
+    return outside, inside

@@ -1,0 +1,83 @@
+"""The reference evaluator: a program over numpy arrays, one operation at a time. Slow, obviously right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.errors import MissingValue
+from substructures.expr.program import Output, Program
+
+Array = NDArray[np.float64]
+
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "add": np.add,
+    "sub": np.subtract,
+    "mul": np.multiply,
+    "div": np.divide,
+    "neg": np.negative,
+    "powi": np.power,
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "exp": np.exp,
+    "log": np.log,
+    "sqrt": np.sqrt,
+    "abs": np.abs,
+    "sign": np.sign,
+}
+
+
+def constant(operation: tuple[Any, ...]) -> float:
+    """Value of an ``int`` or ``rat`` operation, correctly rounded; infinite beyond the range of doubles."""
+    numerator, denominator = int(operation[1]), int(operation[2]) if operation[0] == "rat" else 1
+    try:
+        return numerator / denominator
+    except OverflowError:
+        return float("inf") if numerator > 0 else float("-inf")
+
+
+def interpret(program: Program, values: Mapping[str, Any], names: Iterable[str] | None = None) -> dict[str, Array]:
+    """Evaluate outputs for values of all symbols they need: floats, or arrays of one common shape (batch).
+
+    Returns arrays of shape batch + shape of the output, with all symmetric entries filled in. Division by zero and
+    overflow give infinities and NaN, as in IEEE arithmetic. Raises MissingValue for a symbol without a value.
+    """
+    names = list(program.outputs if names is None else names)
+    batch = np.broadcast_shapes(*(np.shape(v) for v in values.values())) if values else ()
+    results: dict[int, Any] = {}
+    with np.errstate(all="ignore"):
+        for i in program.reachable(names):
+            operation = program.operations[i]
+            op = operation[0]
+            if op == "sym":
+                results[i] = _lookup(program.symbols[operation[1]].name, values)
+            elif op in ("int", "rat"):
+                results[i] = np.float64(constant(operation))
+            elif op == "powi":
+                results[i] = np.power(results[operation[1]], float(operation[2]))
+            else:
+                results[i] = _FUNCTIONS[op](*(results[x] for x in operation[1:]))
+    return {name: assemble(program.outputs[name], results, batch) for name in names}
+
+
+def _lookup(name: str, values: Mapping[str, Any]) -> Any:
+    try:
+        return np.asarray(values[name], dtype=np.float64)
+    except KeyError:
+        raise MissingValue(name) from None
+
+
+def assemble(output: Output, results: Mapping[int, Any], batch: tuple[int, ...]) -> Array:
+    """Dense array of an output from the values of its entries."""
+    dense = np.zeros(batch + output.shape)
+    for index, entry, sign in output.expanded():
+        dense[(..., *index)] = results[entry] if sign > 0 else -results[entry]
+    return dense

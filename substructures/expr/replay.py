@@ -1,0 +1,73 @@
+"""Run a program again over other scalars: into a graph (binding symbols), or over numbers and numpy arrays."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Formulas, Program
+from substructures.expr.trigonometry import cos_sin, tan
+
+
+def _divide(a: Expr, b: Expr) -> Expr:
+    return a / b
+
+
+_GRAPH_OPERATIONS: dict[str, Callable[..., Expr]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "neg": operator.neg,
+    "div": _divide,
+    "powi": operator.pow,
+    "sin": lambda x: cos_sin(x)[1],
+    "cos": lambda x: cos_sin(x)[0],
+    "tan": tan,
+    "sqrt": lambda x: x.graph.sqrt(x),
+}
+
+
+def replay(
+    program: Program, graph: Graph, bindings: Mapping[str, Expr], names: Iterable[str] | None = None
+) -> dict[str, Formulas]:
+    """The program's outputs as expressions in ``graph``, with symbols replaced by ``bindings`` (others by themselves).
+
+    Every operation passes the graph's simplification, so binding numbers folds the program to its lean form.
+    Raises ZeroDivisionError when a divisor becomes zero.
+    """
+    names = list(program.outputs if names is None else names)
+    values: dict[int, Expr] = {}
+    symbols = [bindings.get(s.name) or graph.symbol(s.name) for s in program.symbols]
+    operations = program.operations
+    for i in program.reachable(names):
+        operation = operations[i]
+        op = operation[0]
+        if op == "mul":
+            values[i] = values[operation[1]] * values[operation[2]]
+        elif op == "add":
+            values[i] = values[operation[1]] + values[operation[2]]
+        elif op == "sym":
+            values[i] = symbols[operation[1]]
+        elif op == "int":
+            values[i] = graph.number(int(operation[1]))
+        elif op == "rat":
+            values[i] = graph.number(Fraction(int(operation[1]), int(operation[2])))
+        elif op == "powi":
+            values[i] = values[operation[1]] ** operation[2]
+        else:
+            values[i] = _apply(graph, op, [values[x] for x in operation[1:]])
+    return {name: _formulas(program, name, values) for name in names}
+
+
+def _apply(graph: Graph, op: str, args: list[Any]) -> Expr:
+    function = _GRAPH_OPERATIONS.get(op)
+    return function(*args) if function else graph.function(op, *args)
+
+
+def _formulas(program: Program, name: str, values: Mapping[int, Expr]) -> Formulas:
+    output = program.outputs[name]
+    entries = {i: values[e] for i, e in zip(output.index, output.entries, strict=True)}
+    return Formulas(output.shape, entries, output.symmetry)

@@ -1,0 +1,62 @@
+"""Constant frames: rotation matrices that fold to as few operations as possible, joint axes, mounted placements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from substructures.expr.graph import Expr
+from substructures.mechanics.linear3 import IDENTITY, Matrix, Vector, add, apply, cross, multiply, negate, transpose
+from substructures.scope import Scope
+
+#: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
+AXES: tuple[Matrix, Matrix, Matrix] = (
+    ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
+    ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    IDENTITY,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A frame fixed in a carrier: ``E`` (components in the carrier's body frame -> components here), position [m]."""
+
+    carrier: int
+    E: Matrix
+    position: Vector
+
+    def mounted(self, E: Matrix, position: Vector) -> Frame:
+        """A frame placed in this one."""
+        return Frame(self.carrier, multiply(E, self.E), self.point(position))
+
+    def point(self, position: Vector) -> Vector:
+        """A point given in this frame, in the carrier's body frame."""
+        return add(self.position, apply(transpose(self.E), position))
+
+
+def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
+    """E of a frame whose third axis is the given constant direction (any length but zero)."""
+    x, y, z = scope.vector(axis, pointer, {}.get)
+    length2 = x * x + y * y + z * z
+    if length2.is_zero or not length2.is_number:
+        scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
+        return IDENTITY
+    for i, component in enumerate((x, y, z)):
+        if not any(other.fp for j, other in enumerate((x, y, z)) if j != i):
+            return AXES[i] if component.value > 0 else _reversed(AXES[i])  # type: ignore[operator]
+    return _general_axis(scope, (x, y, z), length2)
+
+
+def _reversed(e: Matrix) -> Matrix:
+    """The same axis in the opposite direction: a half turn about the first axis of the frame."""
+    return e[0], negate(e[1]), negate(e[2])
+
+
+def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], length2: Expr) -> Matrix:
+    """Rows: a unit vector across n and the frame axis least aligned with it, its complement, n."""
+    graph = scope.graph
+    unit = tuple(c / graph.sqrt(length2) for c in n)
+    smallest = min(range(3), key=lambda i: abs(n[i].value))  # type: ignore[arg-type]
+    across = cross(IDENTITY[smallest], n)
+    length = graph.sqrt(length2 - n[smallest] * n[smallest])
+    first: Vector = tuple(c / length for c in across)  # type: ignore[assignment]
+    return first, cross(unit, first), unit  # type: ignore[return-value, arg-type]

@@ -1,0 +1,1 @@
+"""The algebraised Lagrange formalism over any scalar (formulas, floats, arrays)."""

@@ -1,0 +1,189 @@
+"""Vectors and tensors of three-dimensional space over any scalar that can add, subtract and multiply.
+
+A vector is a tuple of three scalars, a matrix a tuple of three rows, a symmetric tensor the six entries
+``(xx, yy, zz, xy, xz, yz)``. Scalars may be :class:`~substructures.expr.graph.Expr`, floats, numpy arrays
+(all states at once) and the exact integers 0 and 1, in any mixture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+S = Any  #: a scalar
+Vector = tuple[S, S, S]
+Matrix = tuple[Vector, Vector, Vector]
+Symmetric = tuple[S, S, S, S, S, S]
+
+ZERO: Vector = (0, 0, 0)
+E3: Vector = (0, 0, 1)
+IDENTITY: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+ZERO6: Symmetric = (0, 0, 0, 0, 0, 0)
+#: position of entry (i, j) in the six entries of a symmetric tensor
+SYMMETRIC_INDEX = ((0, 3, 4), (3, 1, 5), (4, 5, 2))
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    """a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def sub(a: Vector, b: Vector) -> Vector:
+    """a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def negate(a: Vector) -> Vector:
+    """-a."""
+    return -a[0], -a[1], -a[2]
+
+
+def scale(c: S, a: Vector) -> Vector:
+    """c a."""
+    return c * a[0], c * a[1], c * a[2]
+
+
+def dot(a: Sequence[S], b: Sequence[S]) -> S:
+    """a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def skew(a: Vector) -> Matrix:
+    """The matrix of b -> a x b."""
+    return (0, -a[2], a[1]), (a[2], 0, -a[0]), (-a[1], a[0], 0)
+
+
+def apply(m: Matrix, v: Vector) -> Vector:
+    """m v."""
+    return dot(m[0], v), dot(m[1], v), dot(m[2], v)
+
+
+def transpose(m: Matrix) -> Matrix:
+    """m^T."""
+    return (m[0][0], m[1][0], m[2][0]), (m[0][1], m[1][1], m[2][1]), (m[0][2], m[1][2], m[2][2])
+
+
+def multiply(a: Matrix, b: Matrix) -> Matrix:
+    """a b."""
+    columns = transpose(b)
+    return tuple(tuple(dot(row, column) for column in columns) for row in a)  # type: ignore[return-value]
+
+
+def subtract(a: Matrix, b: Matrix) -> Matrix:
+    """a - b."""
+    return sub(a[0], b[0]), sub(a[1], b[1]), sub(a[2], b[2])
+
+
+def dense(j: Symmetric) -> Matrix:
+    """The full matrix of a symmetric tensor."""
+    return (j[0], j[3], j[4]), (j[3], j[1], j[5]), (j[4], j[5], j[2])
+
+
+def packed(m: Matrix) -> Symmetric:
+    """The six entries of a symmetric matrix (its upper triangle)."""
+    return m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]
+
+
+def add6(a: Symmetric, b: Symmetric) -> Symmetric:
+    """Sum of two symmetric tensors."""
+    return tuple(x + y for x, y in zip(a, b, strict=True))  # type: ignore[return-value]
+
+
+@dataclass(frozen=True, slots=True)
+class Planar:
+    """Passive rotation about a frame axis (0, 1 or 2): v -> v', components in the frame turned by the angle."""
+
+    axis: int
+    c: S
+    s: S
+
+    def forward(self, v: Vector) -> Vector:
+        """Components in the turned frame."""
+        i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
+        out = list(v)
+        out[i], out[j] = self.c * v[i] + self.s * v[j], self.c * v[j] - self.s * v[i]
+        return tuple(out)  # type: ignore[return-value]
+
+    def back(self, v: Vector) -> Vector:
+        """Components in the original frame."""
+        i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
+        out = list(v)
+        out[i], out[j] = self.c * v[i] - self.s * v[j], self.c * v[j] + self.s * v[i]
+        return tuple(out)  # type: ignore[return-value]
+
+    def back_tensor(self, t: Symmetric) -> Symmetric:
+        """E^T t E. With w = s (t_ii - t_jj) + 2 c t_ij the plane block needs three multiplications more."""
+        i, j, k = (self.axis + 1) % 3, (self.axis + 2) % 3, self.axis
+        ij, ik, jk = SYMMETRIC_INDEX[i][j], SYMMETRIC_INDEX[i][k], SYMMETRIC_INDEX[j][k]
+        w = self.s * (t[i] - t[j]) + self.c * (2 * t[ij])
+        sw = self.s * w
+        out = list(t)
+        out[i], out[j], out[ij] = t[i] - sw, t[j] + sw, self.c * w - t[ij]
+        out[ik], out[jk] = self.c * t[ik] - self.s * t[jk], self.c * t[jk] + self.s * t[ik]
+        return tuple(out)  # type: ignore[return-value]
+
+    def matrix(self) -> Matrix:
+        """E, with v' = E v."""
+        return transpose((self.forward((1, 0, 0)), self.forward((0, 1, 0)), self.forward((0, 0, 1))))
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Any rotation by its matrix E; same methods as :class:`Planar`."""
+
+    e: Matrix
+
+    def forward(self, v: Vector) -> Vector:
+        """E v."""
+        return apply(self.e, v)
+
+    def back(self, v: Vector) -> Vector:
+        """E^T v."""
+        return apply(transpose(self.e), v)
+
+    def back_tensor(self, t: Symmetric) -> Symmetric:
+        """E^T t E."""
+        half = multiply(dense(t), self.e)
+        et = transpose(self.e)
+        columns = transpose(half)
+        return packed(tuple(tuple(dot(row, column) for column in columns) for row in et))  # type: ignore[arg-type]
+
+    def matrix(self) -> Matrix:
+        """E."""
+        return self.e
+
+
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """A product of rotations, first factor applied first: v' = E_n ... E_1 v."""
+
+    factors: tuple[Planar | Turn, ...] = ()
+
+    def forward(self, v: Vector) -> Vector:
+        """E v: components in the child frame of a vector given in the parent frame."""
+        for factor in self.factors:
+            v = factor.forward(v)
+        return v
+
+    def back(self, v: Vector) -> Vector:
+        """E^T v: components in the parent frame of a vector given in the child frame."""
+        for factor in reversed(self.factors):
+            v = factor.back(v)
+        return v
+
+    def back_tensor(self, t: Symmetric) -> Symmetric:
+        """E^T t E for a symmetric tensor."""
+        for factor in reversed(self.factors):
+            t = factor.back_tensor(t)
+        return t
+
+    def matrix(self) -> Matrix:
+        """E as a matrix."""
+        rows = [self.back(axis) for axis in IDENTITY]
+        return rows[0], rows[1], rows[2]

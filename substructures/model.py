@@ -1,0 +1,164 @@
+"""The coupled model of a tree: one program with g, Gamma, Q and kinematics, and its certificate.
+
+=====================  ===========  ==========================================================================
+output                 shape        meaning
+=====================  ===========  ==========================================================================
+metric                 n n          g_ab [kg m^2, kg m, kg]
+christoffel            n n n        Gamma_abc, first kind, first index = equation
+gravity                n            generalised gravity forces
+forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
+potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
+linear_momentum        n 3          momentum of unit velocity q'^a, world axes
+angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
+position               frames 3     origin of every body frame and port in the world [m]
+rotation               frames 3 3   from the axes of the frame to those of the world
+U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
+=====================  ===========  ==========================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import Any
+
+from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.mechanics.base_functions import Twist, carried
+from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, transpose
+from substructures.mounting import Assembly, assemble
+from substructures.part import Part
+from substructures.skeleton import INTERFACE
+from substructures.tree import TreeSpec
+from substructures.verification import certify_tree
+
+MAX_NODES = 1_000_000
+QUANTITIES = ("metric", "christoffel", "gravity", "forces", "potential_energy", "linear_momentum", "angular_momentum")
+KINEMATICS = ("position", "rotation", "U", "Omega")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs."""
+
+    program: Program
+    coordinates: tuple[str, ...]
+    joints: str
+    frames: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    certificate: Mapping[str, Any] = field(hash=False)
+
+    @cached_property
+    def operations(self) -> dict[str, int]:
+        """Additions, multiplications and divisions of the quantities, each alone, and of metric, christoffel and forces."""
+        counts = {name: self.program.count([name])["total"] for name in self.program.outputs}
+        return counts | {"total": self.program.count(["metric", "christoffel", "forces"])["total"]}
+
+    @property
+    def dof(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinates)
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data that is stored beside the program."""
+        return {
+            "coordinates": list(self.coordinates),
+            "joints": self.joints,
+            "frames": list(self.frames),
+            "parameters": {name: dict(p) for name, p in self.parameters.items()},
+            "certificate": dict(self.certificate),
+            "operations": self.operations,
+        }
+
+    @classmethod
+    def load(cls, summary: Mapping[str, Any], program_bytes: bytes) -> Model:
+        """A stored model. Raises InvalidProgram when the bytes are damaged."""
+        names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
+        return cls(Program.from_bytes(program_bytes), *names, summary["parameters"], summary["certificate"])
+
+
+def couple(spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
+    """Couple stored parts (by instance name) to a model and verify it.
+
+    Raises InvalidDocument with pointers into the tree document, or TooLarge.
+    """
+    start = perf_counter()
+    assembly = assemble(spec, parts)
+    try:
+        coupled = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
+        outputs = model_outputs(assembly, coupled)
+    except ZeroDivisionError:
+        raise InvalidDocument.at("/instances", "division-by-zero", "with these bindings a formula divides by zero") from None
+    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    if len(result) > MAX_NODES:
+        raise TooLarge("the program of the tree (in operations)", len(result), MAX_NODES)
+    seconds = perf_counter() - start
+    names = [f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates]
+    joints = "".join(m.part.joints for m in assembly.mounted)
+    certificate = certify_tree(assembly, result, seconds)
+    used = {s.name for s in result.symbols}
+    parameters = {name: value for name, value in assembly.parameters.items() if name in used}
+    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate)
+
+
+def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
+    """The table above."""
+    n = len(coupled.gravity)
+    outputs = {
+        "metric": Formulas((n, n), coupled.metric, "symmetric"),
+        "christoffel": Formulas((n, n, n), coupled.christoffel, "christoffel"),
+        "gravity": array((n,), lambda a: coupled.gravity[a]),
+        "forces": array((n,), lambda a: coupled.forces[a]),
+        "potential_energy": array((), lambda: coupled.potential),
+    }
+    return outputs | _momentum(assembly, coupled) | _kinematics(assembly, coupled)
+
+
+def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
+    """R_c^T p_c and R_c^T H_c + r_c x R_c^T p_c in world axes."""
+    linear: dict[tuple[int, ...], Any] = {}
+    angular: dict[tuple[int, ...], Any] = {}
+    n = len(coupled.gravity)
+    for m, state in zip(assembly.mounted, coupled.states, strict=True):
+        for c, momentum in enumerate(state.momenta):
+            back = transpose(state.poses[c].R)
+            p = apply(back, momentum.p)
+            L = add(apply(back, momentum.H), cross(state.poses[c].r, p))
+            linear |= {(m.first + c, i): p[i] for i in range(3)}
+            angular |= {(m.first + c, i): L[i] for i in range(3)}
+    return {"linear_momentum": Formulas((n, 3), linear), "angular_momentum": Formulas((n, 3), angular)}
+
+
+def _kinematics(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
+    entries: dict[str, dict[tuple[int, ...], Any]] = {name: {} for name in KINEMATICS}
+    f = 0
+    for m, state in zip(assembly.mounted, coupled.states, strict=True):
+        for frame in range(len(m.part.frames)):
+            R, r, twists = frame_kinematics(m, state, frame)
+            entries["position"] |= {(f, i): r[i] for i in range(3)}
+            entries["rotation"] |= {(f, j, i): R[i][j] for i in range(3) for j in range(3)}
+            entries["U"] |= {(f, a, i): t.U[i] for a, t in twists.items() for i in range(3)}
+            entries["Omega"] |= {(f, a, i): t.Omega[i] for a, t in twists.items() for i in range(3)}
+            f += 1
+    n = len(coupled.gravity)
+    shapes = {"position": (f, 3), "rotation": (f, 3, 3), "U": (f, n, 3), "Omega": (f, n, 3)}
+    return {name: Formulas(shapes[name], some) for name, some in entries.items()}
+
+
+def frame_kinematics(m: Mounted, state: State, frame: int) -> tuple[Matrix, Vector, dict[int, Twist]]:
+    """Rotation world -> frame, origin in the world, columns in the axes of the frame."""
+    link = frame_link(m, state, frame)
+    carrier = link.parent
+    source = state.outside if carrier == INTERFACE else state.columns[carrier]
+    own = m.first + carrier if carrier != INTERFACE and state.links[carrier].s else None
+    twists = {a: carried(twist, link, a == own) for a, twist in source.items()}
+    pose = state.pose(carrier).beyond(link)
+    return pose.R, pose.r, twists
+
+
+def _frame_names(assembly: Assembly) -> tuple[str, ...]:
+    pairs = zip(assembly.instances, assembly.mounted, strict=True)
+    return tuple(f"{instance.name}.{frame}" for instance, m in pairs for frame in m.part.frames)

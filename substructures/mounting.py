@@ -1,0 +1,179 @@
+"""From a tree document and its parts to mounted parts in one graph: names, hosts, placements, bindings of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from substructures.coupling import WORLD, Mounted
+from substructures.errors import InvalidDocument
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Symbol
+from substructures.mechanics.linear3 import Vector
+from substructures.part import Part
+from substructures.scope import Scope
+from substructures.tree import Instance, TreeSpec
+
+
+@dataclass
+class Assembly:
+    """Everything coupling needs, with the symbols and parameters of the tree."""
+
+    scope: Scope
+    instances: list[Instance]  #: hosts first
+    mounted: list[Mounted]
+    gravity: Vector
+    parameters: dict[str, dict[str, object]]
+
+
+def tree_name(instance: str, symbol: str) -> str:
+    """The name in a tree of a symbol of an instance: arm.q1, arm.q1', tau.arm.q1; the time t is common to all."""
+    if symbol == "t":
+        return symbol
+    return f"tau.{instance}.{symbol[4:]}" if symbol.startswith("tau.") else f"{instance}.{symbol}"
+
+
+def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
+    """Read a tree. Raises InvalidDocument with a pointer to every fault."""
+    scope = Scope(Graph())
+    order = _order(spec, scope)
+    scope.finish()
+    parameters = _parameters(spec, parts, scope)
+    bound = _Bindings(spec, parts, scope)
+    bound.resolve_all()
+    mounted = []
+    place = {spec.instances[i].name: k for k, i in enumerate(order)}
+    for i in order:
+        mounted.append(_mount(spec, i, parts, scope, place, bound))
+    gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
+    scope.finish()
+    left = {name: value for name, value in parameters.items() if name not in bound.values}
+    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left)
+
+
+def _order(spec: TreeSpec, scope: Scope) -> list[int]:
+    """Indices of the instances, hosts first and otherwise as given; faults for names, unknown hosts and cycles."""
+    index: dict[str, int] = {}
+    for i, instance in enumerate(spec.instances):
+        pointer = f"/instances/{i}/name"
+        if instance.name in index:
+            scope.fault(pointer, "duplicate-name", f"duplicate instance '{instance.name}'")
+        if instance.name in ("world", "tau", "t") or instance.name in spec.parameters:
+            scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
+        index[instance.name] = i
+    waiting: dict[int, list[int]] = {}
+    ready = []
+    for i, instance in enumerate(spec.instances):
+        host = instance.at.partition(".")[0]
+        if instance.at == "world":
+            ready.append(i)
+        elif host in index:
+            waiting.setdefault(index[host], []).append(i)
+        else:
+            scope.fault(f"/instances/{i}/at", "unknown-instance", f"unknown instance '{host}'")
+    order: list[int] = []
+    while ready:
+        i = min(ready)
+        ready.remove(i)
+        order.append(i)
+        ready += waiting.get(i, [])
+    if not scope.faults:
+        for i in set(range(len(spec.instances))) - set(order):
+            name = spec.instances[i].name
+            scope.fault(f"/instances/{i}/at", "cycle", f"instance '{name}' is on or behind a cycle of hosts")
+    return order
+
+
+def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
+    """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
+    result: dict[str, dict[str, object]] = {}
+    for name, parameter in spec.parameters.items():
+        scope.declare(name, "parameter", parameter.unit)
+        if parameter.value is not None:
+            scope.read(parameter.value, f"/parameters/{name}/value", {}.get)
+        result[name] = parameter.model_dump()
+    for instance in spec.instances:
+        for name, some in parts[instance.name].parameters.items():
+            full = f"{instance.name}.{name}"
+            scope.declare(full, "parameter", str(some["unit"]))
+            result[full] = some
+    return result
+
+
+class _Bindings:
+    """Parameters of instances that are bound to numbers or to expressions in other parameters."""
+
+    def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> None:
+        self.scope = scope
+        self.given: dict[str, tuple[object, str]] = {}
+        self.values: dict[str, Expr] = {}
+        self.open: list[str] = []
+        for i, instance in enumerate(spec.instances):
+            for name, value in instance.parameters.items():
+                pointer = f"/instances/{i}/parameters/{name}"
+                if name in parts[instance.name].parameters:
+                    self.given[f"{instance.name}.{name}"] = (value, pointer)
+                else:
+                    scope.fault(pointer, "unknown-parameter", f"'{parts[instance.name].name}' has no parameter '{name}'")
+
+    def resolve_all(self) -> None:
+        """Read all bindings."""
+        for name in self.given:
+            self.lookup(name)
+
+    def lookup(self, name: str) -> Expr | None:
+        """A parameter by its name in the tree, with its binding put in."""
+        if name in self.values:
+            return self.values[name]
+        if name not in self.given:
+            return self.scope.names.get(name)
+        value, pointer = self.given[name]
+        if name in self.open or len(self.open) > 50:
+            self.scope.fault(pointer, "cycle", f"the binding of '{name}' refers to itself")
+            return self.scope.graph.zero
+        self.open.append(name)
+        self.values[name] = self.scope.read(value, pointer, self.lookup)
+        self.open.pop()
+        return self.values[name]
+
+
+def _mount(
+    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
+) -> Mounted:
+    instance, part = spec.instances[i], parts[spec.instances[i].name]
+    host, frame = WORLD, 0
+    if instance.at != "world":
+        host_name, frame_name = instance.at.split(".")
+        host = place[host_name]
+        frames = parts[host_name].frames
+        if frame_name in frames:
+            frame = frames.index(frame_name)
+        else:
+            known = ", ".join(frames)
+            message = f"'{host_name}' has no port or body '{frame_name}'; it has {known}"
+            scope.fault(f"/instances/{i}/at", "unknown-port", message)
+    pointer = f"/instances/{i}/placement"
+    E = scope.rpy(instance.placement.rpy, f"{pointer}/rpy", bound.lookup).matrix()
+    position = scope.vector(instance.placement.position, f"{pointer}/position", bound.lookup)
+    return Mounted(part, host, frame, E, position, _symbols(instance.name, part, scope, bound))
+
+
+def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[str, Expr]:
+    """What every symbol of a stored program is in the tree (inertia symbols are bound by coupling)."""
+    result: dict[str, Expr] = {}
+    for symbol in part.program.symbols:
+        if symbol.kind == "inertia":
+            continue
+        name = tree_name(instance, symbol.name)
+        value = bound.lookup(name) if symbol.kind == "parameter" else None
+        if value is None:
+            scope.symbols.setdefault(name, Symbol(name, symbol.kind, symbol.unit))
+            value = scope.graph.symbol(name)
+        result[symbol.name] = value
+    return result
+
+
+def unknown_instance(spec: TreeSpec, name: str) -> InvalidDocument:
+    """The exception for an instance that is not there."""
+    known = ", ".join(i.name for i in spec.instances)
+    return InvalidDocument.at("", "unknown-instance", f"'{spec.name}' has no instance '{name}'; it has {known}")

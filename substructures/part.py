@@ -1,0 +1,183 @@
+"""A substructure with its derived formulas: what the library stores and what coupling works from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import Any
+
+from substructures.certificate import certify_part
+from substructures.definition import Definition
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.program import Program, program
+from substructures.interface import formulas, inertia_names
+from substructures.loads import read_loads, wrench_places
+from substructures.mechanism import mechanism
+from substructures.skeleton import BASE, Skeleton, skeleton
+
+#: outputs that are bookkeeping for coupling rather than formulas to read
+INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
+
+
+@dataclass(frozen=True)
+class Formula:
+    """An addressable formula of the store: one vector, tensor or scalar of a quantity."""
+
+    quantity: str
+    output: str
+    body: str | None
+    coordinate: str | None
+    index: tuple[int, ...]
+    shape: tuple[int, ...]
+    symmetry: str
+    operations: int
+
+
+@dataclass(frozen=True)
+class Part:
+    """A definition, the program of its formulas (see :mod:`substructures.interface`) and the certificate."""
+
+    definition: Definition
+    program: Program
+    certificate: Mapping[str, Any] = field(hash=False)
+
+    @classmethod
+    def load(cls, definition: Definition, program_bytes: bytes, certificate: Mapping[str, Any]) -> Part:
+        """A stored part. Raises InvalidProgram when the bytes are damaged."""
+        return cls(definition, Program.from_bytes(program_bytes), certificate)
+
+    @cached_property
+    def skeleton(self) -> Skeleton:
+        """Names and topology."""
+        return skeleton(self.definition)
+
+    @property
+    def name(self) -> str:
+        """Name in the library."""
+        return self.definition.name
+
+    @property
+    def dof(self) -> int:
+        """Number of coordinates."""
+        return len(self.skeleton.joints)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Coordinate names."""
+        return self.skeleton.coordinates
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies, the interface frame ``base`` not included."""
+        return tuple(name for name in self.skeleton.carrier if name != BASE)
+
+    @property
+    def joints(self) -> str:
+        """'R' or 'P' for every coordinate."""
+        return self.skeleton.kinds
+
+    @property
+    def ports(self) -> tuple[str, ...]:
+        """Names of the ports."""
+        return tuple(port.name for port in self.definition.ports)
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """All frames something can be mounted on, in the order of the outputs ``frame.*``: bodies, then ports."""
+        return (*self.skeleton.carrier, *self.ports)
+
+    @cached_property
+    def frame_carriers(self) -> tuple[int, ...]:
+        """The carrier of every frame."""
+        carrier = self.skeleton.carrier
+        return (*carrier.values(), *(carrier[port.body] for port in self.definition.ports))
+
+    @cached_property
+    def wrenches(self) -> tuple[tuple[int, bool, bool], ...]:
+        """(carrier, is a moment, in world axes) of every force and torque load."""
+        return wrench_places(self.definition, self.skeleton.carrier)
+
+    @cached_property
+    def inertia_symbols(self) -> dict[int, tuple[str, ...]]:
+        """The ten inertia symbols of every carrier that has them."""
+        name = {carrier: body for body, carrier in reversed(self.skeleton.carrier.items()) if carrier >= 0}
+        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in name.items()}
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Parameters with default value, unit and description."""
+        return {name: p.model_dump() for name, p in self.definition.parameters.items()}
+
+    @cached_property
+    def operations(self) -> dict[str, int]:
+        """Additions, multiplications and divisions of every quantity, and of the whole program."""
+        counts = {name: self.program.count([name])["total"] for name in self.program.outputs if name not in INTERNAL}
+        return counts | {"total": self.program.count()["total"]}
+
+    def formulas(self) -> list[Formula]:
+        """The index of the store: every formula with its place, shape and operation count."""
+        return [f for name in self.program.outputs if name not in INTERNAL for f in self._rows(name)]
+
+    def _rows(self, name: str) -> list[Formula]:
+        """Leading axes are joints, coordinates or ports; each row is what remains for one such index."""
+        output = self.program.outputs[name]
+        axes = LEADING.get(name, ())
+        rows: dict[tuple[int, ...], None] = dict.fromkeys(i[: len(axes)] for i in output.index)
+        quantity = name.split(".")[0]
+        result = []
+        for lead in rows:
+            labels = dict(zip(axes, lead, strict=True))
+            body = self._label(labels, "joint", self._joint_bodies) or self._label(labels, "port", self.ports)
+            coordinate = self._label(labels, "coordinate", self.coordinates)
+            entries = [e for i, e in zip(output.index, output.entries, strict=True) if i[: len(lead)] == lead]
+            count = self.program.count_entries(entries)
+            result.append(
+                Formula(quantity, name, body, coordinate, lead, output.shape[len(axes) :], output.symmetry, count)
+            )
+        return result
+
+    @staticmethod
+    def _label(labels: Mapping[str, int], axis: str, names: tuple[str, ...]) -> str | None:
+        return names[labels[axis]] if axis in labels else None
+
+    @cached_property
+    def _joint_bodies(self) -> tuple[str, ...]:
+        """For every joint the body it carries (the next named one for the links inside a compound joint)."""
+        return tuple(self.definition.bodies[j.body].name for j in self.skeleton.joints)
+
+
+#: what the leading axes of an output mean; the remaining axes are components (or coordinate indices) of one formula
+LEADING: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("E", "Z", "tau", "R", "r", "f", "n", "K", "applied", "armature"), ("joint",)),
+    **dict.fromkeys(("subtree.m", "subtree.s", "subtree.J", "inertia.m", "inertia.s", "inertia.J"), ("joint",)),
+    **dict.fromkeys(("U", "Omega"), ("joint", "coordinate")),
+    **dict.fromkeys(("kappa", "F", "N"), ("coordinate", "joint")),
+    **dict.fromkeys(("port.R", "port.r"), ("port",)),
+    **dict.fromkeys(("port.U", "port.Omega"), ("port", "coordinate")),
+    "metric": ("coordinate", "b"),
+    "christoffel": ("coordinate", "b", "c"),
+}
+
+
+def derive(definition: Definition) -> Part:
+    """Derive, verify and certify the formulas of a substructure.
+
+    Raises InvalidDocument (faults with pointers) or TooLarge.
+    """
+    start = perf_counter()
+    m = mechanism(definition)
+    loads = read_loads(m)
+    try:
+        outputs = formulas(m, loads)
+    except ZeroDivisionError:
+        raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
+    result = program(m.graph, outputs, m.scope.symbols)
+    if len(result) > MAX_NODES:
+        raise TooLarge("the program of the substructure (in operations)", len(result), MAX_NODES)
+    seconds = perf_counter() - start
+    return Part(definition, result, certify_part(m, result, seconds))
+
+
+MAX_NODES = 1_000_000

@@ -1,0 +1,71 @@
+"""Reading the numbers and expressions of a document into a graph, with pointers to faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Any
+
+from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.parse import MAX_DIGITS, ExpressionError, decimal_number, parse
+from substructures.expr.program import Symbol
+from substructures.mechanics.linear3 import Planar, Rotation, Vector
+from substructures.expr.trigonometry import cos_sin
+
+
+@dataclass
+class Scope:
+    """A graph with the symbols that expressions may name. Faults are collected; :meth:`finish` raises them."""
+
+    graph: Graph
+    names: dict[str, Expr] = field(default_factory=dict)
+    symbols: dict[str, Symbol] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+
+    def declare(self, name: str, kind: str, unit: str = "", alias: str | None = None) -> Expr:
+        """A symbol of the program, known in expressions by ``alias`` (default: its name)."""
+        symbol = self.graph.symbol(name)
+        self.symbols[name] = Symbol(name, kind, unit)
+        self.names[name if alias is None else alias] = symbol
+        return symbol
+
+    def fault(self, pointer: str, code: str, message: str) -> None:
+        """Note a fault."""
+        self.faults.append(Fault(pointer, code, message))
+
+    def finish(self) -> None:
+        """Raise InvalidDocument when there were faults."""
+        if self.faults:
+            raise InvalidDocument(self.faults)
+
+    def read(self, value: Any, pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Expr:
+        """An exact number, or an expression in the known names; zero after a fault."""
+        try:
+            if isinstance(value, str):
+                return parse(self.graph, value, lookup or self.names.get)
+            if isinstance(value, Decimal):
+                return self.graph.number(decimal_number(str(value)))
+            if abs(value) >= 10**MAX_DIGITS:
+                raise ValueError(f"number has more than {MAX_DIGITS} digits")
+            return self.graph.number(value)
+        except ExpressionError as error:
+            code = "unknown-name" if error.name is not None else "bad-expression"
+            self.fault(pointer, code, str(error))
+        except (ValueError, ArithmeticError) as error:
+            self.fault(pointer, "bad-number", str(error))
+        except TooLarge as error:
+            self.fault(pointer, "too-large", str(error))
+        return self.graph.zero
+
+    def vector(self, values: Sequence[Any], pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Vector:
+        """Three numbers or expressions."""
+        x, y, z = (self.read(v, f"{pointer}/{i}", lookup) for i, v in enumerate(values))
+        return x, y, z
+
+    def rpy(self, values: Sequence[Any], pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Rotation:
+        """E of a frame turned by fixed-axis roll, pitch, yaw: v' = Rx(roll)^T Ry(pitch)^T Rz(yaw)^T v."""
+        angles = self.vector(values, pointer, lookup)
+        factors = ((2, angles[2]), (1, angles[1]), (0, angles[0]))
+        return Rotation(tuple(Planar(axis, *cos_sin(angle)) for axis, angle in factors if not angle.is_zero))
