@@ -1,4 +1,4 @@
-"""Multibody dynamics of mechanisms with tree structure from stored, coupled formulas (P. Maisser's algebraised Lagrange formalism).
+"""Multibody dynamics from stored formulas that couple (P. Maisser's algebraised Lagrange formalism).
 
 >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
 >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))

@@ -1,4 +1,4 @@
-"""What was checked when formulas were stored: agreement with the direct form at random states, definiteness, physics."""
+"""What was checked when formulas were stored: agreement with the direct form, physics."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.mechanics.joints import links
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, dense
 from substructures.mechanism import Mechanism
+from substructures.scope import no_names
 
 STATES = 4
 TOLERANCE = 1e-9
@@ -24,7 +25,9 @@ class VerificationFailed(SubstructuresError):
     """Derived formulas disagree with the direct form: a defect of this package. Nothing is stored."""
 
 
-def random_values(symbols: Mapping[str, Symbol] | tuple[Symbol, ...], n: int = STATES, seed: int = 0) -> dict[str, Array]:
+def random_values(
+    symbols: Mapping[str, Symbol] | tuple[Symbol, ...], n: int = STATES, seed: int = 0
+) -> dict[str, Array]:
     """Random values for symbols: everything of the order of one, parameters and masses positive."""
     rng = np.random.default_rng(seed)
     some = symbols.values() if isinstance(symbols, Mapping) else symbols
@@ -91,8 +94,6 @@ def _numeric_joints(m: Mechanism, values: Mapping[str, Array]) -> list[NumericJo
     ]
 
 
-
-
 def _inertia(values: Mapping[str, Array], body: str | None) -> tuple[Array, Array, Array]:
     if body is None:
         return np.zeros(STATES), np.zeros((STATES, 3)), np.zeros((STATES, 3, 3))
@@ -102,7 +103,7 @@ def _inertia(values: Mapping[str, Array], body: str | None) -> tuple[Array, Arra
 
 
 def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
-    """Negative masses and impossible inertia tensors: a fault for numbers, a warning for default values of parameters."""
+    """Negative masses and impossible inertia tensors: faults for numbers, warnings for default values."""
     outputs: dict[str, Formulas] = {}
     for i, (mass, J) in m.central.items():
         full = dense(J)
@@ -131,7 +132,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
 
 def _defaults(m: Mechanism) -> dict[str, float]:
     values = {
-        name: m.scope.read(p.value, f"/parameters/{name}/value", {}.get)
+        name: m.scope.read(p.value, f"/parameters/{name}/value", no_names)
         for name, p in m.definition.parameters.items()
         if p.value is not None
     }

@@ -17,8 +17,20 @@ from substructures.loads import wrench_about_origin
 from substructures.mechanics.base_functions import Columns, Twist, carried, transport
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import Link, lean_rotation, path
-from substructures.mechanics.linear3 import E3, IDENTITY, ZERO, Matrix, S, Vector
-from substructures.mechanics.linear3 import add, apply, cross, dot, multiply, transpose
+from substructures.mechanics.linear3 import (
+    E3,
+    IDENTITY,
+    ZERO,
+    Matrix,
+    S,
+    Vector,
+    add,
+    apply,
+    cross,
+    dot,
+    multiply,
+    transpose,
+)
 from substructures.mechanics.metric import JointMomentum, christoffel_block, joint_momentum, pairing
 from substructures.part import Part
 from substructures.skeleton import INTERFACE
@@ -36,7 +48,7 @@ USED = (
 
 @dataclass
 class Mounted:
-    """A part in a tree: host (index of an earlier one, or WORLD) and frame of the host, constant placement, bindings."""
+    """A part in a tree: host (index of an earlier one, or WORLD), frame of the host, constant placement, bindings."""
 
     part: Part
     host: int
@@ -72,14 +84,11 @@ class State:
     momenta: list[JointMomentum]
     outside: Columns = field(default_factory=dict)
     columns: list[Columns] = field(default_factory=list)  #: host's and own columns at every joint
-    interface: Pose | None = None
-    poses: list[Pose] = field(default_factory=list)  #: of every joint frame
+    poses: list[Pose] = field(default_factory=list)  #: of every joint frame, and last of the interface
 
     def pose(self, carrier: int) -> Pose:
         """Of joint frame k, or of the interface (-1)."""
-        pose = self.interface if carrier == INTERFACE else self.poses[carrier]
-        assert pose is not None
-        return pose
+        return self.poses[carrier]
 
 
 @dataclass
@@ -130,7 +139,9 @@ def _moved(inertia: Inertia, E: Matrix, position: Vector) -> Inertia:
     return inertia.turned_back(lean_rotation(E, 1, 0)).shifted(position)
 
 
-def _pay(graph: Graph, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia) -> None:
+def _pay(
+    graph: Graph, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia
+) -> None:
     """Add the composite of a part to what the carrier of its frame has to carry."""
     host = mounted[m.host].part
     frame = Stored(replay(host.program, graph, mounted[m.host].bindings, ("frame.E", "frame.position")))
@@ -150,14 +161,14 @@ def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
     stored = Stored(replay(m.part.program, graph, bindings, USED))
     joints = m.part.skeleton.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
-    momenta = [joint_momentum(j, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
+    momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
     return State(stored, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)
 
 
 def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[State], gravity: Vector) -> None:
     """Host columns at the interface; poses of the interface and of all joint frames."""
     if m.host == WORLD:
-        state.interface = Pose(lean_rotation(m.E, 1, 0).forward(gravity), m.E, m.position)
+        interface = Pose(lean_rotation(m.E, 1, 0).forward(gravity), m.E, m.position)
     else:
         host, h = states[m.host], mounted[m.host]
         link = frame_link(h, host, m.frame, m.E, m.position)
@@ -165,9 +176,10 @@ def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[St
         source = host.outside if carrier == INTERFACE else host.columns[carrier]
         slides = h.first + carrier if carrier != INTERFACE and host.links[carrier].s else None
         state.outside = {a: carried(twist, link, a == slides) for a, twist in source.items()}
-        state.interface = host.pose(carrier).beyond(link)
-    for link in state.links:
-        state.poses.append(state.pose(link.parent).beyond(link))
+        interface = host.pose(carrier).beyond(link)
+    state.poses = [interface]
+    for c, link in enumerate(state.links):
+        state.poses.insert(c, state.poses[link.parent].beyond(link))
 
 
 def frame_link(m: Mounted, state: State, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
@@ -204,8 +216,8 @@ def _dynamics(m: Mounted, state: State, result: Coupled) -> None:
 
 def _gravity(m: Mounted, state: State, result: Coupled) -> None:
     """Q_c = gamma_c . p_c."""
-    for c, (pose, momentum) in enumerate(zip(state.poses, state.momenta, strict=True)):
-        q = dot(pose.gamma, momentum.p)
+    for c, momentum in enumerate(state.momenta):
+        q = dot(state.poses[c].gamma, momentum.p)
         result.gravity[m.first + c] = q
         result.forces[m.first + c] = q + state.stored.scalar("applied", c)
     result.potential = result.potential + state.stored.scalar("potential")

@@ -71,7 +71,7 @@ class PortRotation(Model):
 
 
 class Joint(Model):
-    """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg for trees), or a placement."""
+    """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg), or a placement."""
 
     type: Literal["revolute", "prismatic", "fixed", "universal", "spherical", "cylindrical", "planar", "free"]
     coordinate: Name | tuple[Name, ...] | None = Field(None, description="coordinate name(s); rad or m")
@@ -200,18 +200,17 @@ class Definition(Model):
         return read_model(cls, data)
 
     @cached_property
-    def bytes(self) -> bytes:
-        """Canonical bytes of what was given (defaults left out)."""
+    def _canonical(self) -> bytes:
         return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
 
     def canonical(self) -> bytes:
-        """Canonical bytes (RFC 8785, numbers as their decimal text)."""
-        return self.bytes
+        """Canonical bytes of what was given: RFC 8785, numbers as their decimal text, defaults left out."""
+        return self._canonical
 
     @property
     def digest(self) -> str:
         """``sha256:`` and 64 hex digits of the canonical bytes."""
-        return "sha256:" + hashlib.sha256(self.bytes).hexdigest()
+        return "sha256:" + hashlib.sha256(self._canonical).hexdigest()
 
 
 M = TypeVar("M", bound=BaseModel)

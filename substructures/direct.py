@@ -40,7 +40,7 @@ class DirectForm:
 
 
 def direct_form(joints: Sequence[NumericJoint], gravity: Array) -> DirectForm:
-    """Sum over bodies with partial velocities from axes and points: u = z x (x - o) or z; d_b u_c = z_b x u_c, b <= c."""
+    """Sum over bodies with velocities from axes and points: u = z x (x - o) or z; d_b u_c = z_b x u_c, b <= c."""
     N, n = gravity.shape[0], len(joints)
     R, o = _poses(joints, N)
     g, Gamma, Q = np.zeros((N, n, n)), np.zeros((N, n, n, n)), np.zeros((N, n))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import IDENTITY, Matrix, Vector, add, apply, cross, multiply, negate, transpose
-from substructures.scope import Scope
+from substructures.scope import Scope, no_names
 
 #: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
 AXES: tuple[Matrix, Matrix, Matrix] = (
@@ -35,14 +35,14 @@ class Frame:
 
 def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
     """E of a frame whose third axis is the given constant direction (any length but zero)."""
-    x, y, z = scope.vector(axis, pointer, {}.get)
+    x, y, z = scope.vector(axis, pointer, no_names)
     length2 = x * x + y * y + z * z
     if length2.is_zero or not length2.is_number:
         scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
         return IDENTITY
     for i, component in enumerate((x, y, z)):
         if not any(other.fp for j, other in enumerate((x, y, z)) if j != i):
-            return AXES[i] if component.value > 0 else _reversed(AXES[i])  # type: ignore[operator]
+            return AXES[i] if component.value > 0 else _reversed(AXES[i])
     return _general_axis(scope, (x, y, z), length2)
 
 
@@ -55,8 +55,8 @@ def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], length2: Expr) -> Ma
     """Rows: a unit vector across n and the frame axis least aligned with it, its complement, n."""
     graph = scope.graph
     unit = tuple(c / graph.sqrt(length2) for c in n)
-    smallest = min(range(3), key=lambda i: abs(n[i].value))  # type: ignore[arg-type]
+    smallest = min(range(3), key=lambda i: abs(n[i].value))
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
-    first: Vector = tuple(c / length for c in across)  # type: ignore[assignment]
+    first: Vector = tuple(c / length for c in across)
     return first, cross(unit, first), unit  # type: ignore[return-value, arg-type]

@@ -53,7 +53,6 @@ from substructures.mechanics.linear3 import (
     add,
     apply,
     cross,
-
     multiply,
     skew,
     subtract,
@@ -96,7 +95,7 @@ def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
     result = []
     for k in range(len(m.joints)):
         if k not in name:
-            result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))  # type: ignore[arg-type]
+            result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
             continue
         for symbol, unit in inertia_names(name[k]):
             m.scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
@@ -115,10 +114,12 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     """All outputs of the table above."""
     k = kinematics(m)
     subtree, base = composites(m.joints, inertia_symbols(m))
-    momenta = [joint_momentum(joint, composite) for joint, composite in zip(m.joints, subtree, strict=True)]
+    momenta = [joint_momentum(joint.s, composite) for joint, composite in zip(m.joints, subtree, strict=True)]
     outputs = _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", subtree) | _inertia_outputs("inertia", list(m.own))
-    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True) | _inertia_outputs("base", [m.base], scalar=True)
+    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True) | _inertia_outputs(
+        "base", [m.base], scalar=True
+    )
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
     outputs |= _interface_outputs(k, momenta) | _own_dynamics(m, k, momenta)
     forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(m, k, carrier, at))
@@ -177,7 +178,6 @@ def _inertia_outputs(prefix: str, values: list[Inertia], scalar: bool = False) -
 
 def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
     n = len(momenta)
-    f: dict[tuple[int, ...], Any] = {}
     values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in ("f", "n", "kappa", "F", "N")}
     K: list[Matrix] = []
     for c, momentum in enumerate(momenta):
@@ -195,7 +195,9 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
                 moment = add(cross(momentum.p, twist.U), apply(transpose(K_c), twist.Omega))
                 values["kappa"][a, c] = apply(back, moment)
     outputs = {
-        name: Formulas((n, 3) if name in "fn" else (n, n, 3), {(*i, x): v[x] for i, v in some.items() for x in range(3)})
+        name: Formulas(
+            (n, 3) if name in "fn" else (n, n, 3), {(*i, x): v[x] for i, v in some.items() for x in range(3)}
+        )
         for name, some in values.items()
     }
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}

@@ -1,7 +1,7 @@
 """Applied forces of a substructure: wrenches on bodies, point-to-point springs, joint laws (HTTP contract, section 1).
 
 Springs and joint laws act between parts of the substructure, so that they do no work in a motion of the interface:
-their generalised forces are complete without a host. Forces and torques act on the host, too; they are kept as wrenches.
+their generalised forces are complete without a host. Forces and torques act on the host, too: kept as wrenches.
 """
 
 from __future__ import annotations
@@ -132,8 +132,9 @@ def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> lis
         if frame is None:
             return []
         ends.append((frame.carrier, frame.point(m.scope.vector(end.at, f"{pointer}/{key}/at"))))
-    values = [m.scope.read(getattr(load, name), f"{pointer}/{name}", lookup) for name in ("stiffness", "damping", "length")]
-    return [Spring((ends[0], ends[1]), *values, pointer)]
+    names = ("stiffness", "damping", "length")
+    stiffness, damping, length = (m.scope.read(getattr(load, name), f"{pointer}/{name}", lookup) for name in names)
+    return [Spring((ends[0], ends[1]), stiffness, damping, length, pointer)]
 
 
 def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
@@ -152,7 +153,9 @@ class PointKinematics:
     u: Mapping[int, Vector]
 
 
-def applied_forces(m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]) -> tuple[list[Expr], Expr]:
+def applied_forces(
+    m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]
+) -> tuple[list[Expr], Expr]:
     """(generalised forces of joint laws, actuators and springs; potential energy of all springs)."""
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
@@ -171,16 +174,19 @@ def applied_forces(m: Mechanism, loads: Loads, point: Callable[[int, Vector], Po
     return forces, potential
 
 
-def _spring_force(m: Mechanism, spring: Spring, point: Callable[[int, Vector], PointKinematics], forces: list[Expr]) -> Expr:
+def _spring_force(
+    m: Mechanism, spring: Spring, point: Callable[[int, Vector], PointKinematics], forces: list[Expr]
+) -> Expr:
     """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
     start, end = (point(*e) for e in spring.ends)
     x = sub(end.position, start.position)
     reach = {a: dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO))) for a in {**start.u, **end.u}}
-    length2 = m.graph.zero + dot(x, x)
+    length2: Expr = m.graph.zero + dot(x, x)
     if length2.is_zero:
         m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
         return m.graph.zero
-    factor, energy = spring.stiffness, spring.stiffness * length2
+    factor: Expr = spring.stiffness
+    energy: Expr = spring.stiffness * length2
     if not spring.length.is_zero:
         length = m.graph.sqrt(length2)
         factor = factor - spring.stiffness * spring.length / length

@@ -11,9 +11,19 @@ from substructures.expr.trigonometry import cos_sin
 from substructures.frames import AXES, Frame, axis_rotation
 from substructures.mechanics.inertia import Inertia, binet, body_inertia
 from substructures.mechanics.joints import Joint, lean_rotation
-from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Planar, Rotation, Symmetric, Turn, Vector
-from substructures.mechanics.linear3 import multiply, transpose
-from substructures.scope import Scope
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Planar,
+    Rotation,
+    Symmetric,
+    Turn,
+    Vector,
+    multiply,
+    transpose,
+)
+from substructures.scope import Scope, no_names
 from substructures.skeleton import BASE, INTERFACE, JointEntry, Skeleton, skeleton
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
@@ -82,7 +92,7 @@ def _scope(definition: Definition, bones: Skeleton) -> Scope:
     for name, parameter in definition.parameters.items():
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
-            scope.read(parameter.value, f"/parameters/{name}/value", {}.get)
+            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
     for joint in bones.joints:
         scope.symbols[joint.coordinate] = _coordinate(joint)
     return scope
@@ -124,7 +134,9 @@ class _Builder:
         d, sigma = (read(getattr(joint, name), f"{pointer}/{name}") for name in ("d", "sigma"))
         if joint.placement is not None:
             if any(not x.is_zero for x in (psi, theta, d, sigma)):
-                self.scope.fault(pointer, "row-and-placement", "give either psi, theta, d, sigma or a placement, not both")
+                self.scope.fault(
+                    pointer, "row-and-placement", "give either psi, theta, d, sigma or a placement, not both"
+                )
             rotation = self.scope.rpy(joint.placement.rpy, f"{pointer}/placement/rpy")
             return parent.mounted(
                 rotation.matrix(), self.scope.vector(joint.placement.position, f"{pointer}/placement/position")
@@ -182,9 +194,11 @@ class _Builder:
         given, place = body.joint.limits, f"{pointer}/limits"
         if given and isinstance(given[0], tuple):
             if entry.step >= len(given):
-                self.scope.fault(place, "wrong-length", "one pair of limits for each of the joint's coordinates expected")
+                self.scope.fault(
+                    place, "wrong-length", "one pair of limits for each of the joint's coordinates expected"
+                )
                 return
-            given, place = given[entry.step], f"{place}/{entry.step}"  # type: ignore[assignment]
+            given, place = given[entry.step], f"{place}/{entry.step}"
         for i, value in enumerate(given or ()):
             self.scope.read(value, f"{place}/{i}")
 
@@ -192,7 +206,9 @@ class _Builder:
         scope, tensor = self.scope, body.inertia
         mass = scope.read(body.mass, f"{pointer}/mass")
         com = scope.vector(body.com, f"{pointer}/com")
-        theta = tuple(scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz", "xy", "xz", "yz"))
+        theta = tuple(
+            scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz", "xy", "xz", "yz")
+        )
         inertia = body_inertia(mass, com, theta) if tensor.about == "com" else _about_origin(mass, com, theta)  # type: ignore[arg-type]
         central = binet(theta) if tensor.about == "com" else _central(inertia, com)  # type: ignore[arg-type]
         self.central[i] = mass, central
@@ -210,4 +226,3 @@ def _central(inertia: Inertia, com: Vector) -> Symmetric:
 
 def _about_origin(mass: Expr, com: Vector, theta: tuple[Expr, ...]) -> Inertia:
     return Inertia(mass, (mass * com[0], mass * com[1], mass * com[2]), body_inertia(0, ZERO, theta).J)  # type: ignore[arg-type]
-

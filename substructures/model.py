@@ -53,7 +53,7 @@ class Model:
 
     @cached_property
     def operations(self) -> dict[str, int]:
-        """Additions, multiplications and divisions of the quantities, each alone, and of metric, christoffel and forces."""
+        """Arithmetic operations of every output alone; ``total``: of metric, christoffel and forces together."""
         counts = {name: self.program.count([name])["total"] for name in self.program.outputs}
         return counts | {"total": self.program.count(["metric", "christoffel", "forces"])["total"]}
 
@@ -91,12 +91,16 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
         coupled = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
         outputs = model_outputs(assembly, coupled)
     except ZeroDivisionError:
-        raise InvalidDocument.at("/instances", "division-by-zero", "with these bindings a formula divides by zero") from None
+        raise InvalidDocument.at(
+            "/instances", "division-by-zero", "with these bindings a formula divides by zero"
+        ) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
     if len(result) > MAX_NODES:
         raise TooLarge("the program of the tree (in operations)", len(result), MAX_NODES)
     seconds = perf_counter() - start
-    names = [f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates]
+    names = [
+        f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
+    ]
     joints = "".join(m.part.joints for m in assembly.mounted)
     certificate = certify_tree(assembly, result, seconds)
     used = {s.name for s in result.symbols}

@@ -1,4 +1,4 @@
-"""From a tree document and its parts to mounted parts in one graph: names, hosts, placements, bindings of parameters."""
+"""From a tree document and its parts to mounted parts in one graph: names, hosts, placements, bindings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.mechanics.linear3 import Vector
 from substructures.part import Part
-from substructures.scope import Scope
+from substructures.scope import Scope, no_names
 from substructures.tree import Instance, TreeSpec
 
 
@@ -41,10 +41,8 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     parameters = _parameters(spec, parts, scope)
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
-    mounted = []
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    for i in order:
-        mounted.append(_mount(spec, i, parts, scope, place, bound))
+    mounted = [_mount(spec, i, parts, scope, place, bound) for i in order]
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
@@ -90,7 +88,7 @@ def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict
     for name, parameter in spec.parameters.items():
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
-            scope.read(parameter.value, f"/parameters/{name}/value", {}.get)
+            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
         result[name] = parameter.model_dump()
     for instance in spec.instances:
         for name, some in parts[instance.name].parameters.items():
@@ -114,7 +112,9 @@ class _Bindings:
                 if name in parts[instance.name].parameters:
                     self.given[f"{instance.name}.{name}"] = (value, pointer)
                 else:
-                    scope.fault(pointer, "unknown-parameter", f"'{parts[instance.name].name}' has no parameter '{name}'")
+                    scope.fault(
+                        pointer, "unknown-parameter", f"'{parts[instance.name].name}' has no parameter '{name}'"
+                    )
 
     def resolve_all(self) -> None:
         """Read all bindings."""

@@ -11,8 +11,13 @@ from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import MAX_DIGITS, ExpressionError, decimal_number, parse
 from substructures.expr.program import Symbol
-from substructures.mechanics.linear3 import Planar, Rotation, Vector
 from substructures.expr.trigonometry import cos_sin
+from substructures.mechanics.linear3 import Planar, Rotation, Vector
+
+
+def no_names(_name: str) -> Expr | None:
+    """The lookup of expressions that may not name anything."""
+    return None
 
 
 @dataclass

@@ -27,7 +27,7 @@ CHAINS: dict[str, tuple[tuple[int, int], ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class JointEntry:
-    """One degree of freedom: coordinate name, parent carrier, 1 prismatic / 0 revolute, axis, place in the definition."""
+    """One degree of freedom: coordinate, parent carrier, 1 prismatic / 0 revolute, axis, place in the definition."""
 
     coordinate: str
     parent: int
@@ -127,7 +127,9 @@ def _order(definition: Definition) -> tuple[list[int], list[Fault]]:
     if not faults:
         left = [i for i in range(len(definition.bodies)) if i not in order]
         faults += [
-            Fault(f"/bodies/{i}/parent", "cycle", f"body '{definition.bodies[i].name}' is on or behind a cycle of parents")
+            Fault(
+                f"/bodies/{i}/parent", "cycle", f"body '{definition.bodies[i].name}' is on or behind a cycle of parents"
+            )
             for i in left
         ]
     return order, faults
@@ -161,7 +163,9 @@ def _coordinate_faults(definition: Definition, joints: list[JointEntry]) -> list
     for joint in joints:
         name, pointer = joint.coordinate, f"/bodies/{joint.body}/joint/coordinate"
         if name in seen or name in definition.parameters or name in definition.inputs:
-            faults.append(Fault(pointer, "duplicate-name", f"coordinate '{name}' is used twice (coordinates, parameters, inputs)"))
+            faults.append(
+                Fault(pointer, "duplicate-name", f"coordinate '{name}' is used twice (coordinates, parameters, inputs)")
+            )
         if name in RESERVED:
             faults.append(Fault(pointer, "reserved-name", f"'{name}' has a fixed meaning in expressions"))
         seen.add(name)

@@ -27,9 +27,8 @@ def _draw_prime() -> int:
     """A random prime of 120 bits, 3 mod 4, modulo which 2, 3, 5 and 7 are squares."""
     while True:
         n = (secrets.randbits(117) | 1 << 116) * 8 + 7
-        if all(n % p for p in _WITNESSES[1:]) and pow(2, n - 1, n) == 1:
-            if _is_prime(n) and all(pow(r, (n - 1) // 2, n) == 1 for r in _ROOTS):
-                return n
+        if all(n % p for p in _WITNESSES) and all(pow(r, (n - 1) // 2, n) == 1 for r in _ROOTS) and _is_prime(n):
+            return n
 
 
 PRIME = _draw_prime()

@@ -19,13 +19,12 @@ from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
 from math import isqrt
-from typing import Union
+from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 
-Number = Union[int, Fraction, Decimal]
-Scalar = Union["Expr", int, Fraction, Decimal]
+Number = int | Fraction | Decimal
 
 #: Constants are exact; numerator and denominator may have this many bits.
 MAX_BITS = 4096
@@ -33,46 +32,44 @@ MAX_EXPONENT = 64
 
 
 class Expr:
-    """A node: operation, arguments, exact value (constants), name (symbols), fingerprint, creation index."""
+    """A node: operation, arguments, exact value (numbers) or name (symbols), fingerprint, creation index.
 
-    __slots__ = ("graph", "op", "args", "value", "fp", "index")
+    ``is_number``: an exact integer or rational; ``negative``: a negative number, or a node of the form -x.
+    """
 
-    def __init__(self, graph: Graph, op: str, args: tuple[Expr, ...], value: int | Fraction | str | None, fp: int):
+    __slots__ = ("args", "fp", "graph", "index", "is_number", "negative", "op", "value")
+
+    def __init__(self, graph: Graph, op: str, args: tuple[Expr, ...], value: Any, fp: int) -> None:
         self.graph, self.op, self.args, self.value, self.fp = graph, op, args, value, fp
+        self.is_number = value is not None and op != "sym"
+        self.negative = op == "neg" or (self.is_number and value < 0)
         self.index = len(graph.table)
         graph.table[fp] = self
-
-    @property
-    def is_number(self) -> bool:
-        """True for an exact integer or rational."""
-        return self.op == "int" or self.op == "rat"
 
     @property
     def is_zero(self) -> bool:
         """True when the formula is the zero function."""
         return self.fp == 0
 
-    def __add__(self, other: Scalar) -> Expr:
-        if other.__class__ is not Expr:
-            other = self.graph.number(other)  # type: ignore[arg-type]
-        fp = (self.fp + other.fp) % PRIME  # type: ignore[union-attr]
+    def __add__(self, other: Expr | Number) -> Expr:
+        x = other if isinstance(other, Expr) else self.graph.number(other)
+        fp = (self.fp + x.fp) % PRIME
         found = self.graph.table.get(fp)
-        return found if found is not None else self.graph._sum(self, other, fp)  # type: ignore[arg-type]
+        return found if found is not None else self.graph._sum(self, x, fp)
 
     __radd__ = __add__
 
-    def __sub__(self, other: Scalar) -> Expr:
-        return self + -(other if other.__class__ is Expr else self.graph.number(other))  # type: ignore[arg-type,operator]
+    def __sub__(self, other: Expr | Number) -> Expr:
+        return self + -(other if isinstance(other, Expr) else self.graph.number(other))
 
-    def __rsub__(self, other: Scalar) -> Expr:
+    def __rsub__(self, other: Number) -> Expr:
         return -self + other
 
-    def __mul__(self, other: Scalar) -> Expr:
-        if other.__class__ is not Expr:
-            other = self.graph.number(other)  # type: ignore[arg-type]
-        fp = self.fp * other.fp % PRIME  # type: ignore[union-attr]
+    def __mul__(self, other: Expr | Number) -> Expr:
+        x = other if isinstance(other, Expr) else self.graph.number(other)
+        fp = self.fp * x.fp % PRIME
         found = self.graph.table.get(fp)
-        return found if found is not None else self.graph._product(self, other, fp)  # type: ignore[arg-type]
+        return found if found is not None else self.graph._product(self, x, fp)
 
     __rmul__ = __mul__
 
@@ -84,14 +81,14 @@ class Expr:
         if found is not None:
             return found
         if self.is_number:
-            return Expr(self.graph, self.op, (), -self.value, fp)  # type: ignore[operator]
+            return Expr(self.graph, self.op, (), -self.value, fp)
         return Expr(self.graph, "neg", (self,), None, fp)
 
-    def __truediv__(self, other: Scalar) -> Expr:
-        return self.graph._quotient(self, self.graph.number(other) if not isinstance(other, Expr) else other)
+    def __truediv__(self, other: Expr | Number) -> Expr:
+        return self.graph._quotient(self, other if isinstance(other, Expr) else self.graph.number(other))
 
-    def __rtruediv__(self, other: Scalar) -> Expr:
-        return self.graph.number(other) / self if not isinstance(other, Expr) else other / self
+    def __rtruediv__(self, other: Number) -> Expr:
+        return self.graph.number(other) / self
 
     def __pow__(self, n: int) -> Expr:
         if abs(n) > MAX_EXPONENT:
@@ -160,14 +157,14 @@ class Graph:
         if found is not None:
             return -found
         if a.is_number and b.is_number:
-            return self._folded(a.value + b.value)  # type: ignore[operator]
+            return self._folded(a.value + b.value)
         if a is b:
             return self.number(2) * a
-        if _negative(b):
-            if _negative(a):
+        if b.negative:
+            if a.negative:
                 return -Expr(self, "add", (-a, -b), None, PRIME - fp)
             return Expr(self, "sub", (a, -b), None, fp)
-        if _negative(a):
+        if a.negative:
             return Expr(self, "sub", (b, -a), None, fp)
         return Expr(self, "add", (a, b), None, fp)
 
@@ -176,9 +173,9 @@ class Graph:
         if found is not None:
             return -found
         if a.is_number and b.is_number:
-            return self._folded(a.value * b.value)  # type: ignore[operator]
-        if _negative(a) or _negative(b):
-            positive = (-a if _negative(a) else a) * (-b if _negative(b) else b)
+            return self._folded(a.value * b.value)
+        if a.negative or b.negative:
+            positive = (-a if a.negative else a) * (-b if b.negative else b)
             return positive if positive.fp == fp else -positive
         if b.is_number:
             a, b = b, a
@@ -196,13 +193,13 @@ class Graph:
         if b.fp == 0:
             raise ZeroDivisionError("division by zero")
         if b.is_number:
-            return a * self.number(Fraction(1) / b.value)  # type: ignore[operator,arg-type]
+            return a * self.number(Fraction(1) / b.value)
         fp = a.fp * pow(b.fp, -1, PRIME) % PRIME
         found = self.table.get(fp)
         if found is not None:
             return found
-        if _negative(a) or _negative(b):
-            positive = (-a if _negative(a) else a) / (-b if _negative(b) else b)
+        if a.negative or b.negative:
+            positive = (-a if a.negative else a) / (-b if b.negative else b)
             return positive if positive.fp == fp else -positive
         return Expr(self, "div", (a, b), None, fp)
 
@@ -215,7 +212,7 @@ class Graph:
     def sqrt(self, x: Expr) -> Expr:
         """Principal square root; exact for squares of rationals."""
         if x.is_number:
-            value = Fraction(x.value)  # type: ignore[arg-type]
+            value = Fraction(x.value)
             if value < 0:
                 raise ValueError(f"square root of the negative number {value}")
             outside, inside = _split_square(value)
@@ -227,14 +224,10 @@ class Graph:
         """A function the field knows nothing about, except the square roots of 2, 3, 5 and 7."""
         fp = None
         if op == "sqrt" and args[0].op == "int":
-            fp = square_root(args[0].value)  # type: ignore[arg-type]
+            fp = square_root(args[0].value)
         if fp is None:
             fp = keyed(op, *(a.fp for a in args))
         return self.table.get(fp) or Expr(self, op, args, None, fp)
-
-
-def _negative(x: Expr) -> bool:
-    return x.op == "neg" or (x.is_number and x.value < 0)  # type: ignore[operator]
 
 
 def _square_of_root(a: Expr, b: Expr) -> Expr | None:

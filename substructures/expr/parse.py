@@ -37,7 +37,7 @@ RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
 
 
 class ExpressionError(ValueError):
-    """An expression that cannot be read; ``column`` counts from 1, ``name`` is an unknown name, if that is the fault."""
+    """An expression that cannot be read; ``column`` counts from 1, ``name`` is the unknown name, if any."""
 
     def __init__(self, message: str, column: int, name: str | None = None) -> None:
         self.column, self.name = column, name

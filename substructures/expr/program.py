@@ -50,7 +50,7 @@ class Output:
 
     All other elements follow from the symmetry or are zero:
     ``symmetric``: x[a, b] = x[b, a];
-    ``christoffel``: entries have a < c, b <= c on one path; x[a, b, c] = x[a, c, b], and x[c, b, a] = -x[a, b, c] for b <= a.
+    ``christoffel``: entries have a < c, b <= c on a path; x[a, b, c] = x[a, c, b]; x[c, b, a] = -x[a, b, c] for b <= a.
     """
 
     shape: tuple[int, ...]
@@ -86,8 +86,7 @@ class Program:
         return len(self.operations)
 
     @cached_property
-    def bytes(self) -> bytes:
-        """Canonical bytes."""
+    def _encoded(self) -> bytes:
         document = {
             "format": FORMAT,
             "version": VERSION,
@@ -102,12 +101,12 @@ class Program:
 
     def to_bytes(self) -> bytes:
         """Canonical bytes (RFC 8785)."""
-        return self.bytes
+        return self._encoded
 
     @cached_property
     def digest(self) -> str:
         """``sha256:`` and 64 hex digits of the canonical bytes."""
-        return "sha256:" + hashlib.sha256(self.bytes).hexdigest()
+        return "sha256:" + hashlib.sha256(self._encoded).hexdigest()
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Program:
@@ -144,8 +143,10 @@ class Program:
         )
 
     def count(self, names: Iterable[str] | None = None) -> dict[str, int]:
-        """Operations by name, ``total`` = additions, subtractions, multiplications and divisions, as they are counted in
-        the literature: signs, symbols, constants and functions (listed, too) not included."""
+        """Operations by name; ``total`` = additions, subtractions, multiplications and divisions.
+
+        As in the literature the total leaves out signs, symbols, constants and functions.
+        """
         counts = Counter(self.operations[i][0] for i in self.reachable(names))
         result = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
         result["total"] = sum(counts[op] for op in ARITHMETIC)
@@ -246,7 +247,7 @@ def _operation(node: Expr, position: Mapping[Expr, int], number: Mapping[str, in
     if node.op == "int":
         return "int", str(node.value)
     if node.op == "rat":
-        value = Fraction(node.value)  # type: ignore[arg-type]
+        value = Fraction(node.value)
         return "rat", str(value.numerator), str(value.denominator)
     if node.op == "sym":
         return "sym", number[str(node.value)]

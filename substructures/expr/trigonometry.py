@@ -34,9 +34,9 @@ def linear_form(x: Expr) -> Linear:
         elif node.op == "neg":
             stack.append((node.args[0], -factor))
         elif node.op == "mul" and node.args[0].is_number:
-            stack.append((node.args[1], factor * Fraction(node.args[0].value)))  # type: ignore[arg-type]
+            stack.append((node.args[1], factor * Fraction(node.args[0].value)))
         else:
-            atom, factor = (x.graph.one, factor * Fraction(node.value)) if node.is_number else (node, factor)  # type: ignore[arg-type]
+            atom, factor = (x.graph.one, factor * Fraction(node.value)) if node.is_number else (node, factor)
             terms[atom] = terms.get(atom, Fraction(0)) + factor
     return {atom: factor for atom, factor in terms.items() if factor}, turns
 

@@ -71,8 +71,9 @@ def transpose(m: Matrix) -> Matrix:
 
 def multiply(a: Matrix, b: Matrix) -> Matrix:
     """a b."""
-    columns = transpose(b)
-    return tuple(tuple(dot(row, column) for column in columns) for row in a)  # type: ignore[return-value]
+    x, y, z = transpose(b)
+    rows = [(dot(row, x), dot(row, y), dot(row, z)) for row in a]
+    return rows[0], rows[1], rows[2]
 
 
 def subtract(a: Matrix, b: Matrix) -> Matrix:
@@ -92,7 +93,7 @@ def packed(m: Matrix) -> Symmetric:
 
 def add6(a: Symmetric, b: Symmetric) -> Symmetric:
     """Sum of two symmetric tensors."""
-    return tuple(x + y for x, y in zip(a, b, strict=True))  # type: ignore[return-value]
+    return tuple(x + y for x, y in zip(a, b, strict=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +109,14 @@ class Planar:
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] + self.s * v[j], self.c * v[j] - self.s * v[i]
-        return tuple(out)  # type: ignore[return-value]
+        return tuple(out)
 
     def back(self, v: Vector) -> Vector:
         """Components in the original frame."""
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] - self.s * v[j], self.c * v[j] + self.s * v[i]
-        return tuple(out)  # type: ignore[return-value]
+        return tuple(out)
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
         """E^T t E. With w = s (t_ii - t_jj) + 2 c t_ij the plane block needs three multiplications more."""
@@ -126,7 +127,7 @@ class Planar:
         out = list(t)
         out[i], out[j], out[ij] = t[i] - sw, t[j] + sw, self.c * w - t[ij]
         out[ik], out[jk] = self.c * t[ik] - self.s * t[jk], self.c * t[jk] + self.s * t[ik]
-        return tuple(out)  # type: ignore[return-value]
+        return tuple(out)
 
     def matrix(self) -> Matrix:
         """E, with v' = E v."""

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from substructures.mechanics.base_functions import Columns, Twist
 from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.joints import Joint
-from substructures.mechanics.linear3 import Matrix, S, Vector, cross, dot, skew
+from substructures.mechanics.linear3 import Matrix, S, Vector, cross, dot
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +40,10 @@ class JointMomentum:
         return (xy, yy, yz), (-xx, -xy, -xz), (0, 0, 0)
 
 
-def joint_momentum(joint: Joint, composite: Inertia) -> JointMomentum:
-    """p, H (and K) of a joint from the inertia that it carries."""
+def joint_momentum(s: int, composite: Inertia) -> JointMomentum:
+    """p, H (and K) of a joint of kind s (1 prismatic, 0 revolute) from the inertia that it carries."""
     x, y, _ = composite.s
-    if joint.s:
+    if s:
         return JointMomentum(1, (0, 0, composite.m), (y, -x, 0), composite)
     xx, yy, _, _, xz, yz = composite.J
     return JointMomentum(0, (-y, x, 0), (-xz, -yz, xx + yy), composite)

@@ -1,0 +1,150 @@
+"""Numbers of a model for one state or many (the HTTP contract, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from substructures.errors import Fault, InvalidDocument
+from substructures.expr.interpret import interpret
+from substructures.model import KINEMATICS, Model
+from substructures.states import Array, States, read_states, symbol_values
+
+FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t"))
+
+
+@dataclass
+class Batch:
+    """A request being answered: outputs of the program are computed once and shared by the quantities."""
+
+    model: Model
+    states: States
+    values: dict[str, Any]
+    outputs: dict[str, Array]
+
+    def output(self, name: str) -> Array:
+        """An output of the program, (N, ...)."""
+        return self.outputs[name]
+
+    def bias(self) -> Array:
+        """Gamma_abc q'^b q'^c."""
+        return np.einsum("nabc,nb,nc->na", self.output("christoffel"), self.states.qd, self.states.qd)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of the contract: outputs of the program that it needs, and how it follows from them."""
+
+    needs: tuple[str, ...]
+    compute: Callable[[Batch], Any]
+
+
+def _inverse_dynamics(b: Batch) -> Array:
+    if b.states.qdd is None:
+        raise InvalidDocument.at("/qdd", "missing", "inverse_dynamics needs accelerations 'qdd'")
+    return np.einsum("nab,nb->na", b.output("metric"), b.states.qdd) + b.bias() - b.output("forces")
+
+
+def _forward_dynamics(b: Batch) -> Array:
+    """q'' from g q'' = Q - Gamma q' q'; NaN where the metric is singular (the state is listed in the failures)."""
+    rhs = b.output("forces") - b.bias()
+    result = np.full_like(rhs, np.nan)
+    for i, (g, f) in enumerate(zip(b.output("metric"), rhs, strict=True)):
+        try:
+            factor = np.linalg.cholesky(g)
+            result[i] = np.linalg.solve(factor.T, np.linalg.solve(factor, f))
+        except np.linalg.LinAlgError:
+            continue
+    return result
+
+
+def _momentum(b: Batch) -> dict[str, Array]:
+    return {
+        "linear": np.einsum("nai,na->ni", b.output("linear_momentum"), b.states.qd),
+        "angular": np.einsum("nai,na->ni", b.output("angular_momentum"), b.states.qd),
+    }
+
+
+def _kinetic_energy(b: Batch) -> Array:
+    return 0.5 * np.einsum("nab,na,nb->n", b.output("metric"), b.states.qd, b.states.qd)
+
+
+def _output(name: str) -> Quantity:
+    return Quantity((name,), lambda b: b.output(name))
+
+
+QUANTITIES: dict[str, Quantity] = {
+    **{name: _output(name) for name in ("metric", "christoffel", "forces", "gravity", "potential_energy")},
+    "coriolis": Quantity(("christoffel",), lambda b: np.einsum("nabc,nc->nab", b.output("christoffel"), b.states.qd)),
+    "bias": Quantity(("christoffel",), Batch.bias),
+    "inverse_dynamics": Quantity(("metric", "christoffel", "forces"), _inverse_dynamics),
+    "forward_dynamics": Quantity(("metric", "christoffel", "forces"), _forward_dynamics),
+    "kinetic_energy": Quantity(("metric",), _kinetic_energy),
+    "kinematics": Quantity(KINEMATICS, lambda b: {name: b.output(name) for name in KINEMATICS}),
+    "momentum": Quantity(("linear_momentum", "angular_momentum"), _momentum),
+}
+
+ADVICE = {
+    "forward_dynamics": "the metric is singular or not positive definite: check masses, inertias and coordinates",
+}
+
+
+def evaluate(model: Model, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Any]:
+    """Evaluate quantities for states.
+
+    ``request``: the JSON body of the contract (lists, numbers) or the same with arrays. The answer holds numpy arrays,
+    leading axis N dropped if ``q`` was (n,); ``failures`` lists states with a result that is not finite.
+    Raises InvalidDocument (with pointers) and MissingValue (a parameter without a value).
+    """
+    quantities = _quantities(request)
+    states = read_states(model, request, limit)
+    needs = sorted({name for q in quantities for name in QUANTITIES[q].needs})
+    values = symbol_values(model, request, states, needs)
+    batch = Batch(model, states, values, interpret(model.program, values, needs))
+    answer: dict[str, Any] = {
+        "coordinates": list(model.coordinates),
+        "count": len(states.q),
+        "digest": model.program.digest,
+    }
+    results = {name: QUANTITIES[name].compute(batch) for name in quantities}
+    if "kinematics" in results:
+        answer["frames"] = list(model.frames)
+    answer |= {name: _single(value) if states.single else value for name, value in results.items()}
+    return answer | {"failures": _failures(results)}
+
+
+def _single(value: Any) -> Any:
+    return {name: v[0] for name, v in value.items()} if isinstance(value, dict) else value[0]
+
+
+def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
+    failures = []
+    for name, value in results.items():
+        arrays = value.values() if isinstance(value, dict) else (value,)
+        bad = np.zeros(0, dtype=np.int64)
+        for some in arrays:
+            finite = np.isfinite(some).reshape(len(some), -1).all(axis=1)
+            bad = np.union1d(bad, np.flatnonzero(~finite))
+        message = ADVICE.get(name, "the result is not finite")
+        failures += [{"state": int(i), "quantity": name, "code": "not-finite", "message": message} for i in bad]
+    return failures
+
+
+def _quantities(request: Mapping[str, Any]) -> list[str]:
+    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key}'") for key in request if key not in FIELDS]
+    names = request.get("quantities")
+    if not isinstance(names, (list, tuple)) or not names:
+        faults.append(Fault("/quantities", "missing", "a list of quantities is needed"))
+        names = []
+    for i, name in enumerate(names):
+        if name not in QUANTITIES:
+            known = ", ".join(QUANTITIES)
+            faults.append(
+                Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {known}")
+            )
+    if faults:
+        raise InvalidDocument(faults)
+    return list(dict.fromkeys(names))

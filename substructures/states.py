@@ -1,0 +1,179 @@
+"""States and values of a request as arrays: shapes, names and numbers are checked, faults carry pointers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.definition import escape
+from substructures.errors import Fault, InvalidDocument, MissingValue
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.program import array, program
+from substructures.model import Model
+from substructures.scope import no_names
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class States:
+    """States by coordinate, (N, n) each; ``single``: one state was given without the leading axis."""
+
+    q: Array
+    qd: Array
+    qdd: Array | None
+    single: bool
+
+
+def read_states(model: Model, request: Mapping[str, Any], limit: int | None) -> States:
+    """q, qd, qdd of a request. Raises InvalidDocument."""
+    q = _state(model, request.get("q"), "q")
+    if q is None:
+        if model.dof:
+            raise InvalidDocument.at("/q", "missing", "states 'q' are needed")
+        q = np.zeros((1, 0)), True
+    single, count = q[1], len(q[0])
+    if limit is not None and count > limit:
+        raise InvalidDocument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
+    others = []
+    for name in ("qd", "qdd"):
+        given = _state(model, request.get(name), name)
+        if given is not None and len(given[0]) not in (1, count):
+            message = f"{len(given[0])} states, but 'q' has {count}"
+            raise InvalidDocument.at(f"/{name}", "wrong-length", message)
+        others.append(None if given is None else np.broadcast_to(given[0], (count, model.dof)))
+    qd = np.zeros_like(q[0]) if others[0] is None else others[0]
+    return States(q[0], qd, others[1], single)
+
+
+def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
+    """(N, n) array of a state, and whether it was (n,)."""
+    if given is None:
+        return None
+    if isinstance(given, Mapping):
+        given = _by_name(model, given, name)
+    values = numeric(given, f"/{name}")
+    if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
+        expected = f"(N, {model.dof}) or ({model.dof},)"
+        raise InvalidDocument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")
+    return np.atleast_2d(values), values.ndim == 1
+
+
+def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
+    faults = [
+        Fault(f"/{name}/{escape(key)}", "unknown-coordinate", f"unknown coordinate '{str(key)[:80]}'")
+        for key in given
+        if key not in model.coordinates
+    ]
+    faults += [
+        Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in model.coordinates if c not in given
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    columns = [numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates]
+    if len({c.shape for c in columns}) > 1:
+        raise InvalidDocument.at(f"/{name}", "wrong-length", "lists of different lengths")
+    return np.stack(columns, axis=-1) if columns else np.zeros((1, 0))
+
+
+def numeric(given: Any, pointer: str) -> Array:
+    """A finite array of doubles from nested lists of numbers. Raises InvalidDocument with the first fault's place."""
+    if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
+        values = given.astype(np.float64, copy=False)
+    else:
+        _check_numbers(given, pointer)
+        try:
+            values = np.asarray(given, dtype=np.float64)
+        except (ValueError, TypeError, OverflowError):
+            raise InvalidDocument.at(pointer, "wrong-length", "a rectangular array of numbers is needed") from None
+    if not np.isfinite(values).all():
+        where = "".join(f"/{int(i)}" for i in np.argwhere(~np.isfinite(values))[0])
+        raise InvalidDocument.at(pointer + where, "number-not-finite", "the number is not finite")
+    return values
+
+
+def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
+    if isinstance(given, (list, tuple)) and depth < 3:
+        for i, x in enumerate(given):
+            if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
+                _check_numbers(x, f"{pointer}/{i}", depth + 1)
+    elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
+        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {str(given)[:40]!r}")
+
+
+def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
+    """Values of all symbols that the needed outputs depend on."""
+    count = len(states.q)
+    values: dict[str, Any] = {"": np.zeros(count)}
+    for a, name in enumerate(model.coordinates):
+        values[name] = states.q[:, a]
+        values[f"{name}'"] = states.qd[:, a]
+    t = numeric(0 if request.get("t") is None else request["t"], "/t")
+    values["t"] = _per_state(t, count, "/t")
+    symbols = {s.name: s for s in model.program.symbols}
+    values |= {name: 0.0 for name, s in symbols.items() if s.kind == "input"}
+    values |= _defaults(model)
+    values |= _given(request, "inputs", count, {n for n, s in symbols.items() if s.kind == "input"} | _actuators(model))
+    values |= _given(request, "parameters", count, set(model.parameters))
+    for name in _needed(model, needs):
+        if name not in values:
+            raise MissingValue(name)
+    return values
+
+
+def _actuators(model: Model) -> set[str]:
+    return {f"tau.{name}" for name in model.coordinates}
+
+
+def _needed(model: Model, needs: Iterable[str]) -> list[str]:
+    operations = model.program.operations
+    return [
+        model.program.symbols[operations[i][1]].name
+        for i in model.program.reachable(needs)
+        if operations[i][0] == "sym"
+    ]
+
+
+def _given(request: Mapping[str, Any], field: str, count: int, known: set[str]) -> dict[str, Any]:
+    given = request.get(field) or {}
+    if not isinstance(given, Mapping):
+        raise InvalidDocument.at(f"/{field}", "object-expected", "an object of numbers by name is needed")
+    result = {}
+    for name, value in given.items():
+        pointer = f"/{field}/{escape(name)}"
+        if name not in known:
+            raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
+        result[name] = _per_state(numeric(value, pointer), count, pointer)
+    return result
+
+
+def _per_state(values: Array, count: int, pointer: str) -> Array:
+    if values.ndim > 1 or (values.ndim == 1 and len(values) not in (1, count)):
+        raise InvalidDocument.at(
+            pointer, "wrong-length", f"one number, or one for each of the {count} states is needed"
+        )
+    return values
+
+
+def _defaults(model: Model) -> dict[str, float]:
+    """Default values of parameters, correctly rounded."""
+    return {name: default_number(p["value"]) for name, p in model.parameters.items() if p["value"] is not None}
+
+
+def default_number(value: Any) -> float:
+    """A default as a double: a number, or a constant expression in the grammar."""
+    if not isinstance(value, str):
+        return float(value)
+    graph = Graph()
+    try:
+        constant = parse(graph, value, no_names)
+    except ExpressionError as error:
+        raise InvalidDocument.at("", "bad-expression", str(error)) from None
+    return float(interpret(program(graph, {"x": array((), lambda: constant)}, {}), {})["x"])

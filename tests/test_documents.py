@@ -1,0 +1,191 @@
+"""Documents: exact numbers, the same refusals in JSON and YAML, canonical bytes."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from decimal import Decimal
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from substructures.documents import MAX_DEPTH, MAX_DIGITS, read_json, read_yaml, write_json
+from substructures.errors import InvalidDocument
+
+READERS = pytest.mark.parametrize("read", [read_json, read_yaml])
+
+finite = st.decimals(allow_nan=False, allow_infinity=False, min_value=-(10**30), max_value=10**30, places=30)
+plain = st.recursive(
+    st.none() | st.booleans() | st.integers(-(10**40), 10**40) | finite | st.text(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
+    max_leaves=20,
+)
+
+
+def fault_of(read: Any, data: bytes | Any) -> tuple[str, str, str]:
+    with pytest.raises(InvalidDocument) as caught:
+        read(data)
+    (fault,) = caught.value.faults
+    return fault.pointer, fault.code, fault.message
+
+
+@READERS
+def test_numbers_are_exact(read: Any) -> None:
+    value = read(b'{"a": 0.1, "b": [1, -2.50, 6.02e23], "c": 12345678901234567890.123456789}')
+    assert value == {
+        "a": Decimal("0.1"),
+        "b": [1, Decimal("-2.5"), Decimal("6.02e23")],
+        "c": Decimal("12345678901234567890.123456789"),
+    }
+    assert type(value["b"][0]) is int
+
+
+@READERS
+@pytest.mark.parametrize(
+    ("data", "pointer", "code", "place"),
+    [
+        (b'{"a": 1,\n "a": 2}', "/a", "duplicate-key", "line 2, column 2"),
+        (b'{"a": [0, {"b": 1, "c": {}, "b": 2}]}', "/a/1/b", "duplicate-key", "line 1, column 29"),
+        (b'{"a/b": {"~": {"x": 1, "x": 2}}}', "/a~1b/~0/x", "duplicate-key", "column 24"),
+        (b'{"a": [[], ["x", ' + b"7" * 401 + b"]]}", "/a/1/1", "number", "column 18"),
+        (b'{"a": 1e400}', "/a", "number", "column 7"),
+        (b'{"a": 1e-400}', "/a", "number", "column 7"),
+        (b'{"a": [1e999999999999]}', "/a/0", "number", "column 8"),
+        (b'{"a": ' + b"[" * MAX_DEPTH + b"]" * MAX_DEPTH + b"}", None, "nesting", "column 70"),
+    ],
+)
+def test_refusals_have_pointer_and_place(read: Any, data: bytes, pointer: str | None, code: str, place: str) -> None:
+    found = fault_of(read, data)
+    assert found[1] == code
+    assert pointer is None or found[0] == pointer
+    assert place in found[2]
+
+
+@READERS
+def test_limits_are_inclusive(read: Any) -> None:
+    assert read(b"[" + b"7" * MAX_DIGITS + b"]") == [int("7" * MAX_DIGITS)]
+    assert read(b"[1e399]") == [Decimal("1e399")]
+    read(b"[" * MAX_DEPTH + b"]" * MAX_DEPTH)
+
+
+@READERS
+def test_bytes_must_be_utf8(read: Any) -> None:
+    assert fault_of(read, b'"\xff"')[1:] == ("encoding", "byte 1 is not UTF-8: invalid start byte")
+    assert fault_of(read, b'["\\ud800"]')[1] == "encoding"
+    assert read('"\u00e9\U0001f600"'.encode()) == "\u00e9\U0001f600"
+
+
+@pytest.mark.parametrize("word", ["NaN", "Infinity", "-Infinity"])
+def test_json_has_no_nan(word: str) -> None:
+    assert fault_of(read_json, f'{{"q": [0, {word}]}}'.encode()) == (
+        "/q/1",
+        "number",
+        f"{word} is not a number (line 1, column 11)",
+    )
+
+
+@pytest.mark.parametrize("data", [b"", b"{", b'{"a": 1,}', b"[1 2]", b"01", b"'a'", b'"\\', b"\xef\xbb\xbf1"])
+def test_json_syntax(data: bytes) -> None:
+    _, code, message = fault_of(read_json, data)
+    assert code == "syntax"
+    assert "line" in message
+
+
+def test_a_paired_surrogate_is_a_character() -> None:
+    assert read_json(b'"\\ud83d\\ude00"') == "\U0001f600"
+
+
+def test_scanning_for_depth_is_linear() -> None:
+    assert fault_of(read_json, b'"' + b'\\"' * 500_000)[1] == "syntax"
+
+
+def test_yaml_has_no_surprises() -> None:
+    text = b"""
+    words: [on, off, yes, no, y, n, 1:30, 2001-01-01, 0o17, 0x1F, 010, 1_000, 1e, <<, pi/2, -g]
+    values: [true, false, null, ~, +1, .5, -1., 1E3]
+    strings: ["1", 'true', "", null ]
+    """
+    value = read_yaml(text)
+    assert value["words"] == [w.strip() for w in text.decode().split("[")[1].split("]")[0].split(",")]
+    assert value["values"] == [True, False, None, None, 1, Decimal("0.5"), -1, 1000]
+    assert value["strings"] == ["1", "true", "", None]
+
+
+@pytest.mark.parametrize(
+    ("data", "pointer", "code"),
+    [
+        (b"a: &x 1\nb: *x", "/a", "anchor"),
+        (b"b: [1, *x]", "/b/1", "anchor"),
+        (b"a: !!python/object/apply:os.system [id]", "/a", "tag"),
+        (b"a: !!int 3", "/a", "tag"),
+        (b"---\na: 1\n---\nb: 2", "", "syntax"),
+        (b"x: {1: a}", "/x", "key"),
+        (b"x: {true: a}", "/x", "key"),
+        (b"? [a, b]\n: c", "", "key"),
+        (b"x:\n- a\n- y: .nan", "/x/1/y", "number"),
+        (b"x: [.inf]", "/x/0", "number"),
+        (b"a: b: c", "", "syntax"),
+        (b"a: [1, 2", "/a/2", "syntax"),
+        (b'a: "\\UFFFFFFFF"', "/a", "syntax"),
+        (b"a: \x07", "", "encoding"),
+        (b"%YAML 3.0\n---\na: 1", "", "syntax"),
+        (b"\ta: 1", "", "syntax"),
+    ],
+)
+def test_yaml_refusals(data: bytes, pointer: str, code: str) -> None:
+    assert fault_of(read_yaml, data)[:2] == (pointer, code)
+
+
+def test_nested_yaml_stops_early() -> None:
+    assert fault_of(read_yaml, b"[" * 200_000)[1] == "nesting"
+    assert fault_of(read_yaml, b"- " * 65)[1] == "nesting"
+
+
+def test_canonical_bytes() -> None:
+    data = {
+        "b": Decimal("1.500"),
+        "a": [Decimal("1E+3"), Decimal("-0.0"), 1e-7, None, True, "\u00e9"],
+        "c": {},
+        "d": [],
+    }
+    expected = '{"a":[1000,0,0.0000001,null,true,"\u00e9"],"b":1.5,"c":{},"d":[]}'
+    assert write_json(data) == expected.encode()
+
+
+@pytest.mark.parametrize(
+    ("data", "pointer", "code"),
+    [
+        ({"a": [float("nan")]}, "/a/0", "number"),
+        ([Decimal("Infinity")], "/0", "number"),
+        ([Decimal("1e400")], "/0", "number"),
+        ([10**400], "/0", "number"),
+        ({"a": {1: 2}}, "/a", "key"),
+        ({"a": {1, 2}}, "/a", "type"),
+        (["\ud800"], "", "encoding"),
+    ],
+)
+def test_only_plain_data_is_written(data: Any, pointer: str, code: str) -> None:
+    assert fault_of(write_json, data)[:2] == (pointer, code)
+
+
+def test_writing_has_the_same_depth() -> None:
+    data: Any = []
+    for _ in range(MAX_DEPTH - 1):
+        data = [data]
+    assert read_json(write_json(data)) == data
+    assert fault_of(write_json, [data])[1] == "nesting"
+
+
+@given(plain)
+def test_round_trip(data: Any) -> None:
+    written = write_json(data)
+    assert read_json(written) == data
+    assert write_json(read_json(written)) == written
+
+
+@given(st.binary(max_size=60) | st.text(alphabet="[]{}:,\"\\ \n-&*!|>%@`#?'0eE.+a", max_size=60).map(str.encode))
+def test_arbitrary_bytes_raise_nothing_else(data: bytes) -> None:
+    for read in (read_json, read_yaml):
+        with suppress(InvalidDocument):
+            write_json(read(data))
