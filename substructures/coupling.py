@@ -61,17 +61,15 @@ class Mounted:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Gravity acceleration in a frame, rotation world -> frame, origin in the world."""
+    """Rotation world -> frame, origin of the frame in the world."""
 
-    gamma: Vector
     R: Matrix
     r: Vector
 
     def beyond(self, link: Link) -> Pose:
         """The pose of the next frame."""
-        columns = [link.rotation.forward(column) for column in transpose(self.R)]
-        R = transpose((columns[0], columns[1], columns[2]))
-        return Pose(link.rotation.forward(self.gamma), R, add(self.r, apply(transpose(self.R), link.Z)))
+        x, y, z = (link.rotation.forward(column) for column in transpose(self.R))
+        return Pose(transpose((x, y, z)), add(self.r, apply(transpose(self.R), link.Z)))
 
 
 @dataclass
@@ -84,11 +82,25 @@ class State:
     momenta: list[JointMomentum]
     outside: Columns = field(default_factory=dict)
     columns: list[Columns] = field(default_factory=list)  #: host's and own columns at every joint
-    poses: list[Pose] = field(default_factory=list)  #: of every joint frame, and last of the interface
+    gamma: list[Vector] = field(default_factory=list)  #: gravity in every joint frame, and last in the interface frame
+    host: State | None = None
+    link: Link | None = None  #: from the carrier in the host to the interface
+    poses: dict[int, Pose] = field(default_factory=dict)
 
     def pose(self, carrier: int) -> Pose:
-        """Of joint frame k, or of the interface (-1)."""
-        return self.poses[carrier]
+        """Of joint frame k or of the interface (-1), computed when it is first needed."""
+        todo: list[tuple[State, int, State, Link]] = []
+        state = self
+        while carrier not in state.poses:
+            link = state.link if carrier == INTERFACE else state.links[carrier]
+            before = state.host if carrier == INTERFACE else state
+            if link is None or before is None:
+                break
+            todo.append((state, carrier, before, link))
+            state, carrier = before, link.parent
+        for state, k, before, link in reversed(todo):
+            state.poses[k] = before.poses[link.parent].beyond(link)
+        return self.poses[todo[0][1] if todo else carrier]
 
 
 @dataclass
@@ -168,7 +180,8 @@ def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
 def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[State], gravity: Vector) -> None:
     """Host columns at the interface; poses of the interface and of all joint frames."""
     if m.host == WORLD:
-        interface = Pose(lean_rotation(m.E, 1, 0).forward(gravity), m.E, m.position)
+        gamma = lean_rotation(m.E, 1, 0).forward(gravity)
+        state.poses[INTERFACE] = Pose(m.E, m.position)
     else:
         host, h = states[m.host], mounted[m.host]
         link = frame_link(h, host, m.frame, m.E, m.position)
@@ -176,10 +189,11 @@ def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[St
         source = host.outside if carrier == INTERFACE else host.columns[carrier]
         slides = h.first + carrier if carrier != INTERFACE and host.links[carrier].s else None
         state.outside = {a: carried(twist, link, a == slides) for a, twist in source.items()}
-        interface = host.pose(carrier).beyond(link)
-    state.poses = [interface]
-    for c, link in enumerate(state.links):
-        state.poses.insert(c, state.poses[link.parent].beyond(link))
+        gamma = link.rotation.forward(host.gamma[carrier])
+        state.host, state.link = host, link
+    state.gamma = [gamma]
+    for c, joint in enumerate(state.links):
+        state.gamma.insert(c, joint.rotation.forward(state.gamma[joint.parent]))
 
 
 def frame_link(m: Mounted, state: State, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
@@ -217,7 +231,7 @@ def _dynamics(m: Mounted, state: State, result: Coupled) -> None:
 def _gravity(m: Mounted, state: State, result: Coupled) -> None:
     """Q_c = gamma_c . p_c."""
     for c, momentum in enumerate(state.momenta):
-        q = dot(state.poses[c].gamma, momentum.p)
+        q = dot(state.gamma[c], momentum.p)
         result.gravity[m.first + c] = q
         result.forces[m.first + c] = q + state.stored.scalar("applied", c)
     result.potential = result.potential + state.stored.scalar("potential")

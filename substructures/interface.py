@@ -76,16 +76,15 @@ class Kinematics:
     r: list[Vector]
 
 
-def kinematics(m: Mechanism) -> Kinematics:
-    """Base functions, and R_c = E_c R_p, r_c = r_p + R_p^T Z_c."""
-    chain = links(m.joints)
+def kinematics(chain: tuple[Link, ...], columns: list[Columns]) -> Kinematics:
+    """R_c = E_c R_p, r_c = r_p + R_p^T Z_c beside the base functions."""
     R: list[Matrix] = []
     r: list[Vector] = []
     for link in chain:
         R_p, r_p = (R[link.parent], r[link.parent]) if link.parent >= 0 else (IDENTITY, ZERO)
         R.append(transpose(tuple(link.rotation.forward(column) for column in transpose(R_p))))  # type: ignore[arg-type]
         r.append(add(r_p, apply(transpose(R_p), link.Z)))
-    return Kinematics(chain, base_functions(chain), R, r)
+    return Kinematics(chain, columns, R, r)
 
 
 def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
@@ -111,17 +110,23 @@ def inertia_names(body: str) -> list[tuple[str, str]]:
 
 
 def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
-    """All outputs of the table above."""
-    k = kinematics(m)
+    """All outputs of the table above.
+
+    Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
+    """
+    chain = links(m.joints)
+    columns = base_functions(chain)
     subtree, base = composites(m.joints, inertia_symbols(m))
     momenta = [joint_momentum(joint.s, composite) for joint, composite in zip(m.joints, subtree, strict=True)]
-    outputs = _joint_outputs(m, k)
+    outputs = _own_dynamics(m, columns, momenta)
+    k = kinematics(chain, columns)
+    outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", subtree) | _inertia_outputs("inertia", list(m.own))
     outputs |= _inertia_outputs("composite", [base + m.base], scalar=True) | _inertia_outputs(
         "base", [m.base], scalar=True
     )
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
-    outputs |= _interface_outputs(k, momenta) | _own_dynamics(m, k, momenta)
+    outputs |= _interface_outputs(k, momenta)
     forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(m, k, carrier, at))
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
     outputs["potential"] = array((), lambda: potential)
@@ -203,14 +208,14 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
 
 
-def _own_dynamics(m: Mechanism, k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
+def _own_dynamics(m: Mechanism, columns: list[Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
     n = len(momenta)
     g: dict[tuple[int, ...], Any] = {}
     gamma: dict[tuple[int, ...], Any] = {}
     for c, momentum in enumerate(momenta):
-        g |= {(a, c): x for a, x in metric_column(c, k.columns[c], momentum).items()}
+        g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         g[c, c] = g[c, c] + m.laws[c].armature
-        gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, k.columns[c], momentum).items()}
+        gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
     return {"metric": Formulas((n, n), g, "symmetric"), "christoffel": Formulas((n, n, n), gamma, "christoffel")}
 
 

@@ -89,7 +89,7 @@ def mechanism(definition: Definition) -> Mechanism:
 
 def _scope(definition: Definition, bones: Skeleton) -> Scope:
     scope = Scope(Graph())
-    for name, parameter in definition.parameters.items():
+    for name, parameter in sorted(definition.parameters.items()):
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)

@@ -128,9 +128,9 @@ def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
     n = len(coupled.gravity)
     for m, state in zip(assembly.mounted, coupled.states, strict=True):
         for c, momentum in enumerate(state.momenta):
-            back = transpose(state.poses[c].R)
+            back = transpose(state.pose(c).R)
             p = apply(back, momentum.p)
-            L = add(apply(back, momentum.H), cross(state.poses[c].r, p))
+            L = add(apply(back, momentum.H), cross(state.pose(c).r, p))
             linear |= {(m.first + c, i): p[i] for i in range(3)}
             angular |= {(m.first + c, i): L[i] for i in range(3)}
     return {"linear_momentum": Formulas((n, 3), linear), "angular_momentum": Formulas((n, 3), angular)}

@@ -85,13 +85,13 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
 def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
     """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
     result: dict[str, dict[str, object]] = {}
-    for name, parameter in spec.parameters.items():
+    for name, parameter in sorted(spec.parameters.items()):
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)
         result[name] = parameter.model_dump()
     for instance in spec.instances:
-        for name, some in parts[instance.name].parameters.items():
+        for name, some in sorted(parts[instance.name].parameters.items()):
             full = f"{instance.name}.{name}"
             scope.declare(full, "parameter", str(some["unit"]))
             result[full] = some
@@ -107,7 +107,7 @@ class _Bindings:
         self.values: dict[str, Expr] = {}
         self.open: list[str] = []
         for i, instance in enumerate(spec.instances):
-            for name, value in instance.parameters.items():
+            for name, value in sorted(instance.parameters.items()):
                 pointer = f"/instances/{i}/parameters/{name}"
                 if name in parts[instance.name].parameters:
                     self.given[f"{instance.name}.{name}"] = (value, pointer)

@@ -40,9 +40,13 @@ class Expr:
     __slots__ = ("args", "fp", "graph", "index", "is_number", "negative", "op", "value")
 
     def __init__(self, graph: Graph, op: str, args: tuple[Expr, ...], value: Any, fp: int) -> None:
-        self.graph, self.op, self.args, self.value, self.fp = graph, op, args, value, fp
+        self.graph = graph
+        self.op = op
+        self.args = args
+        self.value = value
+        self.fp = fp
         self.is_number = value is not None and op != "sym"
-        self.negative = op == "neg" or (self.is_number and value < 0)
+        self.negative = value < 0 if self.is_number else op == "neg"
         self.index = len(graph.table)
         graph.table[fp] = self
 
@@ -60,7 +64,10 @@ class Expr:
     __radd__ = __add__
 
     def __sub__(self, other: Expr | Number) -> Expr:
-        return self + -(other if isinstance(other, Expr) else self.graph.number(other))
+        x = other if isinstance(other, Expr) else self.graph.number(other)
+        fp = (self.fp - x.fp) % PRIME
+        found = self.graph.table.get(fp)
+        return found if found is not None else self.graph._difference(self, x, fp)
 
     def __rsub__(self, other: Number) -> Expr:
         return -self + other
@@ -167,6 +174,12 @@ class Graph:
         if a.negative:
             return Expr(self, "sub", (b, -a), None, fp)
         return Expr(self, "add", (a, b), None, fp)
+
+    def _difference(self, a: Expr, b: Expr, fp: int) -> Expr:
+        if b.negative or a.negative or b.is_number:
+            return self._sum(a, -b, fp)
+        found = self.table.get(PRIME - fp)
+        return -found if found is not None else Expr(self, "sub", (a, b), None, fp)
 
     def _product(self, a: Expr, b: Expr, fp: int) -> Expr:
         found = self.table.get(PRIME - fp)

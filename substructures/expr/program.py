@@ -17,61 +17,39 @@ from functools import cached_property
 from typing import Any
 
 from substructures.errors import InvalidProgram
-from substructures.expr.graph import MAX_BITS, MAX_EXPONENT, Expr, Graph
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.operations import (
+    ARITHMETIC,
+    ARITY,
+    FORMAT,
+    KINDS,
+    SYMMETRIES,
+    VERSION,
+    Operation,
+    Output,
+    Symbol,
+    operands,
+    read_parts,
+)
 
-FORMAT = "substructures.program"
-VERSION = 1
-
-#: number of operands of every operation that has operands (``powi`` has one, and an integer exponent)
-ARITY = {
-    **dict.fromkeys(("add", "sub", "mul", "div", "atan2"), 2),
-    **dict.fromkeys(("neg", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "abs", "sign"), 1),
-}
-#: operations that count in the literature
-ARITHMETIC = ("add", "sub", "mul", "div", "powi")
-KINDS = ("coordinate", "velocity", "acceleration", "parameter", "inertia", "input", "time")
-SYMMETRIES = ("none", "symmetric", "christoffel")
-
-Operation = tuple[Any, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Symbol:
-    """A named input: kind (one of KINDS) and unit (SI, as text)."""
-
-    name: str
-    kind: str
-    unit: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """A named array of formulas: ``entries[i]`` is the operation that computes the element at ``index[i]``.
-
-    All other elements follow from the symmetry or are zero:
-    ``symmetric``: x[a, b] = x[b, a];
-    ``christoffel``: entries have a < c, b <= c on a path; x[a, b, c] = x[a, c, b]; x[c, b, a] = -x[a, b, c] for b <= a.
-    """
-
-    shape: tuple[int, ...]
-    index: tuple[tuple[int, ...], ...]
-    entries: tuple[int, ...]
-    symmetry: str = "none"
-
-    def expanded(self) -> Iterable[tuple[tuple[int, ...], int, int]]:
-        """(index, entry, sign) of every non-zero element, dependent ones included."""
-        for index, entry in zip(self.index, self.entries, strict=True):
-            yield index, entry, 1
-            if self.symmetry == "symmetric" and index[0] != index[1]:
-                yield (index[1], index[0]), entry, 1
-            elif self.symmetry == "christoffel":
-                a, b, c = index
-                if b != c:
-                    yield (a, c, b), entry, 1
-                if b <= a:
-                    yield (c, b, a), entry, -1
-                    if a != b:
-                        yield (c, a, b), entry, -1
+__all__ = [
+    "ARITHMETIC",
+    "ARITY",
+    "FORMAT",
+    "KINDS",
+    "SYMMETRIES",
+    "VERSION",
+    "Formulas",
+    "Operation",
+    "Output",
+    "Program",
+    "Symbol",
+    "array",
+    "operands",
+    "program",
+    "read_program",
+    "renumbered",
+]
 
 
 @dataclass(frozen=True)
@@ -117,8 +95,18 @@ class Program:
             raise InvalidProgram(f"not a JSON document: {error}") from None
         return read_program(document)
 
+    @cached_property
+    def _reachable(self) -> dict[tuple[str, ...] | None, list[int]]:
+        return {}
+
     def reachable(self, names: Iterable[str] | None = None) -> list[int]:
         """Sorted indices of the operations that the named outputs (default: all) need."""
+        key = None if names is None else tuple(names)
+        if key not in self._reachable:
+            self._reachable[key] = self._needed(key)
+        return self._reachable[key]
+
+    def _needed(self, names: tuple[str, ...] | None) -> list[int]:
         wanted = self.outputs if names is None else {name: self.outputs[name] for name in names}
         needed = bytearray(len(self.operations))
         for output in wanted.values():
@@ -164,14 +152,6 @@ class Program:
         return sum(self.operations[i][0] in ARITHMETIC for i in seen)
 
 
-def operands(operation: Operation) -> tuple[int, ...]:
-    """The entries an operation refers to."""
-    op = operation[0]
-    if op in ARITY:
-        return operation[1:]
-    return operation[1:2] if op == "powi" else ()
-
-
 def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int, int]) -> Operation:
     """The operation with its operands (or symbol number) replaced."""
     op = operation[0]
@@ -209,8 +189,10 @@ def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str,
         name: {i: e if isinstance(e, Expr) else graph.number(e) for i, e in f.entries.items() if not _is_zero(e)}
         for name, f in outputs.items()
     }
-    nodes = _reachable_nodes(e for some in entries.values() for e in some.values())
-    position = {node: i for i, node in enumerate(nodes)}
+    nodes = _reachable_nodes(graph, (e for some in entries.values() for e in some.values()))
+    position = [0] * len(graph)
+    for i, node in enumerate(nodes):
+        position[node.index] = i
     names = sorted({str(n.value) for n in nodes if n.op == "sym"})
     number = {name: i for i, name in enumerate(names)}
     return Program(
@@ -220,7 +202,7 @@ def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str,
             name: Output(
                 outputs[name].shape,
                 tuple(sorted(some)),
-                tuple(position[some[i]] for i in sorted(some)),
+                tuple(position[some[i].index] for i in sorted(some)),
                 outputs[name].symmetry,
             )
             for name, some in sorted(entries.items())
@@ -232,97 +214,33 @@ def _is_zero(e: Expr | int) -> bool:
     return e.is_zero if isinstance(e, Expr) else e == 0
 
 
-def _reachable_nodes(roots: Iterable[Expr]) -> list[Expr]:
-    seen: set[Expr] = set()
-    stack = list(roots)
-    while stack:
-        node = stack.pop()
-        if node not in seen:
-            seen.add(node)
-            stack.extend(node.args)
-    return sorted(seen, key=lambda node: node.index)
+def _reachable_nodes(graph: Graph, roots: Iterable[Expr]) -> list[Expr]:
+    """Needed nodes in the order of their creation, operands first."""
+    needed = bytearray(len(graph))
+    for node in roots:
+        needed[node.index] = 1
+    nodes = list(graph.table.values())
+    for node in reversed(nodes):
+        if needed[node.index]:
+            for operand in node.args:
+                needed[operand.index] = 1
+    return [node for node in nodes if needed[node.index]]
 
 
-def _operation(node: Expr, position: Mapping[Expr, int], number: Mapping[str, int]) -> Operation:
+def _operation(node: Expr, position: Sequence[int], number: Mapping[str, int]) -> Operation:
+    args = node.args
+    if len(args) == 2:
+        return node.op, position[args[0].index], position[args[1].index]
+    if len(args) == 1:
+        return node.op, position[args[0].index]
     if node.op == "int":
         return "int", str(node.value)
     if node.op == "rat":
         value = Fraction(node.value)
         return "rat", str(value.numerator), str(value.denominator)
-    if node.op == "sym":
-        return "sym", number[str(node.value)]
-    return (node.op, *(position[a] for a in node.args))
+    return "sym", number[str(node.value)]
 
 
 def read_program(document: Any) -> Program:
     """A program from its JSON document. Raises InvalidProgram."""
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InvalidProgram(f"format is not '{FORMAT}'")
-    if document.get("version") != VERSION:
-        raise InvalidProgram(f"version {document.get('version')!r} is unknown; this reader knows {VERSION}")
-    try:
-        symbols = tuple(_read_symbol(s) for s in document["symbols"])
-        operations = tuple(tuple(op) for op in document["operations"])
-        outputs = {str(n): _read_output(n, o, len(operations)) for n, o in document["outputs"].items()}
-    except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise InvalidProgram(f"malformed: {error}") from None
-    if len({s.name for s in symbols}) != len(symbols):
-        raise InvalidProgram("a symbol occurs twice")
-    for i, operation in enumerate(operations):
-        _check(i, operation, len(symbols))
-    return Program(symbols, operations, outputs)
-
-
-def _read_symbol(document: Any) -> Symbol:
-    symbol = Symbol(**document)
-    if symbol.kind not in KINDS or not isinstance(symbol.name, str) or not isinstance(symbol.unit, str):
-        raise ValueError(f"symbol {document!r}")
-    return symbol
-
-
-def _read_output(name: Any, document: Any, size: int) -> Output:
-    shape = tuple(document["shape"])
-    index = tuple(tuple(i) for i in document["index"])
-    entries, symmetry = tuple(document["entries"]), document["symmetry"]
-    if symmetry not in SYMMETRIES or len(index) != len(entries):
-        raise ValueError(f"output {name!r}")
-    for i in index:
-        if len(i) != len(shape) or not all(isinstance(x, int) and 0 <= x < n for x, n in zip(i, shape, strict=True)):
-            raise ValueError(f"output {name!r}: index {i} outside of shape {shape}")
-    if not all(isinstance(e, int) and 0 <= e < size for e in entries):
-        raise ValueError(f"output {name!r}: entry outside of the program")
-    return Output(shape, index, entries, symmetry)
-
-
-def _check(i: int, operation: Operation, symbols: int) -> None:
-    op = operation[0] if operation else None
-    if op in ("int", "rat"):
-        numbers = operation[1:]
-        if len(numbers) != (1 if op == "int" else 2) or not all(_is_integer(n) for n in numbers):
-            raise InvalidProgram(f"bad number {str(operation)[:80]}", i)
-        if op == "rat" and int(numbers[1]) <= 0:
-            raise InvalidProgram("denominator is not positive", i)
-    elif op == "sym":
-        if len(operation) != 2 or not _in_range(operation[1], symbols):
-            raise InvalidProgram("unknown symbol", i)
-    elif op in ARITY or op == "powi":
-        arity = ARITY.get(op, 1)
-        if len(operation) != 1 + arity + (op == "powi"):
-            raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
-        if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
-            raise InvalidProgram("an operand does not refer to an earlier entry", i)
-        if op == "powi" and not (isinstance(operation[2], int) and abs(operation[2]) <= MAX_EXPONENT):
-            raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
-    else:
-        raise InvalidProgram(f"unknown operation {op!r}", i)
-
-
-def _in_range(x: Any, n: int) -> bool:
-    return isinstance(x, int) and not isinstance(x, bool) and 0 <= x < n
-
-
-def _is_integer(text: Any) -> bool:
-    if not isinstance(text, str) or len(text) > MAX_BITS // 3:
-        return False
-    digits = text[1:] if text.startswith("-") else text
-    return digits.isascii() and digits.isdigit() and (digits == "0" or digits[0] != "0") and text != "-0"
+    return Program(*read_parts(document))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -39,7 +39,7 @@ def replay(
     Raises ZeroDivisionError when a divisor becomes zero.
     """
     names = list(program.outputs if names is None else names)
-    values: dict[int, Expr] = {}
+    values: list[Any] = [None] * len(program)
     symbols = [bindings.get(s.name) or graph.symbol(s.name) for s in program.symbols]
     operations = program.operations
     for i in program.reachable(names):
@@ -49,6 +49,8 @@ def replay(
             values[i] = values[operation[1]] * values[operation[2]]
         elif op == "add":
             values[i] = values[operation[1]] + values[operation[2]]
+        elif op == "sub":
+            values[i] = values[operation[1]] - values[operation[2]]
         elif op == "sym":
             values[i] = symbols[operation[1]]
         elif op == "int":
@@ -67,7 +69,7 @@ def _apply(graph: Graph, op: str, args: list[Any]) -> Expr:
     return function(*args) if function else graph.function(op, *args)
 
 
-def _formulas(program: Program, name: str, values: Mapping[int, Expr]) -> Formulas:
+def _formulas(program: Program, name: str, values: Sequence[Expr]) -> Formulas:
     output = program.outputs[name]
     entries = {i: values[e] for i, e in zip(output.index, output.entries, strict=True)}
     return Formulas(output.shape, entries, output.symmetry)

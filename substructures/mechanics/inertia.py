@@ -15,6 +15,7 @@ from substructures.mechanics.linear3 import (
     Vector,
     add,
     add6,
+    exactly,
     scale,
 )
 
@@ -32,6 +33,8 @@ class Inertia:
 
     def shifted(self, z: Vector) -> Inertia:
         """The same masses about a point at -z: s + m z, J + s z^T + z s^T + m z z^T."""
+        if all(exactly(component, 0) for component in z):
+            return self
         s = add(self.s, scale(self.m, z))
         both = add(self.s, s)
         j = self.J

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, Vector, multiply
+from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, Vector, exactly, multiply
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +57,8 @@ def lean_rotation(constant: Matrix, c: S, s: S) -> Rotation:
     """
     if _turns_about(constant, 2):
         c1, s1 = constant[0][0], constant[0][1]
+        if exactly(c1, 1) and exactly(c, 1):
+            return Rotation(())
         return Rotation((Planar(2, c * c1 - s * s1, s * c1 + c * s1),))
     if _turns_about(constant, 0):
         return Rotation((Planar(0, constant[1][1], constant[1][2]), Planar(2, c, s)))
@@ -64,13 +66,7 @@ def lean_rotation(constant: Matrix, c: S, s: S) -> Rotation:
 
 
 def _turns_about(m: Matrix, axis: int) -> bool:
-    return all(_is(m[axis][x], x == axis) and _is(m[x][axis], x == axis) for x in range(3))
-
-
-def _is(x: S, one: bool) -> bool:
-    """True when a scalar is exactly the integer 1 (or 0)."""
-    value = getattr(x, "value", x)
-    return isinstance(value, int) and value == int(one)
+    return all(exactly(m[axis][x], x == axis) and exactly(m[x][axis], x == axis) for x in range(3))
 
 
 def path(chain: Sequence[Joint | Link], k: int) -> list[int]:

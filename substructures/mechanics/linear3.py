@@ -24,6 +24,12 @@ ZERO6: Symmetric = (0, 0, 0, 0, 0, 0)
 SYMMETRIC_INDEX = ((0, 3, 4), (3, 1, 5), (4, 5, 2))
 
 
+def exactly(x: S, n: int) -> bool:
+    """True when a scalar is known to be this integer (a number, or an expression that is one)."""
+    value = getattr(x, "value", x)
+    return isinstance(value, int) and value == n
+
+
 def add(a: Vector, b: Vector) -> Vector:
     """a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]

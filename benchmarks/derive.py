@@ -1,0 +1,186 @@
+"""Time and operation counts of deriving and of coupling, beside SymPy's KanesMethod in the same run.
+
+python -m benchmarks.derive [--quick] [--json FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import json
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+from benchmarks.chains import ROWS_14, chain, general_rows, pieces, row_of
+from benchmarks.kane import derive_by_kane, operations
+from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
+from substructures.coupling import couple_parts
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.mounting import assemble
+from substructures.one_piece import derive_in_one_piece
+
+GRAVITY = (0, 0, "-g")
+EQUATIONS = ("metric", "christoffel", "gravity")
+
+
+def timed(work: Callable[[], Any], repeat: int = 9) -> tuple[float, Any]:
+    """Median wall time in seconds after one warm-up, and the last result."""
+    result = work()
+    seconds = []
+    for _ in range(repeat):
+        gc.collect()
+        start = perf_counter()
+        result = work()
+        seconds.append(perf_counter() - start)
+    return median(seconds), result
+
+
+def paired(a: Callable[[], Any], b: Callable[[], Any], repeat: int = 11) -> tuple[float, float, float]:
+    """Medians of two works in turn, and the median of their ratio a/b: holds when the machine's speed drifts."""
+    a(), b()
+    times = []
+    for _ in range(repeat):
+        gc.collect()
+        start = perf_counter()
+        a()
+        middle = perf_counter()
+        gc.collect()
+        again = perf_counter()
+        b()
+        times.append((middle - start, perf_counter() - again))
+    return median(x for x, _ in times), median(y for _, y in times), median(x / y for x, y in times)
+
+
+def coupled_equations(spec: TreeSpec, parts: dict[str, Part]) -> Program:
+    """Coupling alone: metric, Christoffel symbols and gravity forces, without kinematics and verification."""
+    assembly = assemble(spec, parts)
+    result = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
+    n = len(result.gravity)
+    outputs = {
+        "metric": Formulas((n, n), result.metric, "symmetric"),
+        "christoffel": Formulas((n, n, n), result.christoffel, "christoffel"),
+        "gravity": array((n,), lambda a: result.gravity[a]),
+    }
+    return program(assembly.scope.graph, outputs, assembly.scope.symbols)
+
+
+def beside_kane(sizes: list[int], figures: dict[str, float]) -> None:
+    """General nR chains."""
+    print("general nR chain, every constant symbolic: M, all Gamma, Q   |   KanesMethod: M and forcing vector")
+    print(f"{'n':>3} {'ours ms':>9} {'operations':>11} {'SymPy s':>9} {'operations':>11} {'time ratio':>11}")
+    for n in sizes:
+        definition = chain(f"general-{n}r", general_rows(n))
+        ours, result = timed(lambda d=definition: derive_in_one_piece(d, GRAVITY))
+        start = perf_counter()
+        mass, forcing = derive_by_kane(general_rows(n))
+        theirs = perf_counter() - start
+        count = result.count(EQUATIONS)["total"]
+        peer = operations(mass, forcing)
+        print(f"{n:>3} {ours * 1e3:>9.2f} {count:>11,} {theirs:>9.2f} {peer:>11,} {theirs / ours:>10,.0f}x")
+        figures[f"ratio_kane_{n}r"] = theirs / ours
+
+
+def one_piece(figures: dict[str, float]) -> None:
+    """6R and the 34 dof humanoid."""
+    seconds, result = timed(lambda: derive_in_one_piece(chain("general-6r", general_rows(6)), GRAVITY))
+    figures["derive_6r_ms"] = seconds * 1e3
+    counts = {name: result.count([name])["total"] for name in EQUATIONS}
+    print(f"\ngeneral 6R in one piece: {seconds * 1e3:.1f} ms; operations {counts}")
+    part = derive(chain("arm-14", ROWS_14))
+    figures["ops_6r14_metric"] = part.operations["metric"]
+    figures["ops_6r14_christoffel"] = part.operations["christoffel"]
+    print(f"6R with 14 kinematic parameters: M {part.operations['metric']}, all Gamma {part.operations['christoffel']}")
+    print("   (inertial parameters m, s, J as symbols; published generated code: M 1,655; C matrix 6,374)")
+    spec, library = humanoid()
+    parts = {i.name: derive(library[str(i.substructure)]) for i in spec.instances}
+    definitions = [library[str(i.substructure)] for i in spec.instances]
+    seconds, _ = timed(lambda: [derive(d) for d in definitions] and couple(spec, parts), 3)
+    figures["derive_34dof_s"] = seconds
+    coupling, model = timed(lambda: coupled_equations(spec, parts), 3)
+    figures["couple_34dof_s"] = coupling
+    total = model.count(EQUATIONS)["total"]
+    print(f"humanoid of {len(spec.instances)} parts, {model.outputs['gravity'].shape[0]} dof: ", end="")
+    print(
+        f"parts derived and verified, coupled and verified {seconds:.2f} s; coupling alone {coupling:.2f} s, ", end=""
+    )
+    print(f"{total:,} operations")
+
+
+def humanoid() -> tuple[TreeSpec, dict[str, Definition]]:
+    """Pelvis, torso, head, two arms and two legs of the catalogue: 34 degrees of freedom."""
+    mounts = [
+        ("pelvis", "humanoid-pelvis", "world"),
+        ("torso", "humanoid-torso", "pelvis.waist"),
+        ("head", "humanoid-head", "torso.neck"),
+        ("left_arm", "humanoid-arm", "torso.left_shoulder"),
+        ("right_arm", "humanoid-arm", "torso.right_shoulder"),
+        ("left_leg", "humanoid-leg", "pelvis.left_hip"),
+        ("right_leg", "humanoid-leg", "pelvis.right_hip"),
+    ]
+    instances = [{"name": n, "substructure": s, "at": at} for n, s, at in mounts]
+    document = {
+        "name": "humanoid",
+        "gravity": [0, 0, "-g"],
+        "parameters": {"g": {"value": "9.81"}},
+        "instances": instances,
+    }
+    return TreeSpec.read(document), {s: Definition.read(catalogue.load(s)) for _, s, _ in mounts}
+
+
+def coupling(figures: dict[str, float]) -> None:
+    """Coupled from stored parts beside derived in one piece: the same chain."""
+    print("\ncoupled from stored parts | the same chain in one piece (M, all Gamma, gravity)")
+    print(
+        f"{'chain':>16} {'couple ms':>10} {'derive ms':>10} {'time':>6} {'operations':>11} {'one piece':>10} {'ratio':>6}"
+    )
+    worst = 0.0
+    for name, rows, sizes in (
+        ("6R14  3+3", ROWS_14, [3, 3]),
+        ("6R14  2+2+2", ROWS_14, [2, 2, 2]),
+        ("6R14  1x6", ROWS_14, [1] * 6),
+        ("general 3+3", general_rows(6), [3, 3]),
+        ("general 6+6", general_rows(12), [6, 6]),
+        ("general 4+4+4", general_rows(12), [4, 4, 4]),
+        ("general 1x12", general_rows(12), [1] * 12),
+    ):
+        definitions = pieces(rows, sizes)
+        spec = row_of(definitions)
+        parts = {f"p{i}": derive(d) for i, d in enumerate(definitions)}
+        whole = chain("whole", rows)
+        coupled, single = coupled_equations(spec, parts), derive_in_one_piece(whole, GRAVITY)
+        seconds, anew, time_ratio = paired(
+            lambda spec=spec, parts=parts: coupled_equations(spec, parts),
+            lambda whole=whole: derive_in_one_piece(whole, GRAVITY),
+        )
+        ours, theirs = coupled.count(EQUATIONS)["total"], single.count(EQUATIONS)["total"]
+        ratio = ours / theirs
+        worst = max(worst, ratio)
+        if name == "general 6+6":
+            figures["couple_6_6_ms"] = seconds * 1e3
+            figures["ratio_couple_derive_time"] = time_ratio
+        print(
+            f"{name:>16} {seconds * 1e3:>10.1f} {anew * 1e3:>10.1f} {time_ratio:>6.2f}"
+            f" {ours:>11,} {theirs:>10,} {ratio:>6.3f}"
+        )
+    figures["ops_coupled_ratio"] = worst
+
+
+def main() -> None:
+    """Print the tables; with --json FILE write the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="KanesMethod for n = 2 and 3 only")
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    figures: dict[str, float] = {}
+    beside_kane([2, 3] if arguments.quick else [2, 3, 4, 5], figures)
+    one_piece(figures)
+    coupling(figures)
+    if arguments.json:
+        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+"""The parts of a program (operations, symbols, outputs), and the checks they must pass when a stored one is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from substructures.errors import InvalidProgram
+from substructures.expr.graph import MAX_BITS, MAX_EXPONENT
+
+FORMAT = "substructures.program"
+VERSION = 1
+
+#: number of operands of every operation that has operands (``powi`` has one, and an integer exponent)
+ARITY = {
+    **dict.fromkeys(("add", "sub", "mul", "div", "atan2"), 2),
+    **dict.fromkeys(("neg", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "abs", "sign"), 1),
+}
+#: operations that count in the literature
+ARITHMETIC = ("add", "sub", "mul", "div", "powi")
+KINDS = ("coordinate", "velocity", "acceleration", "parameter", "inertia", "input", "time")
+SYMMETRIES = ("none", "symmetric", "christoffel")
+#: elements that one output may have
+MAX_ELEMENTS = 10_000_000
+
+Operation = tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A named input: kind (one of KINDS) and unit (SI, as text)."""
+
+    name: str
+    kind: str
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A named array of formulas: ``entries[i]`` is the operation that computes the element at ``index[i]``.
+
+    All other elements follow from the symmetry or are zero:
+    ``symmetric``: x[a, b] = x[b, a];
+    ``christoffel``: entries have a < c, b <= c on a path; x[a, b, c] = x[a, c, b]; x[c, b, a] = -x[a, b, c] for b <= a.
+    """
+
+    shape: tuple[int, ...]
+    index: tuple[tuple[int, ...], ...]
+    entries: tuple[int, ...]
+    symmetry: str = "none"
+
+    def expanded(self) -> Iterable[tuple[tuple[int, ...], int, int]]:
+        """(index, entry, sign) of every non-zero element, dependent ones included."""
+        for index, entry in zip(self.index, self.entries, strict=True):
+            yield index, entry, 1
+            if self.symmetry == "symmetric" and index[0] != index[1]:
+                yield (index[1], index[0]), entry, 1
+            elif self.symmetry == "christoffel":
+                a, b, c = index
+                if b != c:
+                    yield (a, c, b), entry, 1
+                if b <= a:
+                    yield (c, b, a), entry, -1
+                    if a != b:
+                        yield (c, a, b), entry, -1
+
+
+def operands(operation: Operation) -> tuple[int, ...]:
+    """The entries an operation refers to."""
+    op = operation[0]
+    if op in ARITY:
+        return operation[1:]
+    return operation[1:2] if op == "powi" else ()
+
+
+def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...], dict[str, Output]]:
+    """Symbols, operations and outputs of a JSON document. Raises InvalidProgram."""
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise InvalidProgram(f"format is not '{FORMAT}'")
+    version = document.get("version")
+    if not _is_index(version) or version != VERSION:
+        raise InvalidProgram(f"version {str(version)[:40]!r} is unknown; this reader knows {VERSION}")
+    try:
+        symbols = tuple(_read_symbol(s) for s in document["symbols"])
+        operations = tuple(_read_operation(op) for op in document["operations"])
+        outputs = {n: _read_output(n, o, len(operations)) for n, o in document["outputs"].items()}
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise InvalidProgram(f"malformed: {error}") from None
+    if len({s.name for s in symbols}) != len(symbols):
+        raise InvalidProgram("a symbol occurs twice")
+    for i, operation in enumerate(operations):
+        _check(i, operation, len(symbols))
+    return symbols, operations, outputs
+
+
+def _read_symbol(document: Any) -> Symbol:
+    symbol = Symbol(**document)
+    if symbol.kind not in KINDS or not isinstance(symbol.name, str) or not isinstance(symbol.unit, str):
+        raise ValueError(f"symbol {document!r}")
+    return symbol
+
+
+def _read_operation(document: Any) -> Operation:
+    # what is no list of an operation and more is refused by _check, at its position
+    return tuple(document) if isinstance(document, list) else ()
+
+
+def _read_output(name: str, document: Any, size: int) -> Output:
+    if set(document) != {"shape", "symmetry", "index", "entries"}:
+        raise ValueError(f"output {name[:80]!r}")
+    shape, entries, symmetry = tuple(document["shape"]), tuple(document["entries"]), document["symmetry"]
+    output = Output(shape, tuple(tuple(i) for i in document["index"]), entries, symmetry)
+    if not all(_is_index(n) for n in shape) or prod(shape) > MAX_ELEMENTS:
+        raise ValueError(f"output {name[:80]!r}: shape {str(shape)[:80]}")
+    if symmetry not in SYMMETRIES or len(output.index) != len(entries) or not _fits(symmetry, shape):
+        raise ValueError(f"output {name[:80]!r}: symmetry or number of entries")
+    if not all(_in_range(e, size) for e in entries):
+        raise ValueError(f"output {name[:80]!r}: entry outside of the program")
+    _check_elements(name, output)
+    return output
+
+
+def _fits(symmetry: str, shape: tuple[int, ...]) -> bool:
+    rank = {"symmetric": 2, "christoffel": 3}.get(symmetry)
+    return rank is None or (len(shape) == rank and len(set(shape)) == 1)
+
+
+def _check_elements(name: str, output: Output) -> None:
+    """Every element is inside of the shape and determined once."""
+    rank, seen = len(output.shape), set()
+    for i in output.index:
+        if len(i) != rank or not all(_in_range(x, n) for x, n in zip(i, output.shape, strict=True)):
+            raise ValueError(f"output {name[:80]!r}: index {str(i)[:80]} outside of shape {output.shape}")
+    for i, _, _ in output.expanded():
+        if i in seen:
+            raise ValueError(f"output {name[:80]!r}: element {i} is given twice")
+        seen.add(i)
+
+
+def _check(i: int, operation: Operation, symbols: int) -> None:
+    op = operation[0] if operation and isinstance(operation[0], str) else None
+    if op in ("int", "rat"):
+        numbers = operation[1:]
+        if len(numbers) != (1 if op == "int" else 2) or not all(_is_integer(n) for n in numbers):
+            raise InvalidProgram(f"bad number {str(operation)[:80]}", i)
+        if op == "rat" and int(numbers[1]) <= 0:
+            raise InvalidProgram("denominator is not positive", i)
+    elif op == "sym":
+        if len(operation) != 2 or not _in_range(operation[1], symbols):
+            raise InvalidProgram("unknown symbol", i)
+    elif op in ARITY or op == "powi":
+        arity = ARITY.get(op, 1)
+        if len(operation) != 1 + arity + (op == "powi"):
+            raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
+        if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
+            raise InvalidProgram("an operand does not refer to an earlier entry", i)
+        if op == "powi" and not (_is_index(operation[2], signed=True) and abs(operation[2]) <= MAX_EXPONENT):
+            raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
+    else:
+        raise InvalidProgram(f"unknown operation {str(op)[:80]!r}", i)
+
+
+def _in_range(x: Any, n: int) -> bool:
+    return _is_index(x) and 0 <= x < n
+
+
+def _is_index(x: Any, signed: bool = False) -> bool:
+    return isinstance(x, int) and not isinstance(x, bool) and (signed or x >= 0)
+
+
+def _is_integer(text: Any) -> bool:
+    if not isinstance(text, str) or len(text) > MAX_BITS // 3:
+        return False
+    digits = text[1:] if text.startswith("-") else text
+    return digits.isascii() and digits.isdigit() and (digits == "0" or digits[0] != "0") and text != "-0"
