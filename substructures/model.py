@@ -54,8 +54,7 @@ class Model:
     @cached_property
     def operations(self) -> dict[str, int]:
         """Arithmetic operations of every output alone; ``total``: of metric, christoffel and forces together."""
-        counts = {name: self.program.count([name])["total"] for name in self.program.outputs}
-        return counts | {"total": self.program.count(["metric", "christoffel", "forces"])["total"]}
+        return self.program.totals() | {"total": self.program.count(["metric", "christoffel", "forces"])["total"]}
 
     @property
     def dof(self) -> int:

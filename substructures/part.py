@@ -113,7 +113,7 @@ class Part:
     @cached_property
     def operations(self) -> dict[str, int]:
         """Additions, multiplications and divisions of every quantity, and of the whole program."""
-        counts = {name: self.program.count([name])["total"] for name in self.program.outputs if name not in INTERNAL}
+        counts = {name: n for name, n in self.program.totals().items() if name not in INTERNAL}
         return counts | {"total": self.program.count()["total"]}
 
     def formulas(self) -> list[Formula]:

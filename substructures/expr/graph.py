@@ -165,8 +165,9 @@ class Graph:
             return -found
         if a.is_number and b.is_number:
             return self._folded(a.value + b.value)
-        if a is b:
-            return self.number(2) * a
+        collected = self._collected(a, b)
+        if collected is not None:
+            return collected
         if b.negative:
             if a.negative:
                 return -Expr(self, "add", (-a, -b), None, PRIME - fp)
@@ -176,10 +177,22 @@ class Graph:
         return Expr(self, "add", (a, b), None, fp)
 
     def _difference(self, a: Expr, b: Expr, fp: int) -> Expr:
-        if b.negative or a.negative or b.is_number:
+        if b.negative or a.negative or _has_number(a) or _has_number(b):
             return self._sum(a, -b, fp)
         found = self.table.get(PRIME - fp)
         return -found if found is not None else Expr(self, "sub", (a, b), None, fp)
+
+    def _collected(self, a: Expr, b: Expr) -> Expr | None:
+        """c x + d x = (c + d) x and (x + c) + (y + d) = (x + y) + (c + d) for exact numbers c, d."""
+        if a is b:
+            return self.number(2) * a
+        if not (_has_number(a) and _has_number(b)):
+            return None
+        (c, x), (d, y) = _coefficient(a), _coefficient(b)
+        if x is y:
+            return self.number(c + d) * x
+        (x, c), (y, d) = _constant(a), _constant(b)
+        return (x + y) + self.number(c + d) if c and d else None
 
     def _product(self, a: Expr, b: Expr, fp: int) -> Expr:
         found = self.table.get(PRIME - fp)
@@ -241,6 +254,38 @@ class Graph:
         if fp is None:
             fp = keyed(op, *(a.fp for a in args))
         return self.table.get(fp) or Expr(self, op, args, None, fp)
+
+
+def _has_number(x: Expr) -> bool:
+    """An exact number, or a product, sum or negative with one."""
+    if x.op == "neg":
+        x = x.args[0]
+    return x.is_number or (x.op in ("mul", "add", "sub") and (x.args[0].is_number or x.args[1].is_number))
+
+
+def _coefficient(x: Expr) -> tuple[Any, Expr]:
+    """(c, y) with x = c y."""
+    sign = 1
+    if x.op == "neg":
+        sign, x = -1, x.args[0]
+    return (sign * x.args[0].value, x.args[1]) if x.op == "mul" and x.args[0].is_number else (sign, x)
+
+
+def _constant(x: Expr) -> tuple[Expr, Any]:
+    """(y, c) with x = y + c."""
+    if x.is_number:
+        return x.graph.zero, x.value
+    if x.op == "neg":
+        rest, constant = _constant(x.args[0])
+        return -rest, -constant
+    if x.op in ("add", "sub"):
+        a, b = x.args
+        sign = 1 if x.op == "add" else -1
+        if b.is_number:
+            return a, sign * b.value
+        if a.is_number:
+            return (b if sign > 0 else -b), a.value
+    return x, 0
 
 
 def _square_of_root(a: Expr, b: Expr) -> Expr | None:

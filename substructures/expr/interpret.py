@@ -77,7 +77,8 @@ def _lookup(name: str, values: Mapping[str, Any]) -> Any:
 
 def assemble(output: Output, results: Mapping[int, Any], batch: tuple[int, ...]) -> Array:
     """Dense array of an output from the values of its entries."""
-    dense: Any = np.zeros(batch + output.shape)
+    dense: Array = np.zeros(batch + output.shape)
     for index, entry, sign in output.expanded():
-        dense[(..., *index)] = results[entry] if sign > 0 else -results[entry]
+        place: tuple[Any, ...] = (..., *index)
+        dense[place] = results[entry] if sign > 0 else -results[entry]
     return dense

@@ -8,13 +8,14 @@ JSON (sorted keys, no spaces, integers only), their SHA-256 is the identity of t
 from __future__ import annotations
 
 import hashlib
-import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
+
+import orjson
 
 from substructures.errors import InvalidProgram
 from substructures.expr.graph import Expr, Graph
@@ -75,7 +76,7 @@ class Program:
                 for name, o in self.outputs.items()
             },
         }
-        return json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False).encode()
+        return orjson.dumps(document, option=orjson.OPT_SORT_KEYS)
 
     def to_bytes(self) -> bytes:
         """Canonical bytes (RFC 8785)."""
@@ -90,7 +91,7 @@ class Program:
     def from_bytes(cls, data: bytes) -> Program:
         """Read and validate. Raises InvalidProgram with the position of the first bad operation."""
         try:
-            document = json.loads(data)
+            document = orjson.loads(data)
         except (ValueError, RecursionError) as error:
             raise InvalidProgram(f"not a JSON document: {error}") from None
         return read_program(document)
@@ -139,6 +140,22 @@ class Program:
         result = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
         result["total"] = sum(counts[op] for op in ARITHMETIC)
         return result
+
+    def totals(self) -> dict[str, int]:
+        """``count([name])["total"]`` of every output, in one pass."""
+        masks = [0] * len(self.operations)
+        for bit, output in enumerate(self.outputs.values()):
+            for entry in output.entries:
+                masks[entry] |= 1 << bit
+        found: Counter[int] = Counter()
+        for i in range(len(masks) - 1, -1, -1):
+            mask = masks[i]
+            if mask:
+                operation = self.operations[i]
+                found[mask] += operation[0] in ARITHMETIC
+                for operand in operands(operation):
+                    masks[operand] |= mask
+        return {name: sum(n for mask, n in found.items() if mask >> bit & 1) for bit, name in enumerate(self.outputs)}
 
     def count_entries(self, entries: Iterable[int]) -> int:
         """Arithmetic operations that the given entries need, each counted once."""
