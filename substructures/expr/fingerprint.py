@@ -50,8 +50,12 @@ def rational(value: int | Fraction) -> int:
 
 
 def square_root(value: int) -> int | None:
-    """Image of the square root of 2, 3, 5 or 7; None for other numbers."""
-    return _SQRT.get(value)
+    """Image of the square root of a square-free product of 2, 3, 5 and 7; None for other numbers."""
+    root = 1
+    for p, root_of_p in _SQRT.items():
+        if value % p == 0:
+            value, root = value // p, root * root_of_p % PRIME
+    return root if value == 1 else None
 
 
 _points: dict[object, tuple[int, int]] = {}

@@ -18,10 +18,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
-from math import isqrt
 from typing import Any
 
 from substructures.errors import TooLarge
+from substructures.expr.exact import split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 
 Number = int | Fraction | Decimal
@@ -241,7 +241,7 @@ class Graph:
             value = Fraction(x.value)
             if value < 0:
                 raise ValueError(f"square root of the negative number {value}")
-            outside, inside = _split_square(value)
+            outside, inside = split_square(value)
             root = self.number(outside)
             return root if inside == 1 else root * self.function("sqrt", self.number(inside))
         return self.function("sqrt", x)
@@ -297,17 +297,3 @@ def _square_of_root(a: Expr, b: Expr) -> Expr | None:
     if b.op == "mul" and a in b.args:
         return a.args[0] * (b.args[1] if b.args[0] is a else b.args[0])
     return None
-
-
-def _split_square(value: Fraction) -> tuple[Fraction, int]:
-    """value = outside**2 * inside with a small square-free part taken out by trial division."""
-    inside = value.numerator * value.denominator
-    outside = Fraction(1, value.denominator)
-    root = isqrt(inside)
-    if root * root == inside:
-        return outside * root, 1
-    for p in (2, 3, 5, 7, 11, 13):
-        while inside % (p * p) == 0:
-            inside //= p * p
-            outside *= p
-    return outside, inside

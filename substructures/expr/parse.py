@@ -89,8 +89,12 @@ class _Parser:
     def sum(self) -> Expr:
         result = self.product()
         while op := self.take("+", "-"):
+            column = self.tokens[self.at][2]
             term = self.product()
-            result = result + term if op == "+" else result - term
+            try:
+                result = result + term if op == "+" else result - term
+            except TooLarge as error:
+                raise ExpressionError(str(error), column) from None
         return result
 
     def product(self) -> Expr:

@@ -1,0 +1,24 @@
+"""Julia: ``model(x)`` returns a named tuple of arrays. Roots and logarithms of negative numbers raise DomainError."""
+
+from __future__ import annotations
+
+from substructures.printers.matlab import Matlab
+
+
+class Julia(Matlab):
+    """A function of a vector; needs no packages."""
+
+    media = "text/x-julia; charset=utf-8"
+    mark = "#"
+    opening, closing = "[", "]"
+    functions = {"atan2": "atan"}  # noqa: RUF012
+
+    def head(self, name: str) -> list[str]:
+        return [*self.comments(name), f"function {self.function_name(name)}(x)"]
+
+    def tail(self) -> list[str]:
+        results = ", ".join(f"{v} = {v}" for v in self.variables.values())
+        return [f"    return (; {results})", "end"]
+
+    def dimensions(self, shape: tuple[int, ...]) -> str:
+        return ", ".join(map(str, shape))

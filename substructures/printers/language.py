@@ -1,0 +1,122 @@
+"""What a language must know to write formulas: numbers, names and operations, with precedences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from substructures.expr.program import Program
+
+SUM, NEGATION, PRODUCT, POWER, ATOM = range(5)
+
+
+class Piece(NamedTuple):
+    """A formula as text, with the precedence of its outermost operation."""
+
+    text: str
+    precedence: int = ATOM
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """``temporaries`` are (number, formula), each using earlier ones only; ``entries`` go with the outputs' index."""
+
+    temporaries: tuple[tuple[int, str], ...]
+    entries: Mapping[str, tuple[str, ...]]
+
+
+class Language:
+    """Base of all languages; writes formulas as most of them do. Make one for each program.
+
+    ``width``: longer formulas become temporaries; ``powers``: whether squares are written as powers;
+    ``first``: number of the first element of an array.
+    """
+
+    media = "text/plain; charset=utf-8"
+    width = 80
+    powers = True
+    first = 0
+    times, power_sign = "*", "^"
+    functions: Mapping[str, str] = {}
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+
+    def render(self, listing: Listing, name: str) -> str:
+        """The whole text."""
+        raise NotImplementedError
+
+    def symbol(self, n: int) -> Piece:
+        """Symbol number n of the program."""
+        return Piece(f"x[{n + self.first}]")
+
+    def temporary(self, n: int) -> Piece:
+        """Temporary number n, from 1."""
+        return Piece(f"t{n}")
+
+    def pi(self) -> Piece:
+        """The constant pi."""
+        return Piece("pi")
+
+    def number(self, value: Fraction) -> Piece:
+        """An exact constant."""
+        if value < 0:
+            return Piece("-" + self.number(-value).text, NEGATION)
+        if value.denominator == 1:
+            return Piece(str(value.numerator))
+        return Piece(f"{value.numerator}/{value.denominator}", PRODUCT)
+
+    def inside(self, piece: Piece, least: int) -> str:
+        """Text of an operand, in parentheses when it binds less than demanded."""
+        return piece.text if piece.precedence >= least else self.parentheses(piece.text)
+
+    def parentheses(self, text: str) -> str:
+        """The text in parentheses."""
+        return f"({text})"
+
+    def add(self, a: Piece, b: Piece) -> Piece:
+        """a + b."""
+        if b.text.startswith("-"):
+            if b.precedence == NEGATION:
+                return Piece(f"{a.text} - {b.text[1:]}", SUM)
+            return Piece(f"{a.text} + {self.parentheses(b.text)}", SUM)
+        return Piece(f"{a.text} + {b.text}", SUM)
+
+    def sub(self, a: Piece, b: Piece) -> Piece:
+        """a - b."""
+        return Piece(f"{a.text} - {self.inside(b, PRODUCT)}", SUM)
+
+    def neg(self, a: Piece) -> Piece:
+        """-a."""
+        return Piece("-" + self.inside(a, PRODUCT), NEGATION)
+
+    def mul(self, a: Piece, b: Piece) -> Piece:
+        """a * b."""
+        return Piece(f"{self.inside(a, PRODUCT)}{self.times}{self.inside(b, PRODUCT)}", PRODUCT)
+
+    def div(self, a: Piece, b: Piece) -> Piece:
+        """a / b."""
+        return Piece(f"{self.inside(a, PRODUCT)}/{self.inside(b, POWER)}", PRODUCT)
+
+    def power(self, a: Piece, n: int) -> Piece:
+        """a to the integer n."""
+        exponent = str(n) if n >= 0 else f"({n})"
+        return Piece(f"{self.inside(a, ATOM)}{self.power_sign}{exponent}", POWER)
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function of the closed set."""
+        return Piece(f"{self.functions.get(op, op)}({', '.join(a.text for a in args)})")
+
+    def write(self, op: str, args: list[Piece]) -> Piece:
+        """An operation of a program (``powi`` excepted)."""
+        if op == "add":
+            return self.add(*args)
+        if op == "sub":
+            return self.sub(*args)
+        if op == "mul":
+            return self.power(args[0], 2) if self.powers and args[0] == args[1] else self.mul(*args)
+        if op == "div":
+            return self.div(*args)
+        return self.neg(*args) if op == "neg" else self.call(op, args)

@@ -1,0 +1,96 @@
+"""LaTeX: an ``aligned`` environment (for the inside of display mathematics)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from substructures.expr.program import Output, Program
+from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, Language, Listing, Piece
+from substructures.printers.names import comment, latex_names
+from substructures.printers.text import decimal_text
+
+_LETTERS = {"metric": "g", "christoffel": r"\Gamma", "forces": "Q", "coriolis": "C"}
+_NAMED = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
+_NAMED |= {"atan2": r"\operatorname{atan2}", "exp": r"\exp", "log": r"\ln", "sign": r"\operatorname{sgn}"}
+_RULES = {
+    "symmetric": "{x}_{{ab}} &= {x}_{{ba}}",
+    "christoffel": r"{x}_{{abc}} &= {x}_{{acb}}, \quad {x}_{{cba}} = -{x}_{{abc}} \quad (b \le a)",
+}
+
+
+class Latex(Language):
+    """LaTeX formulas. Indices count from 1, elements that are not listed are zero."""
+
+    media = "application/x-latex; charset=utf-8"
+    width = 300
+    functions = _NAMED
+
+    def __init__(self, program: Program) -> None:
+        super().__init__(program)
+        self.names = latex_names(s.name for s in program.symbols)
+        # no symbol of the same look
+        self.letter = next(x for x in ("t", "w", "z", r"\mathfrak{t}") if not any(n.startswith(x) for n in self.names))
+
+    def symbol(self, n: int) -> Piece:
+        return Piece(self.names[n])
+
+    def temporary(self, n: int) -> Piece:
+        return Piece(f"{self.letter}_{{{n}}}")
+
+    def pi(self) -> Piece:
+        return Piece(r"\pi")
+
+    def parentheses(self, text: str) -> str:
+        return rf"\left({text}\right)"
+
+    def number(self, value: Fraction) -> Piece:
+        if value < 0:
+            return Piece("-" + self.number(-value).text, NEGATION)
+        if value.denominator == 1:
+            return Piece(str(value.numerator))
+        text = decimal_text(value) if value.denominator > 24 else None
+        return Piece(text) if text else Piece(rf"\frac{{{value.numerator}}}{{{value.denominator}}}", PRODUCT)
+
+    def mul(self, a: Piece, b: Piece) -> Piece:
+        left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
+        sign = r" \cdot " if right[0].isdigit() or right.startswith(r"\frac") else r" \, "
+        return Piece(left + sign + right, PRODUCT)
+
+    def div(self, a: Piece, b: Piece) -> Piece:
+        return Piece(rf"\frac{{{a.text}}}{{{b.text}}}", PRODUCT)
+
+    def power(self, a: Piece, n: int) -> Piece:
+        # a dotted or subscripted name needs no parentheses, a power does
+        return Piece(f"{self.inside(a, ATOM)}^{{{n}}}", POWER)
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        if op == "sqrt":
+            return Piece(rf"\sqrt{{{args[0].text}}}")
+        if op == "abs":
+            return Piece(rf"\left|{args[0].text}\right|")
+        return Piece(self.functions[op] + self.parentheses(", ".join(a.text for a in args)))
+
+    def render(self, listing: Listing, name: str) -> str:
+        lines = [f"% {comment(name)}"]
+        lines += [
+            f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"
+            for n, s in zip(self.names, self.program.symbols, strict=True)
+        ]
+        rows = [f"{self.letter}_{{{n}}} &= {text}" for n, text in listing.temporaries]
+        for output, array in self.program.outputs.items():
+            rows += self._rows(output, array, listing.entries[output])
+        return "\n".join([*lines, r"\begin{aligned}", " \\\\\n".join(rows), r"\end{aligned}"]) + "\n"
+
+    def _rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
+        letter = _LETTERS.get(output) or latex_names([output])[0]
+        letter = letter if letter.isalpha() or output in _LETTERS else f"{{{letter}}}"
+        separator = "," if max(array.shape, default=0) > 9 else ""
+        rows = []
+        for index, text in zip(array.index, texts, strict=True):
+            place = f"_{{{separator.join(str(i + 1) for i in index)}}}" if index else ""
+            rows.append(f"{letter}{place} &= {text}")
+        if not rows:
+            rows.append(f"{letter} &= 0")
+        if array.symmetry in _RULES:
+            rows.append(_RULES[array.symmetry].format(x=letter))
+        return rows

@@ -1,0 +1,76 @@
+"""Names from documents, made harmless for comments and formulas."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from substructures.expr.parse import RESERVED
+
+_SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*", re.ASCII)
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}", re.ASCII)
+_PIECE = re.compile(r"([A-Za-z]+)([0-9]*)((?:_[A-Za-z0-9]+)*)", re.ASCII)
+_LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
+_UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+GREEK = frozenset(_LOWER.split()) | frozenset(_UPPER.split())
+MAX_COMMENT = 200
+
+
+def comment(text: str) -> str:
+    """Text for the inside of a comment of any language: one line of harmless ASCII, the rest as <U+....>.
+
+    Nothing in it ends a comment, continues a line (backslash, trigraph), or is longer than 200 characters.
+    """
+    escaped = "".join(c if c in _SAFE else f"<U+{ord(c):04X}>" for c in text[:MAX_COMMENT])
+    while "*/" in escaped or "/*" in escaped:
+        escaped = escaped.replace("*/", "* /").replace("/*", "/ *")
+    return escaped
+
+
+def identifier(name: str, reserved: Iterable[str], otherwise: str) -> str:
+    """The name itself when it is an ASCII identifier and not reserved."""
+    return name if _IDENTIFIER.fullmatch(name) and name.lower() not in reserved else otherwise
+
+
+def formula_name(name: str) -> str:
+    """A name as the expression grammar reads it; names that it cannot read are quoted and escaped."""
+    if _NAME.fullmatch(name) and (name not in RESERVED or name == "t"):
+        return name
+    return '"' + comment(name) + '"'
+
+
+def prefix(names: Iterable[str]) -> str:
+    """A prefix for numbered temporaries that no name has."""
+    taken = {m.group(1) for n in names if (m := re.fullmatch(r"([A-Za-z]+)_?[0-9]+", n, re.ASCII))}
+    return next(p for p in ("t" * n for n in range(1, len(taken) + 2)) if p not in taken)
+
+
+def latex_names(names: Iterable[str]) -> list[str]:
+    """LaTeX of names: Greek letters, digits and prefixes as subscripts, primes as dots. All different."""
+    result: dict[str, None] = {}
+    for name in names:
+        text = _latex_name(name)
+        text = text if text not in result else _typewriter(name)
+        result[text if text not in result else f"{text}_{{{len(result)}}}"] = None
+    return list(result)
+
+
+def _latex_name(name: str) -> str:
+    primes = len(name) - len(name.rstrip("'"))
+    *owners, last = name[: len(name) - primes].split(".")
+    match = _PIECE.fullmatch(last)
+    if match is None or primes > 4 or not all(re.fullmatch(r"[A-Za-z0-9_-]+", o, re.ASCII) for o in owners):
+        return _typewriter(name)
+    letters, digits, rest = match.groups()
+    base = "\\" + letters if letters in GREEK else letters if len(letters) == 1 else rf"\mathit{{{letters}}}"
+    if primes:
+        base = rf"\{'d' * primes}ot{{{base}}}"
+    parts = [*owners, *([digits] if digits else []), *rest.split("_")[1:]]
+    subscripts = [p if p.isdigit() else rf"\mathrm{{{p.replace('_', chr(92) + '_')}}}" for p in parts]
+    return f"{base}_{{{','.join(subscripts)}}}" if subscripts else base
+
+
+def _typewriter(name: str) -> str:
+    special = {"_": r"\_", "^": r"\hat{}", "'": r"\textquotesingle "}
+    return r"\mathtt{" + "".join(special.get(c, c) for c in comment(name)).replace(" ", r"\ ") + "}"

@@ -1,0 +1,114 @@
+"""The formats, and the choice between compact and expanded form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import prod
+from typing import Any
+
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.expand import LIMIT as TERMS
+from substructures.expr.expand import Expander
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.operations import MAX_ELEMENTS
+from substructures.expr.program import Formulas, Program
+from substructures.expr.program import program as collect
+from substructures.expr.replay import replay
+from substructures.printers.c import C
+from substructures.printers.julia import Julia
+from substructures.printers.language import Language, Listing
+from substructures.printers.latex import Latex
+from substructures.printers.listing import check_size, compact, expanded, inlined
+from substructures.printers.matlab import Matlab
+from substructures.printers.python import Python
+from substructures.printers.sympy import SymPy
+from substructures.printers.text import Text
+
+LANGUAGES: Mapping[str, type[Language]] = {
+    "text": Text,
+    "latex": Latex,
+    "sympy": SymPy,
+    "python": Python,
+    "c": C,
+    "matlab": Matlab,
+    "julia": Julia,
+}
+
+#: media type of every format
+FORMATS: Mapping[str, str] = {"json": "application/json", **{name: lang.media for name, lang in LANGUAGES.items()}}
+FORMS = ("compact", "expanded")
+#: nodes of a rendered program, and of formulas without temporaries
+LIMIT = 100_000
+INLINE_LIMIT = 20_000
+
+
+def render(program: Program, format: str, form: str = "compact", name: str = "model", limit: int = LIMIT) -> str:  # noqa: A002
+    """A program in one of FORMATS.
+
+    ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
+    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`). ``name`` is the name of the
+    generated function if it is an identifier. Raises InvalidDocument for an unknown format or form, TooLarge (size,
+    limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
+    """
+    if format not in FORMATS:
+        raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
+    _check_form(form)
+    if format == "json":
+        return _json(program, form, limit)
+    for output in program.outputs.values():
+        if prod(output.shape) > MAX_ELEMENTS:
+            raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
+    language = LANGUAGES[format](program)
+    return language.render(_listing(program, language, form, limit), name)
+
+
+def entries(
+    program: Program,
+    output: str,
+    format: str = "text",  # noqa: A002
+    form: str = "compact",
+    limit: int = INLINE_LIMIT,
+) -> list[dict[str, Any]]:
+    """The independent non-zero elements of one output: ``[{"index": [a, b, c], "formula": text}]``.
+
+    Indices count from 0. Every formula stands alone (no temporaries). All other elements follow from the symmetry
+    (:func:`symmetry_rule`) or are zero. Raises KeyError for an unknown output, TooLarge like :func:`render`.
+    """
+    part = program.select([output])
+    if format not in LANGUAGES:
+        raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(LANGUAGES)}")
+    _check_form(form)
+    language = LANGUAGES[format](part)
+    listing = (expanded if form == "expanded" else inlined)(part, language, limit)
+    index = part.outputs[output].index
+    return [{"index": list(i), "formula": text} for i, text in zip(index, listing.entries[output], strict=True)]
+
+
+def _check_form(form: str) -> None:
+    if form not in FORMS:
+        raise InvalidDocument.at("/form", "unknown-form", f"{form[:40]!r} is not one of {', '.join(FORMS)}")
+
+
+def _listing(program: Program, language: Language, form: str, limit: int) -> Listing:
+    return (expanded if form == "expanded" else compact)(program, language, limit)
+
+
+def _json(program: Program, form: str, limit: int) -> str:
+    """The program in the stored format; expanded, a program that computes the canonical sums."""
+    if form == "expanded":
+        graph, new = Graph(), Graph()
+        outputs = replay(program, graph, {})
+        nodes = [e for f in outputs.values() for e in f.entries.values() if isinstance(e, Expr)]
+        expander = Expander(nodes, min(limit, TERMS)) if nodes else None
+        if expander:
+            check_size(sum(expander.size(e) for e in nodes), limit)
+        forms = {e: expander.expand(e) for e in dict.fromkeys(nodes)} if expander else {}
+        check_size(sum(len(t.powers) + 2 for e in nodes for t in forms[e].terms), limit)
+        rebuilt = {e: form.to_expr(new) for e, form in forms.items()}
+        formulas = {
+            n: Formulas(f.shape, {i: rebuilt[e] for i, e in f.entries.items()}, f.symmetry)  # type: ignore[index]
+            for n, f in outputs.items()
+        }
+        program = collect(new, formulas, {s.name: s for s in program.symbols})
+    check_size(len(program), limit)
+    return program.to_bytes().decode()

@@ -1,0 +1,60 @@
+"""Python code that builds SymPy expressions from real symbols; numbers stay exact."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from substructures.expr.program import Output
+from substructures.printers.code import Code
+from substructures.printers.language import NEGATION, Language, Listing, Piece
+from substructures.printers.symmetry import assignments
+
+_CLASSES = "Abs, ImmutableDenseNDimArray, Integer, MutableDenseNDimArray, Rational, Symbol"
+_FUNCTIONS = "acos, asin, atan, atan2, cos, exp, log, pi, sign, sin, sqrt, tan"
+
+
+class SymPy(Code):
+    """SymPy; the result is the dictionary ``outputs``: immutable arrays by name."""
+
+    media = "text/x-python; charset=utf-8"
+    powers = True
+    power_sign = "**"
+    functions = {"abs": "Abs"}  # noqa: RUF012
+
+    def number(self, value: Fraction) -> Piece:
+        if value < 0:
+            return Piece("-" + self.number(-value).text, NEGATION)
+        if value.denominator == 1:
+            return Piece(str(value.numerator))
+        return Piece(f"Rational({value.numerator}, {value.denominator})")
+
+    def div(self, a: Piece, b: Piece) -> Piece:
+        # two plain integers would make a float
+        return Language.div(self, Piece(f"Integer({a.text})") if a.text.isdigit() else a, b)
+
+    def render(self, listing: Listing, name: str) -> str:
+        lines = [
+            '"""Generated code: formulas of a mechanism."""',
+            "",
+            f"from sympy import {_CLASSES}, {_FUNCTIONS}",
+            "",
+        ]
+        lines += [*self.comments(name), "", "x = ["]
+        lines += [f"    Symbol({s.name!a}, real=True)," for s in self.program.symbols]
+        lines += ["]", *(f"t{n} = {text}" for n, text in listing.temporaries)]
+        for output, array in self.program.outputs.items():
+            lines += self._fill(self.variables[output], array, listing.entries[output])
+        # the immutable arrays of SymPy can be substituted into, differentiated and compared
+        pairs = ", ".join(
+            f"{n!a}: ImmutableDenseNDimArray({v})" if self.program.outputs[n].shape else f"{n!a}: {v}"
+            for n, v in self.variables.items()
+        )
+        return "\n".join([*lines, f"outputs = {{{pairs}}}"]) + "\n"
+
+    def _fill(self, v: str, array: Output, texts: tuple[str, ...]) -> list[str]:
+        if not array.shape:
+            return [f"{v} = {texts[0] if texts else 'Integer(0)'}"]
+        lines = [f"{v} = MutableDenseNDimArray.zeros({', '.join(map(str, array.shape))})"]
+        pairs = assignments(array, texts, lambda index: f"{v}[{', '.join(map(str, index))}]")
+        lines += [f"{element} = {text}" for element, text in pairs]
+        return lines

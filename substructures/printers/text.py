@@ -1,0 +1,70 @@
+"""Plain text for people; formulas in the grammar of :mod:`substructures.expr.parse`."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from substructures.expr.program import Program
+from substructures.printers.language import Language, Listing, Piece
+from substructures.printers.names import comment, formula_name, prefix
+from substructures.printers.symmetry import symmetry_rule
+
+#: denominators up to this one are written as fractions, larger ones as decimals where these are exact and short
+_FRACTIONS = 24
+_DIGITS = 17
+
+
+class Text(Language):
+    """Text. Indices count from 1."""
+
+    first = 1
+
+    def __init__(self, program: Program) -> None:
+        super().__init__(program)
+        self.names = [formula_name(s.name) for s in program.symbols]
+        self.prefix = prefix(self.names)
+
+    def symbol(self, n: int) -> Piece:
+        return Piece(self.names[n])
+
+    def temporary(self, n: int) -> Piece:
+        return Piece(f"{self.prefix}{n}")
+
+    def number(self, value: Fraction) -> Piece:
+        if value > 0 and value.denominator > _FRACTIONS:
+            text = decimal_text(value)
+            if text is not None:
+                return Piece(text)
+        return super().number(value)
+
+    def render(self, listing: Listing, name: str) -> str:
+        lines = [f"# {comment(name)}"]
+        lines += [
+            f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
+        ]
+        lines += [f"{self.prefix}{n} = {text}" for n, text in listing.temporaries]
+        for output, array in self.program.outputs.items():
+            title = comment(output)
+            if array.shape:
+                shape = " x ".join(map(str, array.shape))
+                lines.append(f"# {title}: {shape}, indices from 1; {symmetry_rule(array.symmetry, title)}")
+            for index, text in zip(array.index, listing.entries[output], strict=True):
+                place = "[" + ", ".join(str(i + 1) for i in index) + "]" if index else ""
+                lines.append(f"{title}{place} = {text}")
+            if not array.shape and not array.index:
+                lines.append(f"{title} = 0")
+        return "\n".join(lines) + "\n"
+
+
+def decimal_text(value: Fraction) -> str | None:
+    """A positive number as exact decimal of moderate length, if it is one."""
+    places, rest = 0, value.denominator
+    while rest % 10 == 0:
+        rest, places = rest // 10, places + 1
+    for p in (2, 5):
+        while rest % p == 0:
+            rest, places = rest // p, places + 1
+    if rest != 1 or places > _DIGITS:
+        return None
+    digits = str(value.numerator * 10**places // value.denominator).rjust(places + 1, "0")
+    return f"{digits[:-places]}.{digits[-places:]}".rstrip("0") if len(digits) <= 2 * _DIGITS else None

@@ -1,0 +1,67 @@
+"""Text for people is read back as the same formulas, and sizes are known before printing."""
+
+from __future__ import annotations
+
+import pytest
+
+from substructures.errors import TooLarge
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.parse import parse
+from substructures.expr.program import Formulas, Output, Program, Symbol
+from substructures.expr.trigonometry import cos
+from substructures.printers import entries, render
+
+
+def test_text_is_read_back_as_the_same_formulas(sample, collected) -> None:  # type: ignore[no-untyped-def]
+    for seed in range(40):
+        s = sample(6000 + seed, size=30)
+        program = collected(s.graph, f=Formulas((len(s.exprs),), {(i,): e for i, e in enumerate(s.exprs)}))
+        expected = interpret(program, s.point)["f"]
+        for form in ("compact", "expanded"):
+            found = entries(program, "f", form=form)
+            exprs = {f"e{e['index'][0]}": parse(s.graph, e["formula"], s.graph.symbol) for e in found}
+            values = interpret(collected(s.graph, **exprs), s.point)
+            for name, value in values.items():
+                assert value == pytest.approx(expected[int(name[1:])], rel=1e-7, abs=1e-6)
+
+
+def test_readable_text(collected) -> None:  # type: ignore[no-untyped-def]
+    g = Graph()
+    x, t1 = g.symbol("x"), g.symbol("t1")
+    shared = (x + t1) * cos(x)
+    text = render(collected(g, f=shared * (shared + x), g=-shared - g.one / 4 * x * x), "text")
+    assert "tt1 = (x + t1)*cos(x)\n" in text or "tt1 = (t1 + x)*cos(x)\n" in text
+    assert "f = tt1*(tt1 + x)\n" in text
+    assert "g = -(tt1 + 1/4*x^2)\n" in text
+
+
+def test_a_small_program_may_be_a_large_formula(collected) -> None:  # type: ignore[no-untyped-def]
+    g = Graph()
+    e = g.symbol("x")
+    for i in range(60):
+        e = g.function("exp", e) + g.function("atan2", e, g.number(i))
+    program = collected(g, f=e)
+    assert len(render(program, "text")) < 10_000
+    for form in ("compact", "expanded"):
+        with pytest.raises(TooLarge):
+            entries(program, "f", form=form)
+    with pytest.raises(TooLarge):
+        render(program, "c", "expanded")
+
+
+def test_large_arrays_are_refused() -> None:
+    huge = Program((), (), {"f": Output((10**5, 10**5), (), ())})
+    with pytest.raises(TooLarge):
+        render(huge, "c")
+
+
+def test_inputs_are_described_in_order() -> None:
+    program = Program(
+        (Symbol("b", "time", "s"), Symbol("a", "input", "N*m")),
+        (("sym", 0), ("sym", 1)),
+        {"f": Output((), ((),), (1,))},
+    )
+    for format_ in ("c", "python", "sympy"):
+        text = render(program, format_)
+        assert text.index("x[0]  b, time [s]") < text.index("x[1]  a, input [N*m]")
