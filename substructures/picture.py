@@ -1,4 +1,4 @@
-"""A picture of a tree in one pose: bodies as lines, joints as discs (revolute) and boxes (prismatic), ports as triads."""
+"""A picture of a tree in one pose: bodies are lines, joints discs (revolute) or boxes (prismatic), ports triads."""
 
 from __future__ import annotations
 
@@ -62,11 +62,16 @@ def _pose(parts: Mapping[str, Part], model: Model) -> list[float]:
             limits: Any = part.definition.bodies[joint.body].joint.limits
             if limits and isinstance(limits[0], tuple):
                 limits = limits[joint.step]
-            low, high = limits or ("", "")
-            free = isinstance(low, str) or isinstance(high, str) or (not joint.s and high - low > 2 * pi / 3)
-            default = SLIDE if joint.s else ANGLE
-            pose[f"{name}.{joint.coordinate}"] = default if free else float(low) + 0.6 * float(high - low)
+            pose[f"{name}.{joint.coordinate}"] = _middle(limits, bool(joint.s))
     return [pose[name] for name in model.coordinates]
+
+
+def _middle(limits: Any, slides: bool) -> float:
+    if limits and not any(isinstance(limit, str) for limit in limits):
+        low, high = map(float, limits)
+        if slides or high - low < 2 * pi / 3:
+            return low + 0.6 * (high - low)
+    return SLIDE if slides else ANGLE
 
 
 def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _Scene:
@@ -145,6 +150,5 @@ def _triad(scene: _Scene, project: Any, frame: str) -> str:
 
 def _ground(p: Array) -> str:
     x, y = p
-    return (
-        f'<path d="M{x - 10:.1f} {y + 4:.1f}h20m-16 0l-4 5m9 -5l-4 5m9 -5l-4 5m9 -5l-4 5" stroke="#555" fill="none"/>'
-    )
+    strokes = "h20m-16 0l-4 5m9 -5l-4 5m9 -5l-4 5m9 -5l-4 5"
+    return f'<path d="M{x - 10:.1f} {y + 4:.1f}{strokes}" stroke="#555" fill="none"/>'
