@@ -11,11 +11,12 @@ import numpy as np
 from substructures.direct import Array, NumericJoint, direct_form
 from substructures.errors import SubstructuresError
 from substructures.expr.interpret import interpret
-from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.program import Program, Symbol, array, program
+from substructures.interface import inertia_names
 from substructures.mechanics.joints import links
-from substructures.mechanics.linear3 import SYMMETRIC_INDEX, dense
+from substructures.mechanics.linear3 import SYMMETRIC_INDEX
 from substructures.mechanism import Mechanism
-from substructures.scope import no_names
+from substructures.physics import default_values, physical_warnings
 
 STATES = 4
 TOLERANCE = 1e-9
@@ -49,6 +50,7 @@ def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[s
     joints = _numeric_joints(m, values)
     certificate: dict[str, Any] = {"states": STATES, "tolerance": TOLERANCE, "warnings": warnings}
     if joints:
+        certificate["positive_definite"] = _positive_definite(m, result, values)
         form = direct_form(joints, np.zeros((STATES, 3)))
         computed = interpret(result, values, ["metric", "christoffel", "armature"])
         form.metric[...] += computed["armature"][..., None] * np.eye(len(joints))
@@ -102,53 +104,21 @@ def _inertia(values: Mapping[str, Array], body: str | None) -> tuple[Array, Arra
     return values[f"{body}.m"], np.stack([values[f"{body}.s{e}"] for e in "xyz"], -1), full
 
 
-def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
-    """Negative masses and impossible inertia tensors: faults for numbers, warnings for default values."""
-    outputs: dict[str, Formulas] = {}
-    for i, (mass, J) in m.central.items():
-        full = dense(J)
-        outputs[f"mass.{i}"] = array((), lambda mass=mass: mass)
-        outputs[f"J.{i}"] = array((3, 3), lambda a, b, full=full: full[a][b])
-    p = program(m.graph, outputs, m.scope.symbols)
-    defaults = _defaults(m)
-    warnings = []
-    for name in outputs:
-        needed = {p.symbols[p.operations[k][1]].name for k in p.reachable([name]) if p.operations[k][0] == "sym"}
-        if not needed <= defaults.keys():
-            continue
-        problem = _impossible(name, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
-        if problem is None:
-            continue
-        i = int(name.split(".")[1])
-        pointer = f"/bodies/{i}/" + ("mass" if name.startswith("mass") else "inertia")
-        text = f"body '{m.definition.bodies[i].name}': {problem[1]}"
-        if needed:
-            warnings.append({"pointer": pointer, "code": problem[0], "message": f"{text} at the default values"})
-        else:
-            m.scope.fault(pointer, problem[0], text)
-    m.scope.finish()
-    return warnings
-
-
-def _defaults(m: Mechanism) -> dict[str, float]:
-    values = {
-        name: m.scope.read(p.value, f"/parameters/{name}/value", no_names)
-        for name, p in m.definition.parameters.items()
-        if p.value is not None
-    }
-    numbers = interpret(program(m.graph, {n: array((), lambda v=v: v) for n, v in values.items()}, {}), {})
-    return {name: float(v) for name, v in numbers.items()}
-
-
-def _impossible(name: str, value: Array) -> tuple[str, str] | None:
-    """(code, message) when no rigid body has this mass, or this Binet tensor about its mass centre."""
-    if name.startswith("mass"):
-        return ("negative-mass", f"the mass {float(value):g} kg is negative") if value < 0 else None
-    eigenvalues = np.linalg.eigvalsh(value)
-    if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
+def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array]) -> bool | None:
+    """Whether the own metric is positive definite at the default values and random states; None without defaults."""
+    defaults = default_values(m)
+    if any(p.value is None for p in m.definition.parameters.values()):
         return None
-    moments = np.sort(eigenvalues.sum() - eigenvalues)
-    shown = ", ".join(f"{x:.6g}" for x in moments)
-    return "impossible-inertia", (
-        f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre (triangle inequality)"
-    )
+    numbers: dict[str, Any] = {**values, **defaults}
+    own = interpret(result, numbers, ["inertia.m", "inertia.s", "inertia.J"])
+    name = {carrier: body for body, carrier in reversed(m.skeleton.carrier.items()) if carrier >= 0}
+    for k, body in name.items():
+        symbols = [symbol for symbol, _ in inertia_names(body)]
+        tensor = [own["inertia.J"][..., k, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+        first = [own["inertia.m"][..., k], *(own["inertia.s"][..., k, i] for i in range(3))]
+        numbers |= dict(zip(symbols, [*first, *tensor], strict=True))
+    metric = interpret(result, numbers, ["metric"])["metric"]
+    if not np.isfinite(metric).all():
+        return None
+    eigenvalues = np.linalg.eigvalsh(metric)
+    return bool((eigenvalues[..., 0] > 1e-13 * eigenvalues[..., -1]).all())

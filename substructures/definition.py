@@ -228,9 +228,18 @@ def read_model(model: type[M], data: Any) -> M:
 
 def _faults(error: ValidationError, data: Any) -> list[Fault]:
     return [
-        Fault(_pointer(e["loc"], e["type"] == "missing", data), e["type"].replace("_", "-"), _message(e))
+        Fault(
+            _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]),
+            e["type"].replace("_", "-"),
+            _message(e),
+        )
         for e in error.errors(include_url=False)
     ]
+
+
+def _tag(kind: str) -> str:
+    """A union chosen by its field 'type' complains about the object as a whole."""
+    return "/type" if kind.startswith("union_tag") else ""
 
 
 def _message(error: Any) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from substructures.expr.graph import Expr
+from substructures.expr.interpret import interpret
+from substructures.expr.program import array, program
 from substructures.mechanics.linear3 import IDENTITY, Matrix, Vector, add, apply, cross, multiply, negate, transpose
 from substructures.scope import Scope, no_names
 
@@ -36,14 +38,20 @@ class Frame:
 def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
     """E of a frame whose third axis is the given constant direction (any length but zero)."""
     x, y, z = scope.vector(axis, pointer, no_names)
-    length2 = x * x + y * y + z * z
-    if length2.is_zero or not length2.is_number:
+    given = [i for i, component in enumerate((x, y, z)) if not component.is_zero]
+    if not given:
         scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
         return IDENTITY
-    for i, component in enumerate((x, y, z)):
-        if not any(other.fp for j, other in enumerate((x, y, z)) if j != i):
-            return AXES[i] if component.value > 0 else _reversed(AXES[i])
-    return _general_axis(scope, (x, y, z), length2)
+    numbers = constants((x, y, z))
+    if len(given) == 1:
+        return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
+    return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
+
+
+def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:
+    """The values of three constant expressions, roots and pi included."""
+    p = program(v[0].graph, {"v": array((3,), lambda i: v[i])}, {})
+    return [float(x) for x in interpret(p, {})["v"]]
 
 
 def _reversed(e: Matrix) -> Matrix:
@@ -51,11 +59,11 @@ def _reversed(e: Matrix) -> Matrix:
     return e[0], negate(e[1]), negate(e[2])
 
 
-def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], length2: Expr) -> Matrix:
+def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Matrix:
     """Rows: a unit vector across n and the frame axis least aligned with it, its complement, n."""
     graph = scope.graph
+    length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2]
     unit = tuple(c / graph.sqrt(length2) for c in n)
-    smallest = min(range(3), key=lambda i: abs(n[i].value))
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
     first: Vector = tuple(c / length for c in across)

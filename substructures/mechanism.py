@@ -124,6 +124,8 @@ class _Builder:
         axis = self._axis(body, f"{pointer}/joint")
         for entry in self.entries.get(i, []):
             frame = self._joint(frame, entry, body, axis, f"{pointer}/joint")
+        if body.joint.type == "fixed":
+            frame = self._fixed(frame, body, f"{pointer}/joint")
         self.bodies[body.name] = frame
         self._inertia(frame, i, body, pointer)
 
@@ -134,9 +136,8 @@ class _Builder:
         d, sigma = (read(getattr(joint, name), f"{pointer}/{name}") for name in ("d", "sigma"))
         if joint.placement is not None:
             if any(not x.is_zero for x in (psi, theta, d, sigma)):
-                self.scope.fault(
-                    pointer, "row-and-placement", "give either psi, theta, d, sigma or a placement, not both"
-                )
+                message = "give either psi, theta, d, sigma or a placement, not both"
+                self.scope.fault(f"{pointer}/placement", "row-and-placement", message)
             rotation = self.scope.rpy(joint.placement.rpy, f"{pointer}/placement/rpy")
             return parent.mounted(
                 rotation.matrix(), self.scope.vector(joint.placement.position, f"{pointer}/placement/position")
@@ -144,6 +145,14 @@ class _Builder:
         c, s = cos_sin(psi)
         E = Rotation((Planar(2, c, s), Planar(0, *cos_sin(theta)))).matrix()
         return parent.mounted(E, (d * c, d * s, sigma))
+
+    def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
+        """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
+        for name in ("stiffness", "rest", "damping", "armature", "limits"):
+            if getattr(body.joint, name) not in (0, None):
+                self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
+        phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
+        return frame.mounted(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
 
     def _axis(self, body: Body, pointer: str) -> Matrix:
         """E from the placed frame to the frame whose third axis is the joint axis."""
@@ -173,8 +182,10 @@ class _Builder:
     def _offsets(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr]:
         """phi and tau: constants of the joint (compound joints have none)."""
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
-        if len(self.entries[entry.body]) > 1 and not (phi.is_zero and tau.is_zero):
-            self.scope.fault(pointer, "offset-of-compound", f"phi and tau do not go with a {body.joint.type} joint")
+        for name, offset in (("phi", phi), ("tau", tau)):
+            if len(self.entries[entry.body]) > 1 and not offset.is_zero:
+                message = f"{name} does not go with a {body.joint.type} joint"
+                self.scope.fault(f"{pointer}/{name}", "offset-of-compound", message)
         return phi, tau
 
     def _law(self, entry: JointEntry, body: Body, pointer: str) -> JointLaw:

@@ -29,13 +29,14 @@ from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.base_functions import Twist, carried
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, transpose
-from substructures.mounting import Assembly, assemble
+from substructures.mounting import Assembly, assemble, joint_parents
 from substructures.part import Part
-from substructures.skeleton import INTERFACE
+from substructures.skeleton import INTERFACE, christoffel_entries
 from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
 MAX_NODES = 1_000_000
+MAX_ENTRIES = 100_000
 QUANTITIES = ("metric", "christoffel", "gravity", "forces", "potential_energy", "linear_momentum", "angular_momentum")
 KINEMATICS = ("position", "rotation", "U", "Omega")
 
@@ -86,6 +87,9 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
     """
     start = perf_counter()
     assembly = assemble(spec, parts)
+    entries = christoffel_entries(joint_parents(assembly.mounted))
+    if entries > MAX_ENTRIES:
+        raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
     try:
         coupled = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
         outputs = model_outputs(assembly, coupled)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.coupling import WORLD, Mounted
@@ -12,6 +12,7 @@ from substructures.expr.program import Symbol
 from substructures.mechanics.linear3 import Vector
 from substructures.part import Part
 from substructures.scope import Scope, no_names
+from substructures.skeleton import INTERFACE
 from substructures.tree import Instance, TreeSpec
 
 
@@ -170,6 +171,21 @@ def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[
             scope.symbols.setdefault(name, Symbol(name, symbol.kind, symbol.unit))
             value = scope.graph.symbol(name)
         result[symbol.name] = value
+    return result
+
+
+def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
+    """(parent, kind) of every joint of a tree, by index in the tree; hosts come first."""
+    result: list[tuple[int, int]] = []
+    first: list[int] = []
+    seats: list[int] = []
+    for m in mounted:
+        carrier = INTERFACE if m.host == WORLD else mounted[m.host].part.frame_carriers[m.frame]
+        outer = WORLD if m.host == WORLD else seats[m.host]
+        seats.append(outer if carrier == INTERFACE else first[m.host] + carrier)
+        first.append(len(result))
+        joints = m.part.skeleton.joints
+        result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
     return result
 
 

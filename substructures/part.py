@@ -15,7 +15,7 @@ from substructures.expr.program import Program, program
 from substructures.interface import formulas, inertia_names
 from substructures.loads import read_loads, wrench_places
 from substructures.mechanism import mechanism
-from substructures.skeleton import BASE, Skeleton, skeleton
+from substructures.skeleton import BASE, Skeleton, christoffel_entries, skeleton
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -168,6 +168,9 @@ def derive(definition: Definition) -> Part:
     """
     start = perf_counter()
     m = mechanism(definition)
+    entries = christoffel_entries([(j.parent, j.s) for j in m.skeleton.joints])
+    if entries > MAX_ENTRIES:
+        raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)
     loads = read_loads(m)
     try:
         outputs = formulas(m, loads)
@@ -181,3 +184,4 @@ def derive(definition: Definition) -> Part:
 
 
 MAX_NODES = 1_000_000
+MAX_ENTRIES = 100_000

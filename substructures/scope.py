@@ -37,8 +37,10 @@ class Scope:
         return symbol
 
     def fault(self, pointer: str, code: str, message: str) -> None:
-        """Note a fault."""
-        self.faults.append(Fault(pointer, code, message))
+        """Note a fault, once."""
+        fault = Fault(pointer, code, message)
+        if fault not in self.faults:
+            self.faults.append(fault)
 
     def finish(self) -> None:
         """Raise InvalidDocument when there were faults."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.definition import Body, Definition
@@ -55,6 +56,18 @@ class Skeleton:
     def kinds(self) -> str:
         """'R' or 'P' for every joint."""
         return "".join("P" if j.s else "R" for j in self.joints)
+
+
+def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
+    """Independent Christoffel symbols of joints (parent, kind), at most: a and revolute b on the path to every joint c.
+
+    Known before anything is derived, and what the size of a program grows with.
+    """
+    paths: list[tuple[int, int]] = []
+    for parent, s in joints:
+        length, turning = paths[parent] if parent >= 0 else (0, 0)
+        paths.append((length + 1, turning + 1 - s))
+    return sum(length * turning for length, turning in paths)
 
 
 def skeleton(definition: Definition) -> Skeleton:

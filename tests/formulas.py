@@ -1,0 +1,39 @@
+"""A definition alone at the world, and its formulas compared exactly with formulas given as text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from random_trees import Plain
+
+from substructures import Definition, Model, TreeSpec, couple, derive
+from substructures.expr.expand import is_zero
+from substructures.expr.graph import Graph
+from substructures.expr.parse import parse
+from substructures.expr.replay import replay
+
+
+def alone(definition: Plain, gravity: list[Any], parameters: Plain | None = None) -> Model:
+    one = {
+        "name": "x",
+        "substructure": "one",
+        "parameters": {name: name for name in definition.get("parameters", {}) if parameters},
+    }
+    spec = {"name": "tree", "gravity": gravity, "parameters": parameters or {}, "instances": [one]}
+    return couple(TreeSpec.read(spec), {"x": derive(Definition.read(definition))})
+
+
+def assert_formulas(model: Model, quantity: str, expected: dict[tuple[int, ...], str]) -> None:
+    """All elements, those that follow from symmetries included; elements not named are zero."""
+    graph = Graph()
+    formulas = replay(model.program, graph, {}, [quantity])[quantity].entries
+    output = model.program.outputs[quantity]
+    entry = {e: graph.zero + formulas[i] for i, e in zip(output.index, output.entries, strict=True)}
+    found = {i: entry[e] * sign for i, e, sign in output.expanded()}
+
+    def lookup(name: str) -> Any:
+        return graph.symbol(f"x.{name}" if name.startswith("q") else name)
+
+    for index in found | expected:
+        difference = found.get(index, graph.zero) - parse(graph, expected.get(index, "0"), lookup)
+        assert is_zero(difference), (quantity, index)

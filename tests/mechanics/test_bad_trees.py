@@ -1,0 +1,137 @@
+"""Trees and requests that cannot be used: every fault has a pointer to its field and names the culprit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good, pointer_of, request
+
+from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
+from substructures.evaluation import evaluate
+
+INSTANCE: Path = ("instances", 1)
+TREES: list[tuple[str, Path, Any, str, str]] = [
+    ("unknown host", (*INSTANCE, "at"), "three.tip", "unknown-instance", "three"),
+    ("unknown port", (*INSTANCE, "at"), "one.flange", "unknown-port", "flange"),
+    ("mounted on itself", (*INSTANCE, "at"), "two.tip", "cycle", "two"),
+    ("malformed place", (*INSTANCE, "at"), "one", "string-pattern-mismatch", "one"),
+    ("duplicate instance", (*INSTANCE, "name"), "one", "duplicate-name", "one"),
+    ("illegal instance", (*INSTANCE, "name"), "two.x", "string-pattern-mismatch", "two.x"),
+    ("reserved instance", (*INSTANCE, "name"), "world", "reserved-name", "world"),
+    ("instance named as a parameter", (*INSTANCE, "name"), "g", "reserved-name", "g"),
+    ("unknown parameter", (*INSTANCE, "parameters", "mass"), 3, "unknown-parameter", "mass"),
+    ("binding with an unknown name", (*INSTANCE, "parameters", "l"), "2*three.l", "unknown-name", "three.l"),
+    ("binding that does not parse", (*INSTANCE, "parameters", "l"), "2*(", "bad-expression", "column 4"),
+    ("binding to itself", (*INSTANCE, "parameters", "l"), "2*two.l", "cycle", "two.l"),
+    ("binding to a coordinate", (*INSTANCE, "parameters", "l"), "one.q1", "unknown-name", "one.q1"),
+    ("binding that is not finite", (*INSTANCE, "parameters", "l"), float("inf"), "number-not-finite", ""),
+    ("placement with an unknown name", (*INSTANCE, "placement"), {"position": [0, "h", 0]}, "unknown-name", "h"),
+    ("gravity with an unknown name", ("gravity", 2), "-gg", "unknown-name", "gg"),
+    ("gravity of two", ("gravity",), [0, 0], "missing", ""),
+    ("division by a constant zero", ("gravity", 0), "g/0", "bad-expression", "division by zero"),
+    ("no substructure", (*INSTANCE, "substructure"), ..., "one-source", "definition"),
+    ("malformed reference", (*INSTANCE, "substructure"), "../etc", "string-pattern-mismatch", "../etc"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "code", "culprit"), [t[1:] for t in TREES], ids=[t[0] for t in TREES])
+def test_tree_with_a_fault(path: Path, value: Any, code: str, culprit: str) -> None:
+    with pytest.raises(InvalidDocument) as raised:
+        coupled(changed(TREE, (path, value)))
+    faults = raised.value.faults
+    # a missing alternative is a fault of the object that lacks it
+    near = [f for f in faults if f.pointer.startswith(pointer_of(path if value is not ... else path[:-1]))]
+    assert near, faults
+    assert code in {f.code for f in near}, faults
+    assert any(culprit in f.message for f in near), faults
+
+
+def test_a_cycle_of_hosts() -> None:
+    tree = TreeSpec.read(changed(TREE, (("instances", 0, "at"), "two.tip")))
+    with pytest.raises(InvalidDocument) as raised:
+        couple(tree, {"one": good(), "two": good()})
+    assert sorted(f.pointer for f in raised.value.faults) == ["/instances/0/at", "/instances/1/at"]
+    assert {f.code for f in raised.value.faults} == {"cycle"}
+
+
+def test_a_binding_that_makes_a_divisor_zero() -> None:
+    part = derive(Definition.read(changed(GOOD, (("bodies", 0, "joint", "tau"), "1/l"))))
+    tree = TreeSpec.read(changed(TREE, ((*INSTANCE, "parameters", "l"), 0)))
+    with pytest.raises(InvalidDocument) as raised:
+        couple(tree, {"one": part, "two": part})
+    assert raised.value.faults[0].code == "division-by-zero"
+    assert raised.value.faults[0].pointer.startswith("/instances")
+
+
+# --- requests
+
+
+REQUESTS: list[tuple[str, Plain, str, str, str]] = [
+    ("wrong length of q", {"q": [1, 2, 3]}, "/q", "wrong-length", "10"),
+    ("wrong length of qd", {"qd": [[0] * 9]}, "/qd", "wrong-length", "10"),
+    ("other number of states", {"q": [[0] * 10] * 3, "qd": [[0] * 10] * 2}, "/qd", "wrong-length", "3"),
+    ("no states", {"q": None}, "/q", "missing", "q"),
+    ("ragged states", {"q": [[0] * 10, [0]]}, "/q", "wrong-length", ""),
+    ("text in a state", {"q": [0] * 9 + ["1"]}, "/q/9", "number-expected", "1"),
+    ("truth value in a state", {"q": [0] * 9 + [True]}, "/q/9", "number-expected", "True"),
+    ("not a number", {"q": [0, float("nan")] + [0] * 8}, "/q/1", "number-not-finite", ""),
+    ("infinity in an array", {"qd": np.full((1, 10), np.inf)}, "/qd/0/0", "number-not-finite", ""),
+    ("an integer beyond all doubles", {"q": [10**400] + [0] * 9}, "/q", "", ""),
+    ("unknown coordinate", {"q": {"one.q9": [0]}}, "/q/one.q9", "unknown-coordinate", "one.q9"),
+    ("unknown parameter", {"parameters": {"one.l9": 1}}, "/parameters/one.l9", "unknown-parameter", "one.l9"),
+    ("bound parameter", {"parameters": {"two.l": 1}}, "/parameters/two.l", "unknown-parameter", "two.l"),
+    ("infinite parameter", {"parameters": {"one.l": float("inf")}}, "/parameters/one.l", "number-not-finite", ""),
+    ("wrong length of a parameter", {"parameters": {"one.l": [1, 2]}}, "/parameters/one.l", "wrong-length", ""),
+    ("unknown input", {"inputs": {"one.u9": 1}}, "/inputs/one.u9", "unknown-input", "one.u9"),
+    ("inputs that are no object", {"inputs": [1]}, "/inputs", "object-expected", ""),
+    ("unknown quantity", {"quantities": ["mass"]}, "/quantities/0", "unknown-quantity", "mass"),
+    ("no quantities", {"quantities": []}, "/quantities", "missing", ""),
+    ("unknown field", {"velocity": 3}, "/velocity", "unknown-field", "velocity"),
+    ("missing accelerations", {"quantities": ["inverse_dynamics"]}, "/qdd", "missing", "qdd"),
+    ("time that is no number", {"t": "now"}, "/t", "number-expected", "now"),
+]
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "code", "culprit"), [r[1:] for r in REQUESTS], ids=[r[0] for r in REQUESTS]
+)
+def test_request_with_a_fault(change: Plain, pointer: str, code: str, culprit: str) -> None:
+    with pytest.raises(InvalidDocument) as raised:
+        evaluate(cell(), request(**change))
+    faults = [f for f in raised.value.faults if f.pointer == pointer]
+    assert faults, raised.value.faults
+    assert any(code in f.code and culprit in f.message for f in faults), faults
+
+
+def test_a_parameter_without_a_value_is_named() -> None:
+    with pytest.raises(MissingValue) as raised:
+        evaluate(cell(), request(parameters={}))
+    assert raised.value.name == "one.free"
+
+
+def test_too_many_states() -> None:
+    with pytest.raises(InvalidDocument) as raised:
+        evaluate(cell(), request(q=np.zeros((11, 10)), qd=None), limit=10)
+    assert [(f.pointer, f.code) for f in raised.value.faults] == [("/q", "too-many-states")]
+
+
+def test_a_result_that_is_not_finite_is_listed() -> None:
+    """A spring whose ends meet has no direction: a value with advice, not an exception."""
+    spring = {"from": {"body": "base"}, "to": {"body": "b1"}, "type": "spring", "stiffness": 1, "length": 1}
+    body = {"name": "b1", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": 1}
+    part = derive(Definition.read({"name": "slide", "bodies": [body], "loads": [spring]}))
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "slide"}]})
+    answer = evaluate(couple(spec, {"x": part}), {"quantities": ["forces", "metric"], "q": [[1.0], [0.0], [2.0]]})
+    assert [(f["state"], f["quantity"]) for f in answer["failures"]] == [(1, "forces")]
+    assert np.isfinite(answer["metric"]).all()
+
+
+def test_a_singular_metric_is_a_failure_with_advice() -> None:
+    body = {"name": "b1", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}}
+    part = derive(Definition.read({"name": "none", "bodies": [body]}))
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "none"}]})
+    answer = evaluate(couple(spec, {"x": part}), {"quantities": ["forward_dynamics"], "q": [0]})
+    assert answer["failures"][0]["state"] == 0
+    assert "singular" in answer["failures"][0]["message"]
