@@ -1,0 +1,69 @@
+"""The application: routes and conventions around a store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+
+from fastapi import FastAPI
+from fastapi.routing import APIRoute
+
+from service import __version__, openapi, problems
+from service.database import Database
+from service.metrics import Metrics
+from service.middleware import Conventions
+from service.operations.seed import import_catalogue
+from service.queries import idempotency
+from service.routes import aliases, formulas, models, substructures, system, trees
+from service.settings import Settings
+from service.store import Store
+
+DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: metric, Christoffel symbols, forces."
+
+
+@contextmanager
+def open_store(settings: Settings) -> Iterator[Store]:
+    """The store of a server: claimed, migrated and with the shipped catalogue in it before anybody can ask.
+
+    Raises DatabaseError, MigrationError.
+    """
+    database = Database(settings.database)
+    try:
+        store = Store(settings, database, Metrics())
+        if database.is_sqlite:  # this is the only server: whatever is in flight died with the last one
+            with database.write() as connection:
+                idempotency.forget(connection, timedelta(hours=settings.limits.idempotency_hours), timedelta(0))
+        if settings.catalogue:
+            import_catalogue(store)
+        yield store
+    finally:
+        database.close()
+
+
+def create_app(store: Store) -> FastAPI:
+    """The app that serves a store."""
+    hosts = (*store.settings.allowed_hosts, store.settings.host)
+    app = bare_app(tuple(host.lower() for host in hosts), store.metrics)
+    app.state.store = store
+    return app
+
+
+def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None) -> FastAPI:
+    """Routes and conventions without a store; enough for the OpenAPI document."""
+    app = FastAPI(
+        title="substructures",
+        version=__version__,
+        description=DESCRIPTION,
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        responses=openapi.PROBLEM,
+    )
+    routers = [module.router for module in (substructures, aliases, formulas, trees, models, system)]
+    for router in routers:
+        app.include_router(router)
+    problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
+    app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
+    openapi.install(app)
+    return app

@@ -1,0 +1,24 @@
+"""Log lines on stderr, each with the id of the request."""
+
+from __future__ import annotations
+
+import logging
+
+from service.request_id import current_request_id
+
+FORMAT = "%(asctime)s %(levelname)s %(name)s [%(request_id)s] %(message)s"
+
+
+class _WithRequestId(logging.Filter):
+    def filter(self, record: logging.LogRecord) -> bool:
+        record.request_id = current_request_id()
+        return True
+
+
+def configure(level: int = logging.INFO) -> None:
+    """Set the process's logging up."""
+    handler = logging.StreamHandler()
+    handler.addFilter(_WithRequestId())
+    logging.basicConfig(level=level, format=FORMAT, handlers=[handler], force=True)
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+    logging.getLogger("httpx2").setLevel(logging.WARNING)

@@ -1,0 +1,37 @@
+"""What ``/metrics`` shows."""
+
+from __future__ import annotations
+
+from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Histogram, generate_latest
+
+CONTENT_TYPE = CONTENT_TYPE_LATEST
+
+
+class Metrics:
+    """The counters of one app, in a registry of its own."""
+
+    def __init__(self) -> None:
+        self._registry = CollectorRegistry()
+        self._requests = Counter(
+            "substructures_requests", "Requests answered", ["method", "route", "status"], registry=self._registry
+        )
+        self._seconds = Histogram(
+            "substructures_request_seconds", "Time to answer", ["method", "route"], registry=self._registry
+        )
+        self._cache = Counter(
+            "substructures_cache", "Look-ups of decoded programs", ["kind", "result"], registry=self._registry
+        )
+
+    def observe(self, method: str, route: str, status: int, seconds: float) -> None:
+        """Count a request; ``route`` is the pattern, so that the number of series stays small."""
+        known = method if method in ("GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH") else "other"
+        self._requests.labels(known, route, str(status)).inc()
+        self._seconds.labels(known, route).observe(seconds)
+
+    def cache(self, kind: str, hit: bool) -> None:
+        """Count a look-up in the cache of decoded programs."""
+        self._cache.labels(kind, "hit" if hit else "miss").inc()
+
+    def text(self) -> bytes:
+        """The Prometheus exposition."""
+        return generate_latest(self._registry)

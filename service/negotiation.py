@@ -1,0 +1,50 @@
+"""Which output format a client wants: ``?format=`` or ``Accept``."""
+
+from __future__ import annotations
+
+from service.problems import Refused, unprocessable
+from substructures.printers import FORMATS
+
+JSON = "json"
+MEDIA_TYPES = dict(FORMATS)
+FORMS = ("compact", "expanded")
+
+
+def choose_format(wanted: str | None, accept: str) -> str:
+    """The format's name. Raises Refused 422 for an unknown ``format``, 406 when nothing acceptable can be had."""
+    if wanted is not None:
+        if wanted not in MEDIA_TYPES:
+            raise unprocessable("format", f"unknown format '{wanted[:40]}'; there are {_known()}", "/query/format")
+        return wanted
+    for pattern in _by_preference(accept or "*/*"):
+        for name, media in MEDIA_TYPES.items():
+            if _matches(pattern, media.partition(";")[0]):
+                return name
+    raise Refused(406, "not-acceptable", f"none of these formats is acceptable: {_known()}")
+
+
+def choose_form(wanted: str) -> str:
+    """``compact`` or ``expanded``. Raises Refused 422."""
+    if wanted not in FORMS:
+        raise unprocessable("form", f"unknown form '{wanted[:40]}'; there are {', '.join(FORMS)}", "/query/form")
+    return wanted
+
+
+def _known() -> str:
+    return ", ".join(f"{name} ({media})" for name, media in MEDIA_TYPES.items())
+
+
+def _by_preference(accept: str) -> list[str]:
+    weighted = []
+    for item in accept.split(","):
+        pattern, *parameters = (field.strip().lower() for field in item.split(";"))
+        quality = next((p[2:] for p in parameters if p.startswith("q=")), "1")
+        try:
+            weighted.append((-float(quality), pattern))
+        except ValueError:
+            continue
+    return [pattern for weight, pattern in sorted(weighted, key=lambda pair: pair[0]) if weight < 0]
+
+
+def _matches(pattern: str, media: str) -> bool:
+    return pattern in ("*/*", media) or (pattern.endswith("/*") and media.startswith(pattern[:-1]))

@@ -1,0 +1,141 @@
+"""``Idempotency-Key``: a POST that is sent twice acts once; the answer is kept in the transaction that acts.
+
+::
+
+    claim (own transaction) -> prepare (computes, stores nothing) -> commit + answer kept (one transaction)
+        |                          '-- fails: the claim is given up, the request may be sent again
+        |-- answered already: the same answer again
+        |-- other request under this key: 422
+        '-- in flight: 409
+"""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections.abc import Callable
+from datetime import timedelta
+from functools import cached_property
+from time import perf_counter
+from typing import Annotated
+
+import orjson
+from fastapi import Depends, Header, Request, Response
+
+from service.answers import Answer
+from service.database import Connection
+from service.operations.trees import StaleError
+from service.problems import Refused
+from service.queries import idempotency
+from service.requests import RawBody, StoreOf
+from service.store import Store
+
+Commit = Callable[[Connection], Answer]
+ATTEMPTS = 8
+
+
+class Once:
+    """Runs the work of one POST request at most once per idempotency key."""
+
+    def __init__(self, request: Request, raw: bytes, store: Store, key: str | None) -> None:
+        self.store, self.key, self._request, self._raw = store, key, request, raw
+        self.principal: str = request.state.principal
+        self._owner = secrets.token_hex(8)
+        self._started = perf_counter()
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        request = self._request
+        seen = [request.method, request.url.path, request.url.query]
+        seen += [request.headers.get(name, "") for name in ("content-type", "accept")]
+        return hashlib.sha256("\n".join(seen).encode() + b"\n" + self._raw).hexdigest()
+
+    def run(self, prepare: Callable[[], Commit]) -> Response:
+        """Prepare without writing, then commit in one transaction. Raises Refused 409, 422 or 503 (took too long)."""
+        kept = self._claim() if self.key else None
+        if kept is not None:
+            return _replayed(kept)
+        try:
+            return self._act(prepare).response()
+        except BaseException:
+            self._release()
+            raise
+
+    def _act(self, prepare: Callable[[], Commit]) -> Answer:
+        for _ in range(ATTEMPTS):
+            commit = prepare()
+            self._check_time()
+            try:
+                with self.store.database.write() as connection:
+                    answer = commit(connection)
+                    self._keep(connection, answer, answer.body)
+                return answer
+            except StaleError:
+                continue
+        raise Refused(409, "conflict", "others keep changing this resource; try again", headers={"Retry-After": "1"})
+
+    def compute(self, work: Callable[[], Answer]) -> Response:
+        """Work that stores nothing: the same request under the same key computes the same answer again."""
+        known = self._claim() if self.key else None
+        try:
+            answer = work()
+            self._check_time()
+            if known is None and self.key:
+                with self.store.database.write() as connection:
+                    self._keep(connection, answer, None)
+        except BaseException:
+            self._release()
+            raise
+        return answer.response()
+
+    def _claim(self) -> idempotency.Entry | None:
+        limits = self.store.settings.limits
+        lifetime = timedelta(hours=limits.idempotency_hours)
+        lease = timedelta(seconds=60 + 2 * limits.sync_seconds)
+        with self.store.database.write() as connection:
+            idempotency.forget(connection, lifetime, lease)
+            entry = idempotency.claim(connection, self.principal, self.key or "", self._fingerprint, self._owner)
+        if entry is None:
+            return None
+        if entry.fingerprint != self._fingerprint:
+            raise Refused(422, "idempotency-key-reused", "this Idempotency-Key belongs to another request")
+        if entry.status is None:
+            detail = "the first request with this Idempotency-Key is still being served"
+            raise Refused(409, "idempotency-in-flight", detail, headers={"Retry-After": "1"})
+        return entry
+
+    def _keep(self, connection: Connection, answer: Answer, body: bytes | None) -> None:
+        if not self.key:
+            return
+        kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), body)
+        if not idempotency.finish(connection, self.principal, self.key, self._owner, kept):
+            raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
+
+    def _release(self) -> None:
+        if self.key:
+            with self.store.database.write() as connection:
+                idempotency.release(connection, self.principal, self.key, self._owner)
+
+    def _check_time(self) -> None:
+        seconds, limit = perf_counter() - self._started, self.store.settings.limits.sync_seconds
+        if seconds > limit:
+            detail = f"this took {seconds:.1f} s; the limit of a request is {limit:g} s; nothing was stored"
+            raise Refused(503, "took-too-long", detail, limit=limit)
+
+
+def _replayed(entry: idempotency.Entry) -> Response:
+    headers = {**orjson.loads(entry.headers or "{}"), "Idempotency-Replayed": "true"}
+    return Response(entry.body, entry.status or 200, headers)
+
+
+async def once(
+    request: Request,
+    raw: RawBody,
+    store: StoreOf,
+    idempotency_key: Annotated[str | None, Header(min_length=1, max_length=255)] = None,
+) -> Once:
+    """The Once of a request."""
+    return Once(request, raw, store, idempotency_key)
+
+
+OnceOf = Annotated[Once, Depends(once)]

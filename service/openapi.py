@@ -1,0 +1,51 @@
+"""The OpenAPI 3.1 document: what FastAPI generates, with the schemas of the bodies that the service reads itself."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic.json_schema import models_json_schema
+
+from service.schemas import AliasRequest, EvaluationRequest, Problem, YankRequest
+from substructures.definition import Definition
+from substructures.tree import Instance, TreeSpec
+
+TEMPLATE = "#/components/schemas/{model}"
+PROBLEM: dict[int | str, dict[str, Any]] = {
+    "default": {
+        "description": "Problem document",
+        "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
+    }
+}
+_READ_BY_US = (Definition, TreeSpec, Instance, AliasRequest, YankRequest, EvaluationRequest, Problem)
+
+
+def document(app: FastAPI) -> dict[str, Any]:
+    """The document of an app."""
+    result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+    _, extra = models_json_schema([(model, "validation") for model in _READ_BY_US], ref_template=TEMPLATE)
+    schemas = result.setdefault("components", {}).setdefault("schemas", {})
+    schemas.update(extra["$defs"])
+    result["components"]["schemas"] = dict(sorted(schemas.items()))
+    result["components"]["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
+    result["security"] = [{}, {"key": []}]
+    return result
+
+
+def text(app: FastAPI) -> str:
+    """The document as it is committed."""
+    return json.dumps(document(app), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def install(app: FastAPI) -> None:
+    """Serve this document in place of FastAPI's."""
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = document(app)
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]

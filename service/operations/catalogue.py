@@ -1,0 +1,190 @@
+"""Submit, find, search, name and yank substructures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from service.database import Connection
+from service.paging import read_token, write_token
+from service.problems import Refused, not_found, unprocessable
+from service.queries import aliases, catalogue, content
+from service.references import ALIAS, Reference, parse_reference
+from service.store import Store
+from substructures.definition import Definition
+from substructures.documents import write_json
+from substructures.errors import TooLarge
+from substructures.part import Part, derive
+
+
+@dataclass(frozen=True, slots=True)
+class Submission:
+    """A definition ready to be stored; ``part`` is None when its content is stored already."""
+
+    definition: Definition
+    part: Part | None
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page of versions, their aliases, the counts of the whole search, and where the next page begins."""
+
+    versions: Sequence[catalogue.Version]
+    facets: Mapping[str, Mapping[str, int]]
+    next_token: str | None
+
+
+def prepare(store: Store, definition: Definition) -> Submission:
+    """Derive, verify and certify a definition unless its content is known. Raises InvalidDocument, TooLarge."""
+    with store.database.read() as connection:
+        if content.has_part(connection, definition.digest):
+            return Submission(definition, None)
+    part = derive(definition)
+    check_size("the program of this substructure", len(part.program), store)
+    store.remember_part(part)
+    return Submission(definition, part)
+
+
+def check_size(what: str, nodes: int, store: Store) -> None:
+    """Raise TooLarge when a program exceeds the limit."""
+    limit = store.settings.limits.program_nodes
+    if nodes > limit:
+        raise TooLarge(what, nodes, limit)
+
+
+def store_part(connection: Connection, part: Part) -> None:
+    """Write a part with its program and formulas; content that is there already stays as it is."""
+    definition, program = part.definition, part.program
+    content.put_program(connection, program.digest, program.to_bytes(), len(program))
+    words = (definition.name, definition.title, definition.description, *definition.tags)
+    row = {
+        "digest": definition.digest,
+        "program": program.digest,
+        "definition": definition.canonical().decode(),
+        "title": _plain(definition.title),
+        "description": _plain(definition.description),
+        "searchable": _plain("\n".join(words).lower()),
+        "dof": part.dof,
+        "joints": part.joints,
+        "tags": _json(definition.tags),
+        "coordinates": _json(part.coordinates),
+        "bodies": _json(part.bodies),
+        "ports": _json(part.ports),
+        "parameters": _json(part.parameters),
+        "operations": _json(part.operations),
+        "certificate": _json(part.certificate),
+    }
+    content.put_part(connection, row, tuple(dict.fromkeys(definition.tags)), formula_rows(part))
+
+
+def formula_rows(part: Part) -> list[content.FormulaRow]:
+    """The addressable formulas of a part."""
+    return [
+        content.FormulaRow(
+            position,
+            formula.quantity,
+            formula.body,
+            formula.coordinate,
+            _json(formula.shape),
+            formula.symmetry,
+            formula.operations,
+            formula.output,
+            _json(formula.index),
+        )
+        for position, formula in enumerate(part.formulas())
+    ]
+
+
+def _plain(text: str) -> str:
+    """Without NUL, which PostgreSQL cannot store outside of JSON's escapes."""
+    return text.replace("\0", "")
+
+
+def _json(value: Any) -> str:
+    return write_json(value).decode()
+
+
+def submit(connection: Connection, submission: Submission) -> tuple[catalogue.Version, bool]:
+    """Store a submission; the version, and whether it is new."""
+    if submission.part is not None:
+        store_part(connection, submission.part)
+    definition = submission.definition
+    number, is_new = catalogue.add_version(connection, definition.name, definition.digest)
+    return _resolved(connection, Reference(definition.name, number=number)), is_new
+
+
+def find(connection: Connection, text: str) -> catalogue.Version:
+    """The version that a reference means. Raises Refused 404."""
+    ref = parse_reference(text)
+    if ref is None:
+        raise not_found(f"'{text[:80]}' is no reference; expected name, name@3, name@alias or name@sha256:...")
+    return _resolved(connection, ref, text)
+
+
+def _resolved(connection: Connection, ref: Reference, text: str = "") -> catalogue.Version:
+    version = catalogue.resolve(connection, ref)
+    if version is None:
+        raise not_found(f"there is no substructure '{text}'", "unknown-substructure")
+    return version
+
+
+def is_pinned(text: str) -> bool:
+    """Whether a reference means the same content for ever."""
+    ref = parse_reference(text)
+    return ref is not None and ref.is_pinned
+
+
+def search(connection: Connection, wanted: catalogue.Search, size: int, token: str | None) -> Page:
+    """A page of the latest versions. Raises Refused 422 for a token of another search."""
+    column = wanted.sort.lstrip("-")
+    after = read_token(wanted, token, int if column == "dof" else str, str)
+    found = catalogue.page(connection, wanted, after, size + 1)
+    last = found[size - 1] if len(found) > size else None
+    following = write_token(wanted, getattr(last, column), last.name) if last else None
+    return Page(found[:size], catalogue.facets(connection, wanted), following)
+
+
+def set_alias(
+    connection: Connection, name: str, alias: str, version: int, if_match: str | None, principal: str
+) -> aliases.Alias:
+    """Point an alias to a version; to move an existing one, ``if_match`` has to be its ETag. Raises Refused."""
+    if not re.fullmatch(ALIAS, alias):
+        raise unprocessable(
+            "alias-name", f"an alias is a letter and up to 63 letters, digits, '-', '_': '{alias[:80]}'"
+        )
+    check_name(connection, name)
+    target = catalogue.resolve(connection, Reference(name, number=version))
+    if target is None:
+        raise unprocessable("unknown-version", f"there is no substructure '{name}@{version}'", "/version")
+    current = aliases.get_alias(connection, name, alias)
+    if current is not None and if_match is None:
+        detail = f"the alias '{alias}' exists; send its ETag in If-Match to move it"
+        raise Refused(428, "precondition-required", detail, headers={"ETag": alias_tag(current)})
+    if if_match is not None and (current is None or if_match not in ("*", alias_tag(current))):
+        raise Refused(412, "precondition-failed", f"the alias '{alias}' is not what If-Match says")
+    if current is not None and current.version == version:
+        return current
+    changed = aliases.set_alias(connection, name, alias, version, current.revision if current else 0, principal)
+    if changed is None:
+        raise Refused(412, "precondition-failed", f"the alias '{alias}' was changed meanwhile")
+    return changed
+
+
+def check_name(connection: Connection, name: str) -> None:
+    """Raise Refused 404 unless there is a substructure of this name."""
+    if catalogue.resolve(connection, Reference(name, number=1)) is None:
+        raise not_found(f"there is no substructure '{name[:80]}'", "unknown-substructure")
+
+
+def alias_tag(alias: aliases.Alias) -> str:
+    """The ETag of an alias."""
+    return f'"{alias.revision}"'
+
+
+def yank(connection: Connection, text: str, reason: str) -> catalogue.Version:
+    """Withdraw a version: it stays where it is used, and no longer is anybody's latest."""
+    version = find(connection, text)
+    catalogue.yank(connection, version.name, version.version, reason)
+    return _resolved(connection, Reference(version.name, number=version.version))

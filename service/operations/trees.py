@@ -1,0 +1,180 @@
+"""Build trees out of stored parts: create, couple, remove; every change is a new immutable revision."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from service.answers import etag
+from service.database import Connection
+from service.operations import catalogue
+from service.problems import Refused, not_found
+from service.queries import catalogue as versions
+from service.queries import content, trees
+from service.references import Reference, parse_reference
+from service.store import Store
+from substructures.documents import read_json, write_json
+from substructures.errors import Fault, InvalidDocument
+from substructures.model import Model, couple
+from substructures.part import Part, derive
+from substructures.tree import Instance, TreeSpec
+
+
+class StaleError(Exception):
+    """The tree was changed while the change was being prepared: prepare again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Revision:
+    """A coupled tree ready to be stored; ``base`` is what it changes, ``is_exact``: named by number."""
+
+    spec: TreeSpec
+    model: Model
+    parts: Mapping[str, Part]
+    base: trees.Tree | None = None
+    is_exact: bool = False
+
+
+def prepare(store: Store, data: Any) -> Revision:
+    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge."""
+    return _coupled(store, TreeSpec.read(data))
+
+
+def prepare_coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Revision:
+    """Couple one more instance onto an existing tree. Raises InvalidDocument, TooLarge, Refused 404 or 412."""
+    base, spec = _existing(store, text, if_match)
+    instances = spec.get("instances", [])
+    grown, step = {**spec, "instances": [*instances, data]}, f"/instances/{len(instances)}"
+    try:
+        return _coupled(store, TreeSpec.read(grown), base, _is_pinned(text))
+    except InvalidDocument as error:
+        raise InvalidDocument(_within(fault, step) for fault in error.faults) from None
+
+
+def prepare_removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Revision:
+    """Remove one instance that carries no other. Raises Refused 404, 409 or 412."""
+    base, spec = _existing(store, text, if_match)
+    instances = spec.get("instances", [])
+    if all(each["name"] != instance for each in instances):
+        raise not_found(f"the tree '{text}' has no instance '{instance}'", "unknown-instance")
+    carried = [each["name"] for each in instances if each.get("at", "").partition(".")[0] == instance]
+    if carried:
+        raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
+    kept = [each for each in instances if each["name"] != instance]
+    return _coupled(store, TreeSpec.read({**spec, "instances": kept}), base, _is_pinned(text))
+
+
+def _within(fault: Fault, step: str) -> Fault:
+    """The fault as seen from the instance document alone."""
+    return Fault(fault.pointer.removeprefix(step), fault.code, fault.message)
+
+
+def _is_pinned(text: str) -> bool:
+    ref = parse_reference(text)
+    return ref is not None and ref.is_pinned
+
+
+def tree_tag(tree: trees.Tree) -> str:
+    """The ETag of a tree."""
+    return etag(tree.digest, str(tree.revision))
+
+
+def _existing(store: Store, text: str, if_match: str | None) -> tuple[trees.Tree, dict[str, Any]]:
+    with store.database.read() as connection:
+        base = find(connection, text)
+    if if_match not in (None, "*", tree_tag(base)):
+        raise Refused(412, "precondition-failed", f"the tree '{text}' is not what If-Match says")
+    return base, read_json(base.spec.encode())
+
+
+def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_exact: bool = False) -> Revision:
+    with store.database.read() as connection:
+        found = [_part(store, connection, index, instance) for index, instance in enumerate(spec.instances)]
+    parts = {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
+    pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
+    spec = spec.model_copy(update={"instances": pinned})
+    model = couple(spec, parts)
+    catalogue.check_size("the program of this tree", len(model.program), store)
+    store.remember_model(spec.digest, model)
+    return Revision(spec, model, parts, base, is_exact)
+
+
+def _part(store: Store, connection: Connection, index: int, instance: Instance) -> Part:
+    if instance.definition is not None:
+        return store.part(connection, instance.definition.digest) or _derived(store, index, instance)
+    pointer = f"/instances/{index}/substructure"
+    ref = parse_reference(instance.substructure or "")
+    version = versions.resolve(connection, ref) if ref is not None else None
+    part = store.part(connection, version.digest) if version is not None else None
+    if part is None:
+        message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
+        raise InvalidDocument.at(pointer, "unknown-substructure", message)
+    return part
+
+
+def _derived(store: Store, index: int, instance: Instance) -> Part:
+    if instance.definition is None:
+        raise ValueError("only an inline definition can be derived")
+    step = f"/instances/{index}/definition"
+    try:
+        part = derive(instance.definition)
+    except InvalidDocument as error:
+        raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
+    catalogue.check_size(f"the program of instance '{instance.name}'", len(part.program), store)
+    store.remember_part(part)
+    return part
+
+
+def _pin(instance: Instance, part: Part) -> Instance:
+    if instance.definition is not None:
+        return instance
+    return instance.model_copy(update={"substructure": f"{part.definition.name}@{part.definition.digest}"})
+
+
+def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool]:
+    """Store a revision; the tree, and whether it is new (creating the same tree again is not).
+
+    Raises StaleError when the latest revision is no longer the one that was changed, unless that one was pinned.
+    """
+    spec, base = revision.spec, revision.base
+    latest = trees.lock_name(connection, spec.name)
+    if base is None and latest:
+        current = trees.resolve(connection, Reference(spec.name))
+        if current is not None and current.digest == spec.digest:
+            return current, False
+    if base is not None and not revision.is_exact and latest != base.revision:
+        raise StaleError(f"'{spec.name}' was changed meanwhile")
+    _write(connection, revision, latest + 1)
+    return find(connection, f"{spec.name}@{latest + 1}"), True
+
+
+def _write(connection: Connection, revision: Revision, number: int) -> None:
+    spec, program = revision.spec, revision.model.program
+    for instance in spec.instances:
+        if instance.definition is not None:
+            catalogue.store_part(connection, revision.parts[instance.name])
+    content.put_program(connection, program.digest, program.to_bytes(), len(program))
+    given = read_json(spec.canonical())
+    shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
+    row = {
+        "name": spec.name,
+        "revision": number,
+        "digest": spec.digest,
+        "spec": spec.canonical().decode(),
+        "program": program.digest,
+        "dof": len(revision.model.coordinates),
+        "summary": write_json({**revision.model.summary(), **shown}).decode(),
+        "based_on": revision.base.revision if revision.base else None,
+    }
+    digests = {name: part.definition.digest for name, part in revision.parts.items()}
+    trees.add_revision(connection, row, digests)
+
+
+def find(connection: Connection, text: str) -> trees.Tree:
+    """The revision that a reference means. Raises Refused 404."""
+    ref = parse_reference(text)
+    tree = None if ref is None else trees.resolve(connection, ref)
+    if tree is None:
+        raise not_found(f"there is no tree '{text[:160]}'", "unknown-tree")
+    return tree

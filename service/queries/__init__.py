@@ -1,0 +1,1 @@
+"""All SQL. Functions take a connection inside a transaction that ``service.database`` has begun; none commits."""

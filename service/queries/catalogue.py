@@ -1,0 +1,155 @@
+"""Versions of substructures: allocate, resolve, search, yank."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Select, and_, func, insert, or_, select, update
+
+from service.queries.common import insert_missing, now
+from service.references import Reference
+from service.tables import aliases, parts, substructures, tags, versions
+
+_NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason")
+_DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")
+_REPORTS = ("operations", "certificate", "program")
+_COLUMNS = [*(versions.c[name] for name in _NAMES), *(parts.c[name] for name in _DETAILS + _REPORTS)]
+_STORED = versions.join(parts, parts.c.digest == versions.c.digest)
+_SORTABLE: dict[str, ColumnElement[Any]] = {
+    "name": versions.c.name,
+    "dof": parts.c.dof,
+    "created": versions.c.created,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Version:
+    """A version with what depends on its content; JSON columns as stored text."""
+
+    name: str
+    version: int
+    digest: str
+    created: str
+    yanked: str | None
+    yank_reason: str | None
+    title: str
+    description: str
+    tags: str
+    dof: int
+    joints: str
+    coordinates: str
+    bodies: str
+    ports: str
+    parameters: str
+    operations: str
+    certificate: str
+    program: str
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """Which versions to list. All conditions must hold; ``sort`` is a name of ``SORTS``."""
+
+    words: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
+    dof_min: int | None = None
+    dof_max: int | None = None
+    joints: str | None = None
+    sort: str = "name"
+
+
+SORTS = tuple(sign + name for name in _SORTABLE for sign in ("", "-"))
+
+
+def add_version(connection: Connection, name: str, digest: str) -> tuple[int, bool]:
+    """The number of the version with this content, and whether it is new. Allocates under a lock on the name."""
+    insert_missing(connection, substructures, [{"name": name, "latest": None}])
+    connection.execute(select(substructures).where(substructures.c.name == name).with_for_update())
+    known = select(versions.c.version).where(versions.c.digest == digest)
+    number = connection.execute(known).scalar()
+    if number is not None:
+        return number, False
+    highest = select(func.coalesce(func.max(versions.c.version), 0)).where(versions.c.name == name)
+    number = connection.execute(highest).scalar_one() + 1
+    connection.execute(insert(versions).values(name=name, version=number, digest=digest, created=now()))
+    _set_latest(connection, name)
+    return number, True
+
+
+def _set_latest(connection: Connection, name: str) -> None:
+    highest = select(func.max(versions.c.version)).where(versions.c.name == name, versions.c.yanked.is_(None))
+    connection.execute(
+        update(substructures).where(substructures.c.name == name).values(latest=highest.scalar_subquery())
+    )
+
+
+def yank(connection: Connection, name: str, version: int, reason: str) -> None:
+    """Mark a version as withdrawn; the first mark stays."""
+    chosen = and_(versions.c.name == name, versions.c.version == version, versions.c.yanked.is_(None))
+    connection.execute(update(versions).where(chosen).values(yanked=now(), yank_reason=reason))
+    _set_latest(connection, name)
+
+
+def resolve(connection: Connection, ref: Reference) -> Version | None:
+    """The version that a reference means; None when there is none (or, for a bare name, all are yanked)."""
+    query = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == ref.name)
+    if ref.digest is not None:
+        query = query.where(versions.c.digest == ref.digest)
+    elif ref.number is not None:
+        query = query.where(versions.c.version == ref.number)
+    elif ref.alias is not None:
+        query = query.join(aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version))
+        query = query.where(aliases.c.alias == ref.alias)
+    else:
+        query = query.join(substructures, _is_latest())
+    row = connection.execute(query).first()
+    return None if row is None else Version(*row)
+
+
+def page(connection: Connection, search: Search, after: tuple[Any, ...] | None, size: int) -> list[Version]:
+    """Up to ``size`` latest versions that follow the position ``after`` (sort value, name) in the order of ``sort``."""
+    column = _SORTABLE[search.sort.lstrip("-")]
+    descending = search.sort.startswith("-")
+    query = _matching(select(*_COLUMNS), search)
+    if after is not None:
+        value, name = after
+        beyond = column < value if descending else column > value
+        query = query.where(or_(beyond, and_(column == value, versions.c.name > name)))
+    query = query.order_by(column.desc() if descending else column, versions.c.name).limit(size)
+    return [Version(*row) for row in connection.execute(query)]
+
+
+def facets(connection: Connection, search: Search) -> dict[str, dict[str, int]]:
+    """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
+    return {
+        "tags": _counted(connection, _matching(select(tags.c.tag, func.count()), search, join_tags=True)),
+        "joints": _counted(connection, _matching(select(parts.c.joints, func.count()), search)),
+        "dof": _counted(connection, _matching(select(parts.c.dof, func.count()), search)),
+    }
+
+
+def _counted(connection: Connection, query: Select[Any]) -> dict[str, int]:
+    value = query.selected_columns[0]
+    rows = connection.execute(query.group_by(value).order_by(value))
+    return {str(row[0]): row[1] for row in rows}
+
+
+def _is_latest() -> ColumnElement[bool]:
+    return and_(substructures.c.name == versions.c.name, substructures.c.latest == versions.c.version)
+
+
+def _matching(query: Select[Any], search: Search, join_tags: bool = False) -> Select[Any]:
+    source = _STORED.join(substructures, _is_latest())
+    query = query.select_from(source.join(tags, tags.c.part == parts.c.digest) if join_tags else source)
+    for word in search.words:
+        query = query.where(parts.c.searchable.contains(word.lower(), autoescape=True))
+    for tag in search.tags:
+        query = query.where(parts.c.digest.in_(select(tags.c.part).where(tags.c.tag == tag)))
+    if search.dof_min is not None:
+        query = query.where(parts.c.dof >= search.dof_min)
+    if search.dof_max is not None:
+        query = query.where(parts.c.dof <= search.dof_max)
+    if search.joints is not None:
+        query = query.where(parts.c.joints == search.joints)
+    return query

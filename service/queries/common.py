@@ -1,0 +1,26 @@
+"""What the query modules share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from sqlalchemy import Connection, Table
+from sqlalchemy.dialects import postgresql, sqlite
+
+_INSERT: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
+
+
+def now(shift: timedelta = timedelta()) -> str:
+    """The time in UTC, shifted, in the one format of the store; sorts as text."""
+    return (datetime.now(UTC) + shift).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
+def insert_missing(connection: Connection, table: Table, rows: Sequence[Mapping[str, Any]]) -> int:
+    """Insert the rows whose key is not there yet; return how many were new."""
+    if not rows:
+        return 0
+    statement = _INSERT[connection.dialect.name](table).on_conflict_do_nothing()
+    counted = {"preserve_rowcount": True}  # otherwise PostgreSQL's driver does not say
+    return sum(connection.execute(statement, row, execution_options=counted).rowcount for row in rows)

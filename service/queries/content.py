@@ -1,0 +1,101 @@
+"""Content by digest: programs, parts and their formulas. Immutable; inserting twice changes nothing."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import Connection, insert, select
+
+from service.queries.common import insert_missing, now
+from service.tables import formulas, parts, programs, tags
+
+
+@dataclass(frozen=True, slots=True)
+class StoredPart:
+    """What is needed to decode a part: definition and certificate are JSON, the program canonical bytes."""
+
+    definition: bytes
+    program: bytes
+    certificate: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class FormulaRow:
+    """One stored formula; ``shape`` and ``entry`` (its leading index within the output) are JSON."""
+
+    position: int
+    quantity: str
+    body: str | None
+    coordinate: str | None
+    shape: str
+    symmetry: str
+    operations: int
+    output: str
+    entry: str
+
+
+def put_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
+    """Store a program's canonical bytes, compressed."""
+    row = {"digest": digest, "content": zlib.compress(content, 6), "nodes": nodes, "created": now()}
+    insert_missing(connection, programs, [row])
+
+
+def get_program(connection: Connection, digest: str) -> bytes | None:
+    """A program's canonical bytes."""
+    content = connection.execute(select(programs.c.content).where(programs.c.digest == digest)).scalar()
+    return None if content is None else zlib.decompress(content)
+
+
+def put_part(
+    connection: Connection, row: Mapping[str, Any], tag_names: Sequence[str], formula_rows: Sequence[FormulaRow]
+) -> None:
+    """Store a part whose program is stored already, with its tags and formulas, unless it is there."""
+    if not insert_missing(connection, parts, [{**row, "created": now()}]):
+        return
+    digest = row["digest"]
+    insert_missing(connection, tags, [{"part": digest, "tag": tag} for tag in tag_names])
+    if formula_rows:
+        names = FormulaRow.__slots__
+        values = [{"part": digest, **{name: getattr(formula, name) for name in names}} for formula in formula_rows]
+        connection.execute(insert(formulas), values)
+
+
+def has_part(connection: Connection, digest: str) -> bool:
+    """Whether a part is stored."""
+    return connection.execute(select(parts.c.digest).where(parts.c.digest == digest)).first() is not None
+
+
+def get_part(connection: Connection, digest: str) -> StoredPart | None:
+    """A part, ready to be decoded."""
+    columns = select(parts.c.definition, programs.c.content, parts.c.certificate)
+    row = connection.execute(columns.join(programs).where(parts.c.digest == digest)).first()
+    if row is None:
+        return None
+    return StoredPart(row.definition.encode(), zlib.decompress(row.content), row.certificate.encode())
+
+
+def get_definition(connection: Connection, digest: str) -> bytes | None:
+    """The definition of a part as stored."""
+    text = connection.execute(select(parts.c.definition).where(parts.c.digest == digest)).scalar()
+    return None if text is None else text.encode()
+
+
+def list_formulas(
+    connection: Connection,
+    part: str,
+    quantities: Sequence[str] = (),
+    body: str | None = None,
+    coordinate: str | None = None,
+) -> list[FormulaRow]:
+    """The stored formulas of a part in their order: all, or those of these quantities, body and coordinate."""
+    wanted = {"body": body, "coordinate": coordinate}
+    query = select(*(formulas.c[name] for name in FormulaRow.__slots__)).where(formulas.c.part == part)
+    if quantities:
+        query = query.where(formulas.c.quantity.in_(quantities))
+    for name, value in wanted.items():
+        if value is not None:
+            query = query.where(formulas.c[name] == value)
+    return [FormulaRow(*row) for row in connection.execute(query.order_by(formulas.c.position))]

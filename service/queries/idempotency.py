@@ -1,0 +1,59 @@
+"""Claims on idempotency keys and the answers kept under them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import timedelta
+
+from sqlalchemy import ColumnElement, Connection, delete, select, update
+
+from service.queries.common import insert_missing, now
+from service.tables import idempotency
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute the answer again."""
+
+    fingerprint: str
+    owner: str
+    created: str
+    status: int | None
+    headers: str | None
+    body: bytes | None
+
+
+def claim(connection: Connection, principal: str, key: str, fingerprint: str, owner: str) -> Entry | None:
+    """Claim a key; None when it is ours now, otherwise what is there."""
+    row = {"principal": principal, "key": key, "fingerprint": fingerprint, "owner": owner, "created": now()}
+    if insert_missing(connection, idempotency, [row]):
+        return None
+    columns = select(*(idempotency.c[name] for name in Entry.__slots__))
+    found = connection.execute(columns.where(_is(principal, key))).first()
+    return None if found is None else Entry(*found)
+
+
+def finish(connection: Connection, principal: str, key: str, owner: str, answer: tuple[int, str, bytes | None]) -> bool:
+    """Keep the answer (status, headers, body); False when the claim is no longer ours."""
+    status, headers, body = answer
+    chosen = _is(principal, key) & (idempotency.c.owner == owner) & idempotency.c.status.is_(None)
+    return bool(
+        connection.execute(update(idempotency).where(chosen).values(status=status, headers=headers, body=body)).rowcount
+    )
+
+
+def release(connection: Connection, principal: str, key: str, owner: str) -> None:
+    """Give a claim up, so that the request can be sent again."""
+    chosen = _is(principal, key) & (idempotency.c.owner == owner) & idempotency.c.status.is_(None)
+    connection.execute(delete(idempotency).where(chosen))
+
+
+def forget(connection: Connection, answered: timedelta, in_flight: timedelta) -> None:
+    """Drop answers older than ``answered`` and claims older than ``in_flight``, whose server must have died."""
+    is_claim = idempotency.c.status.is_(None)
+    connection.execute(delete(idempotency).where(idempotency.c.created < now(-answered), ~is_claim))
+    connection.execute(delete(idempotency).where(idempotency.c.created < now(-in_flight), is_claim))
+
+
+def _is(principal: str, key: str) -> ColumnElement[bool]:
+    return (idempotency.c.principal == principal) & (idempotency.c.key == key)

@@ -1,0 +1,54 @@
+"""API keys. The secret itself is never stored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import Connection, Select, insert, select, update
+
+from service.queries.common import now
+from service.tables import api_keys
+
+
+@dataclass(frozen=True, slots=True)
+class ApiKey:
+    """A key as stored; ``scopes`` are separated by spaces."""
+
+    id: str
+    secret_hash: str
+    label: str
+    scopes: str
+    created: str
+    expires: str | None
+    revoked: str | None
+
+
+def any_key(connection: Connection) -> bool:
+    """Whether a key was ever created; expired and revoked ones count, so that a server never opens by itself."""
+    return connection.execute(select(api_keys.c.id).limit(1)).first() is not None
+
+
+def get_key(connection: Connection, identifier: str) -> ApiKey | None:
+    """One key."""
+    row = connection.execute(_all().where(api_keys.c.id == identifier)).first()
+    return None if row is None else ApiKey(*row)
+
+
+def list_keys(connection: Connection) -> list[ApiKey]:
+    """All keys, the oldest first."""
+    return [ApiKey(*row) for row in connection.execute(_all().order_by(api_keys.c.created))]
+
+
+def add_key(connection: Connection, key: ApiKey) -> None:
+    """Store a new key."""
+    connection.execute(insert(api_keys).values(**{name: getattr(key, name) for name in ApiKey.__slots__}))
+
+
+def revoke_key(connection: Connection, identifier: str) -> bool:
+    """Revoke a key; False when there is none."""
+    return bool(connection.execute(update(api_keys).where(api_keys.c.id == identifier).values(revoked=now())).rowcount)
+
+
+def _all() -> Select[Any]:
+    return select(*(api_keys.c[name] for name in ApiKey.__slots__))

@@ -1,0 +1,77 @@
+"""Revisions of trees: allocate, resolve, list."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import Connection, Select, and_, insert, select, update
+
+from service.queries.common import insert_missing, now
+from service.references import Reference
+from service.tables import tree_names, tree_parts, trees
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """A revision of a tree; ``spec`` (references pinned) and ``summary`` are JSON."""
+
+    name: str
+    revision: int
+    digest: str
+    spec: str
+    program: str
+    dof: int
+    summary: str
+    created: str
+    based_on: int | None
+
+
+def lock_name(connection: Connection, name: str) -> int:
+    """The latest revision number of a name, 0 when there is none; locks it until the transaction ends."""
+    insert_missing(connection, tree_names, [{"name": name, "latest": 0}])
+    query = select(tree_names.c.latest).where(tree_names.c.name == name).with_for_update()
+    return connection.execute(query).scalar_one()
+
+
+def add_revision(connection: Connection, row: Mapping[str, Any], parts: Mapping[str, str]) -> None:
+    """Store a new latest revision and which part every instance is; the name is locked."""
+    connection.execute(insert(trees).values(**row, created=now()))
+    latest = update(tree_names).where(tree_names.c.name == row["name"]).values(latest=row["revision"])
+    connection.execute(latest)
+    name = {"name": row["name"], "revision": row["revision"]}
+    values = [{**name, "instance": instance, "part": digest} for instance, digest in parts.items()]
+    if values:
+        connection.execute(insert(tree_parts), values)
+
+
+def resolve(connection: Connection, ref: Reference) -> Tree | None:
+    """The revision that a reference means, the latest for a bare name."""
+    query = _all().where(trees.c.name == ref.name)
+    if ref.digest is not None:
+        query = query.where(trees.c.digest == ref.digest).order_by(trees.c.revision).limit(1)
+    elif ref.number is not None:
+        query = query.where(trees.c.revision == ref.number)
+    elif ref.alias is not None:
+        return None
+    else:
+        query = query.join(tree_names, _is_latest())
+    row = connection.execute(query).first()
+    return None if row is None else Tree(*row)
+
+
+def page(connection: Connection, after: str | None, size: int) -> list[Tree]:
+    """Up to ``size`` latest revisions whose names follow ``after``."""
+    query = _all().join(tree_names, _is_latest())
+    if after is not None:
+        query = query.where(trees.c.name > after)
+    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.name).limit(size))]
+
+
+def _all() -> Select[Any]:
+    return select(*(trees.c[name] for name in Tree.__slots__))
+
+
+def _is_latest() -> Any:
+    return and_(tree_names.c.name == trees.c.name, tree_names.c.latest == trees.c.revision)

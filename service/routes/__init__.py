@@ -1,0 +1,1 @@
+"""One file a resource; an endpoint reads its request, calls operations and shapes the answer."""

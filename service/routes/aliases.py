@@ -1,0 +1,60 @@
+"""``/v1/substructures/{name}/aliases``: names for versions, with history."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Request, Response
+
+from service.answers import REVALIDATE, json_answer
+from service.operations import catalogue
+from service.problems import not_found
+from service.queries import aliases
+from service.requests import JsonBody, StoreOf, needs
+from service.routes.bodies import body_of
+from service.schemas import AliasList, AliasRequest, AliasView
+from service.views import alias_view, dump
+from substructures.definition import read_model
+
+router = APIRouter(prefix="/v1/substructures/{name}/aliases", tags=["catalogue"])
+READ, WRITE = [needs("read")], [needs("write")]
+
+
+@router.get("", response_model=AliasList, dependencies=READ)
+def list_aliases(name: str, store: StoreOf) -> Response:
+    """All aliases of a substructure."""
+    with store.database.read() as connection:
+        catalogue.check_name(connection, name)
+        rows = aliases.list_aliases(connection, name)
+        items = [alias_view(name, row, aliases.history(connection, name, row.alias)) for row in rows]
+    return json_answer(dump({"items": items})).response()
+
+
+@router.get("/{alias}", response_model=AliasView, dependencies=READ)
+def get_alias(name: str, alias: str, store: StoreOf) -> Response:
+    """An alias, with the ETag that moving it needs."""
+    with store.database.read() as connection:
+        row = aliases.get_alias(connection, name, alias)
+        if row is None:
+            raise not_found(f"there is no alias '{name}@{alias}'", "unknown-alias")
+        view = alias_view(name, row, aliases.history(connection, name, alias))
+    return json_answer(dump(view), headers={"ETag": catalogue.alias_tag(row), "Cache-Control": REVALIDATE}).response()
+
+
+@router.put("/{alias}", response_model=AliasView, dependencies=WRITE, openapi_extra=body_of("AliasRequest"))
+def put_alias(
+    name: str,
+    alias: str,
+    body: JsonBody,
+    request: Request,
+    store: StoreOf,
+    if_match: Annotated[str | None, Header()] = None,
+) -> Response:
+    """Create an alias (201) or move it (200; needs If-Match: 428 without, 412 when it was moved meanwhile)."""
+    wanted = read_model(AliasRequest, body)
+    with store.database.write() as connection:
+        principal: str = request.state.principal
+        row = catalogue.set_alias(connection, name, alias, wanted.version, if_match, principal)
+        view = alias_view(name, row, aliases.history(connection, name, alias))
+    status = 201 if row.revision == 1 and if_match is None else 200
+    return json_answer(dump(view), status, {"ETag": catalogue.alias_tag(row)}).response()

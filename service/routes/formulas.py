@@ -1,0 +1,69 @@
+"""``/v1/substructures/{ref}/formulas``: the stored formulas of a version."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.answers import Answer, etag, json_answer
+from service.negotiation import MEDIA_TYPES
+from service.operations import catalogue, models
+from service.operations.lean import lean
+from service.problems import not_found
+from service.queries import content
+from service.requests import StoreOf, conditional, needs
+from service.routes.bodies import printed
+from service.routes.style import StyleOf
+from service.schemas import FormulaIndex
+from service.views import dump, formulas_view
+
+router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
+READ = [needs("read")]
+INERTIA = "own: as the part stands alone; symbols: as stored, with the inertia of what may be mounted left open"
+Filter = Annotated[str | None, Query(max_length=200)]
+
+
+@router.get("", response_model=FormulaIndex, dependencies=READ)
+def list_formulas(ref: str, request: Request, store: StoreOf) -> Response:
+    """The index of the stored formulas."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        rows = content.list_formulas(connection, version.digest)
+    tag = etag(version.digest, "formulas")
+    return conditional(request, tag, catalogue.is_pinned(ref), lambda: json_answer(dump(formulas_view(version, rows))))
+
+
+@router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
+def get_formula(
+    ref: str,
+    quantity: str,
+    request: Request,
+    store: StoreOf,
+    style: StyleOf,
+    body: Filter = None,
+    coordinate: Filter = None,
+    component: Annotated[str | None, Query(max_length=200, description="index from 0, e.g. 2 or 0,1")] = None,
+    inertia: Annotated[Literal["own", "symbols"], Query(description=INERTIA)] = "own",
+) -> Response:
+    """The formulas of one quantity, all or those of one body, coordinate and component."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        rows = content.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
+        if not rows:
+            raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
+        part = store.part(connection, version.digest)
+    if part is None:
+        raise LookupError(f"the part {version.digest} is missing")
+    tag = etag(version.digest, quantity, str((body, coordinate, component, inertia)), *style.identity)
+
+    def make() -> Answer:
+        if body is coordinate is component is None:
+            chosen = models.part_quantity(part.program, rows)
+        else:
+            chosen = models.part_entries(part.program, rows, component)
+        if inertia == "own":
+            chosen = lean(part, chosen)
+        return models.printed(models.bound(chosen, part.parameters, style.bind), style, part.coordinates)
+
+    return conditional(request, tag, catalogue.is_pinned(ref), make)

@@ -1,0 +1,23 @@
+"""How formulas are asked for: ``format``, ``form``, ``bind``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Depends, Header, Query
+
+from service.negotiation import choose_form, choose_format
+from service.operations.models import Style
+
+
+async def style_of(
+    format: Annotated[str | None, Query(max_length=40, description="wins over Accept")] = None,  # noqa: A002
+    form: Annotated[str, Query(description="compact (shared subexpressions) or expanded")] = "compact",
+    bind: Annotated[str, Query(max_length=100_000, description="name:value,... or defaults")] = "",
+    accept: Annotated[str, Header()] = "*/*",
+) -> Style:
+    """The style that a request asks for."""
+    return Style(choose_format(format, accept), choose_form(form), bind)
+
+
+StyleOf = Annotated[Style, Depends(style_of)]

@@ -1,0 +1,105 @@
+"""``/v1/substructures``: submit, find, search and withdraw versions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.answers import Answer, etag, json_answer
+from service.database import Connection
+from service.once import OnceOf
+from service.operations import catalogue
+from service.paging import limited, link_header, next_link
+from service.problems import unprocessable
+from service.queries import aliases, content
+from service.queries.catalogue import SORTS, Search, Version
+from service.requests import JsonBody, OptionalJsonBody, StoreOf, conditional, needs
+from service.routes.bodies import body_of, content_of
+from service.schemas import VersionPage, VersionView, YankRequest
+from service.views import dump, page_view, version_path, version_view
+from substructures.definition import Definition, read_model
+
+router = APIRouter(prefix="/v1/substructures", tags=["catalogue"])
+READ, WRITE = [needs("read")], [needs("write")]
+DEFINITION: dict[str, Any] = body_of("Definition")
+
+
+def names_of(connection: Connection, version: Version) -> list[str]:
+    """The aliases that point to a version."""
+    return aliases.aliases_of(connection, (version.name, version.version))[0]
+
+
+@router.post("", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION)
+def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+    """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
+    definition = Definition.read(body)
+
+    def prepare() -> Any:
+        submission = catalogue.prepare(store, definition)
+
+        def commit(connection: Connection) -> Answer:
+            version, is_new = catalogue.submit(connection, submission)
+            view = version_view(version, names_of(connection, version))
+            return json_answer(dump(view), 201 if is_new else 200, {"Location": version_path(version)})
+
+        return commit
+
+    return once.run(prepare)
+
+
+@router.get("", response_model=VersionPage, dependencies=READ)
+def search(
+    request: Request,
+    store: StoreOf,
+    q: Annotated[str, Query(max_length=200, description="words in name, title, description and tags")] = "",
+    tag: Annotated[list[str] | None, Query(max_length=10)] = None,
+    dof_min: Annotated[int | None, Query(ge=0, le=10**6)] = None,
+    dof_max: Annotated[int | None, Query(ge=0, le=10**6)] = None,
+    joints: Annotated[str | None, Query(pattern="^[RP]*$", max_length=1000)] = None,
+    sort: Annotated[str, Query(description=f"one of {', '.join(SORTS)}")] = "name",
+    page_size: Annotated[int, Query(ge=1)] = 50,
+    page_token: Annotated[str | None, Query(max_length=2000)] = None,
+) -> Response:
+    """A page of the latest versions, with facets."""
+    if sort not in SORTS:
+        raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {', '.join(SORTS)}", "/query/sort")
+    wanted = Search(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, sort)
+    size = limited(page_size, store.settings.limits)
+    with store.database.read() as connection:
+        page = catalogue.search(connection, wanted, size, page_token)
+        names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.versions))
+    link = next_link(request, page.next_token)
+    return json_answer(dump(page_view(page, names, link)), headers=link_header(link)).response()
+
+
+@router.get("/{ref}", response_model=VersionView, dependencies=READ)
+def get_version(ref: str, request: Request, store: StoreOf) -> Response:
+    """One version. Aliases and withdrawal may change, so clients revalidate by ETag."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        names = names_of(connection, version)
+    tag = etag(version.digest, str(version.version), str(version.yanked), *names)
+    return conditional(request, tag, False, lambda: json_answer(dump(version_view(version, names))))
+
+
+@router.get("/{ref}/definition", dependencies=READ, responses=content_of("Definition"))
+def get_definition(ref: str, request: Request, store: StoreOf) -> Response:
+    """The definition as stored."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        definition = content.get_definition(connection, version.digest) or b""
+    tag = etag(version.digest, "definition")
+    return conditional(request, tag, catalogue.is_pinned(ref), lambda: json_answer(definition))
+
+
+@router.post("/{ref}/yank", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("YankRequest", False))
+def yank(ref: str, body: OptionalJsonBody, once: OnceOf) -> Response:
+    """Withdraw a version: it stays usable by number and digest but is no longer offered as the latest."""
+    wanted = read_model(YankRequest, body)
+
+    def commit(connection: Connection) -> Answer:
+        version = catalogue.yank(connection, ref, wanted.reason)
+        return json_answer(dump(version_view(version, names_of(connection, version))))
+
+    return once.run(lambda: commit)

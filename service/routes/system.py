@@ -1,0 +1,44 @@
+"""Health, metrics and limits."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+
+from service.answers import Answer, json_answer
+from service.metrics import CONTENT_TYPE
+from service.requests import StoreOf, needs
+from service.schemas import Health, LimitsView
+from service.views import dump
+from substructures.documents import MAX_DEPTH, MAX_DIGITS
+from substructures.expr.graph import MAX_EXPONENT
+
+router = APIRouter(tags=["system"])
+READ = [needs("read")]
+FORMAT_LIMITS = {"number_digits": MAX_DIGITS, "exponent": MAX_EXPONENT, "nesting": MAX_DEPTH}
+OK = json_answer(b'{"status":"ok"}', headers={"Cache-Control": "no-store"})
+
+
+@router.get("/livez", response_model=Health)
+async def livez() -> Response:
+    """The process answers; the database is not touched."""
+    return OK.response()
+
+
+@router.get("/readyz", response_model=Health)
+def readyz(store: StoreOf) -> Response:
+    """The database answers; the catalogue was imported before the server began to listen."""
+    store.database.ping()
+    return OK.response()
+
+
+@router.get("/metrics", dependencies=READ, response_class=Response)
+def metrics(store: StoreOf) -> Response:
+    """Metrics for Prometheus."""
+    return Answer(200, store.metrics.text(), {"Content-Type": CONTENT_TYPE}).response()
+
+
+@router.get("/v1/limits", response_model=LimitsView, dependencies=READ)
+def limits(store: StoreOf) -> Response:
+    """Every limit with its value."""
+    shown = store.settings.limits.model_dump() | FORMAT_LIMITS
+    return json_answer(dump(shown)).response()

@@ -1,0 +1,91 @@
+"""``/v1/trees``: couple stored substructures; every change is a new revision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Query, Request, Response
+
+from service.answers import Answer, json_answer
+from service.database import Connection
+from service.once import Commit, OnceOf
+from service.operations import trees
+from service.paging import limited, link_header, next_link, read_token, write_token
+from service.queries.trees import page
+from service.references import parse_reference
+from service.requests import JsonBody, StoreOf, conditional, needs
+from service.routes.bodies import body_of
+from service.schemas import TreePage, TreeView
+from service.views import dump, tree_item, tree_path, tree_view
+
+router = APIRouter(prefix="/v1/trees", tags=["trees"])
+READ, WRITE = [needs("read")], [needs("write")]
+IfMatch = Annotated[str | None, Header(description="ETag of the tree that is to be changed")]
+
+
+def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
+    """What ``Once`` runs: prepare a revision, then store it and answer it."""
+
+    def prepared() -> Commit:
+        ready = prepare()
+
+        def commit(connection: Connection) -> Answer:
+            tree, is_new = trees.commit(connection, ready)
+            return json_answer(tree_view(tree), 201 if is_new else 200, {"Location": tree_path(tree)})
+
+        return commit
+
+    return prepared
+
+
+@router.post("", status_code=201, response_model=TreeView, dependencies=WRITE, openapi_extra=body_of("TreeSpec"))
+def create(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+    """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
+    return once.run(revision(lambda: trees.prepare(store, body)))
+
+
+@router.get("", response_model=TreePage, dependencies=READ)
+def list_trees(
+    request: Request,
+    store: StoreOf,
+    page_size: Annotated[int, Query(ge=1)] = 50,
+    page_token: Annotated[str | None, Query(max_length=2000)] = None,
+) -> Response:
+    """A page of trees, the latest revision of each."""
+    size = limited(page_size, store.settings.limits)
+    after = read_token("trees", page_token, str)
+    with store.database.read() as connection:
+        found = page(connection, after[0] if after else None, size + 1)
+    token = write_token("trees", found[size - 1].name) if len(found) > size else None
+    link = next_link(request, token)
+    view = {"items": [tree_item(t) for t in found[:size]], "next_page_token": token, "links": {"next": link}}
+    return json_answer(dump(view), headers=link_header(link)).response()
+
+
+@router.get("/{ref}", response_model=TreeView, dependencies=READ)
+def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
+    """A revision of a tree, the latest for a bare name."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+    return conditional(request, trees.tree_tag(tree), is_pinned(ref), lambda: json_answer(tree_view(tree)))
+
+
+def is_pinned(ref: str) -> bool:
+    """Whether the reference means the same revision for ever."""
+    parsed = parse_reference(ref)
+    return parsed is not None and parsed.is_pinned
+
+
+@router.post(
+    "/{ref}/couplings", status_code=201, response_model=TreeView, dependencies=WRITE, openapi_extra=body_of("Instance")
+)
+def add_coupling(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
+    """Couple one more instance onto the tree: a new revision."""
+    return once.run(revision(lambda: trees.prepare_coupling(store, ref, body, if_match)))
+
+
+@router.delete("/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE)
+def remove_coupling(ref: str, instance: str, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
+    """Remove an instance that carries no other: a new revision."""
+    return once.run(revision(lambda: trees.prepare_removal(store, ref, instance, if_match)))

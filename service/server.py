@@ -1,0 +1,70 @@
+"""Run the service on a socket: in the foreground, or in a thread for the demo."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import uvicorn
+
+from service.app import create_app, open_store
+from service.queries.keys import any_key
+from service.settings import Settings, SettingsError
+from service.store import Store
+
+
+def serve(settings: Settings) -> None:
+    """Serve until interrupted. Raises SettingsError rather than to listen beyond loopback without API keys."""
+    with open_store(settings) as store:
+        check_exposure(store)
+        signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
+        _server(store).run()
+
+
+def _stop(_signal: int, _frame: object) -> None:
+    raise SystemExit(0)
+
+
+def check_exposure(store: Store) -> None:
+    """Raise SettingsError when others could reach a server that has no keys."""
+    with store.database.read() as connection:
+        if store.settings.is_loopback or any_key(connection):
+            return
+    raise SettingsError(
+        f"refusing to listen on {store.settings.host} without API keys; create one with"
+        " 'substructures key create --scope admin' or listen on 127.0.0.1"
+    )
+
+
+@contextmanager
+def background(settings: Settings) -> Iterator[str]:
+    """A server in a thread on a free port of loopback; gives its address."""
+    with open_store(settings) as store, socket.create_server(("127.0.0.1", 0)) as listener:
+        server = _server(store)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+        finally:
+            server.should_exit = True
+            thread.join(timeout=10)
+
+
+def _server(store: Store) -> uvicorn.Server:
+    settings = store.settings
+    return uvicorn.Server(
+        uvicorn.Config(
+            create_app(store),
+            host=settings.host,
+            port=settings.port,
+            log_config=None,
+            access_log=False,  # service.middleware writes a line with the request id
+            server_header=False,
+            lifespan="off",
+            ws="none",
+            timeout_graceful_shutdown=15,
+        )
+    )

@@ -1,0 +1,79 @@
+"""Settings of the server, all from the environment (``SUBSTRUCTURES_...``) or the command line, and all its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+PREFIX = "SUBSTRUCTURES_"
+LIMIT_PREFIX = "LIMIT_"
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+
+class SettingsError(Exception):
+    """A setting that cannot be used; the message names it."""
+
+
+class Limits(BaseModel):
+    """The limits of the service. Set one with ``SUBSTRUCTURES_LIMIT_<NAME>``; ``GET /v1/limits`` shows all.
+
+    What belongs to the format of documents itself (digits of numbers, exponents, nesting) is fixed by the science
+    package, so that a definition accepted by one server is accepted by all.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    json_bytes: int = Field(2 * 2**20, gt=0, description="largest JSON request body, bytes")
+    binary_bytes: int = Field(64 * 2**20, gt=0, description="largest binary request or response body, bytes")
+    program_nodes: int = Field(100_000, gt=0, description="most operations of a derived or coupled program")
+    sync_seconds: float = Field(10.0, gt=0, description="longest time a request may compute, seconds")
+    states: int = Field(1_000_000, gt=0, description="most states of one evaluation")
+    evaluation_operations: int = Field(10**8, gt=0, description="most states times operations of one evaluation")
+    page_size: int = Field(1000, gt=0, description="most items of a page")
+    idempotency_hours: float = Field(24.0, gt=0, description="how long an Idempotency-Key is remembered, hours")
+
+
+class Settings(BaseModel):
+    """How one server runs."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    database: str = Field("sqlite:///substructures.db", description="SQLAlchemy URL; SQLite or PostgreSQL")
+    host: str = Field("127.0.0.1", description="address to listen on")
+    port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
+    allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
+    catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
+    cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
+    limits: Limits = Limits()
+
+    @property
+    def is_loopback(self) -> bool:
+        """Whether only this machine can reach the address listened on."""
+        return self.host in LOOPBACK
+
+
+def from_environment(environment: Mapping[str, str], **overrides: object) -> Settings:
+    """Settings from ``SUBSTRUCTURES_*`` variables; ``overrides`` that are not None win.
+
+    Raises SettingsError naming the variable, also for one that no setting has (a typing error would go unnoticed).
+    """
+    given = {name[len(PREFIX) :].lower(): text for name, text in environment.items() if name.startswith(PREFIX)}
+    prefix = LIMIT_PREFIX.lower()
+    values: dict[str, object] = {name: text for name, text in given.items() if not name.startswith(prefix)}
+    if "allowed_hosts" in given:
+        values["allowed_hosts"] = tuple(host.strip() for host in given["allowed_hosts"].split(",") if host.strip())
+    values["limits"] = {name[len(prefix) :]: text for name, text in given.items() if name.startswith(prefix)}
+    values.update({name: value for name, value in overrides.items() if value is not None})
+    try:
+        return Settings.model_validate(values)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise SettingsError(f"{_variable(first['loc'])}: {first['msg']}") from None
+
+
+def _variable(location: tuple[int | str, ...]) -> str:
+    parts = [str(part) for part in location]
+    if parts[0] == "limits":
+        parts[0] = LIMIT_PREFIX.rstrip("_")
+    return PREFIX + "_".join(parts[:2] if parts[0] == LIMIT_PREFIX.rstrip("_") else parts[:1]).upper()

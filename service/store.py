@@ -1,0 +1,53 @@
+"""The database with a cache of decoded parts and models in front."""
+
+from __future__ import annotations
+
+from service.cache import Cache
+from service.database import Connection, Database
+from service.metrics import Metrics
+from service.queries import content
+from service.queries.trees import Tree
+from service.settings import Settings
+from substructures.definition import Definition
+from substructures.documents import read_json
+from substructures.model import Model
+from substructures.part import Part
+
+
+class Store:
+    """What every operation works on. Content never changes, so a cached value is never out of date."""
+
+    def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
+        self.settings, self.database, self.metrics = settings, database, metrics
+        self._parts: Cache[Part] = Cache(settings.cache_nodes // 2, lambda part: len(part.program))
+        self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
+
+    def part(self, connection: Connection, digest: str) -> Part | None:
+        """The part with this digest, decoded; None when it is not stored."""
+        part = self._parts.get(digest)
+        self.metrics.cache("part", part is not None)
+        if part is None and (stored := content.get_part(connection, digest)) is not None:
+            definition = Definition.read(read_json(stored.definition))
+            part = Part.load(definition, stored.program, read_json(stored.certificate))
+            self._parts.put(digest, part)
+        return part
+
+    def remember_part(self, part: Part) -> None:
+        """Keep a part that was just derived."""
+        self._parts.put(part.definition.digest, part)
+
+    def model(self, connection: Connection, tree: Tree) -> Model:
+        """The model of a revision, decoded."""
+        model = self._models.get(tree.digest)
+        self.metrics.cache("model", model is not None)
+        if model is None:
+            program = content.get_program(connection, tree.program)
+            if program is None:
+                raise LookupError(f"the program of tree {tree.name}@{tree.revision} is missing")
+            model = Model.load(read_json(tree.summary.encode()), program)
+            self._models.put(tree.digest, model)
+        return model
+
+    def remember_model(self, digest: str, model: Model) -> None:
+        """Keep a model that was just coupled."""
+        self._models.put(digest, model)

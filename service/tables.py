@@ -1,0 +1,203 @@
+"""Tables of the store (SQLAlchemy Core).
+
+Parts and programs are content: immutable, named by their sha256, written at most once. Versions, tree revisions and
+aliases are names that point to content. JSON and times are TEXT, because STRICT tables and exact decimals bear
+neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T12:00:00.000000Z`` and sort as text.
+
+::
+
+    substructures --< versions >-- parts --- programs
+          |                          | \\--< formulas
+          '--< aliases --< history   '--< tags
+    tree_names --< trees --< tree_parts >-- parts
+                     '------------------- programs
+"""
+
+from __future__ import annotations
+
+from sqlalchemy import (
+    Column,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    Table,
+    Text,
+    UniqueConstraint,
+)
+
+metadata = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+
+def _text(name: str, *arguments: ForeignKey, primary_key: bool = False, nullable: bool = False) -> Column[str]:
+    return Column(name, Text, *arguments, primary_key=primary_key, nullable=nullable)
+
+
+def _number(name: str, primary_key: bool = False, nullable: bool = False) -> Column[int]:
+    return Column(name, Integer, primary_key=primary_key, autoincrement=False, nullable=nullable)
+
+
+programs = Table(
+    "programs",
+    metadata,
+    _text("digest", primary_key=True),
+    Column("content", LargeBinary, nullable=False),  # canonical bytes, zlib-compressed
+    _number("nodes"),
+    _text("created"),
+)
+
+parts = Table(  # a derived definition: everything that depends on its content alone
+    "parts",
+    metadata,
+    _text("digest", primary_key=True),
+    _text("program", ForeignKey("programs.digest")),
+    _text("definition"),
+    _text("title"),
+    _text("description"),
+    _text("tags"),
+    _text("searchable"),  # name, title, description and tags in lower case
+    _number("dof"),
+    _text("joints"),
+    _text("coordinates"),
+    _text("bodies"),
+    _text("ports"),
+    _text("parameters"),
+    _text("operations"),
+    _text("certificate"),
+    _text("created"),
+)
+
+tags = Table(
+    "tags",
+    metadata,
+    _text("part", ForeignKey("parts.digest"), primary_key=True),
+    _text("tag", primary_key=True),
+)
+
+formulas = Table(  # one row for every stored formula of a part
+    "formulas",
+    metadata,
+    _text("part", ForeignKey("parts.digest"), primary_key=True),
+    _number("position", primary_key=True),
+    _text("quantity"),
+    _text("body", nullable=True),
+    _text("coordinate", nullable=True),
+    _text("shape"),
+    _text("symmetry"),
+    _number("operations"),
+    _text("output"),
+    _text("entry"),  # leading index of the formula within the output, JSON
+    Index(None, "part", "quantity", "body", "coordinate"),
+)
+
+substructures = Table(  # one row a name; locked while a version number is allocated
+    "substructures",
+    metadata,
+    _text("name", primary_key=True),
+    _number("latest", nullable=True),  # highest version that is not yanked
+)
+
+versions = Table(
+    "versions",
+    metadata,
+    _text("name", ForeignKey("substructures.name"), primary_key=True),
+    _number("version", primary_key=True),
+    _text("digest", ForeignKey("parts.digest")),
+    _text("created"),
+    _text("yanked", nullable=True),
+    _text("yank_reason", nullable=True),
+    UniqueConstraint("digest"),
+    Index(None, "created"),
+)
+
+aliases = Table(
+    "aliases",
+    metadata,
+    _text("name", primary_key=True),
+    _text("alias", primary_key=True),
+    _number("version"),
+    _number("revision"),
+    _text("changed"),
+    ForeignKeyConstraint(["name", "version"], ["versions.name", "versions.version"]),
+)
+
+alias_history = Table(
+    "alias_history",
+    metadata,
+    _text("name", primary_key=True),
+    _text("alias", primary_key=True),
+    _number("revision", primary_key=True),
+    _number("version"),
+    _text("changed"),
+    _text("principal"),
+    ForeignKeyConstraint(["name", "alias"], ["aliases.name", "aliases.alias"]),
+)
+
+tree_names = Table(
+    "tree_names",
+    metadata,
+    _text("name", primary_key=True),
+    _number("latest"),
+)
+
+trees = Table(
+    "trees",
+    metadata,
+    _text("name", ForeignKey("tree_names.name"), primary_key=True),
+    _number("revision", primary_key=True),
+    _text("digest"),
+    _text("spec"),  # references pinned to digests
+    _text("program", ForeignKey("programs.digest")),
+    _number("dof"),
+    _text("summary"),  # what Model.load needs beside the program, with gravity and instances as shown
+    _text("created"),
+    _number("based_on", nullable=True),  # the revision that was changed
+    Index(None, "digest"),
+    Index(None, "created"),
+)
+
+tree_parts = Table(
+    "tree_parts",
+    metadata,
+    _text("name", primary_key=True),
+    _number("revision", primary_key=True),
+    _text("instance", primary_key=True),
+    _text("part", ForeignKey("parts.digest")),
+    ForeignKeyConstraint(["name", "revision"], ["trees.name", "trees.revision"]),
+    Index(None, "part"),
+)
+
+idempotency = Table(
+    "idempotency",
+    metadata,
+    _text("principal", primary_key=True),
+    _text("key", primary_key=True),
+    _text("fingerprint"),  # sha256 of method, path, query, media types and body
+    _text("owner"),  # the claim; whoever holds it may finish
+    _text("created"),
+    _number("status", nullable=True),  # NULL: in flight
+    _text("headers", nullable=True),
+    Column("body", LargeBinary, nullable=True),  # NULL with a status: recompute (requests that store nothing)
+    Index(None, "created"),
+)
+
+api_keys = Table(
+    "api_keys",
+    metadata,
+    _text("id", primary_key=True),
+    _text("secret_hash"),
+    _text("label"),
+    _text("scopes"),
+    _text("created"),
+    _text("expires", nullable=True),
+    _text("revoked", nullable=True),
+)

@@ -1,0 +1,115 @@
+"""Fixtures: a server on a fresh SQLite file, small definitions, and the number of rows in every table."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import func, select
+
+from service.app import create_app, open_store
+from service.settings import Settings
+from service.store import Store
+from service.tables import metadata
+
+PENDULUM: dict[str, Any] = {
+    "name": "pendulum",
+    "title": "Pendulum",
+    "tags": ["planar", "textbook"],
+    "parameters": {"l": {"value": 1, "unit": "m"}, "m": {"value": 2, "unit": "kg"}},
+    "bodies": [
+        {
+            "name": "rod",
+            "parent": "base",
+            "joint": {"type": "revolute", "coordinate": "q"},
+            "mass": "m",
+            "com": ["l", 0, 0],
+            "inertia": {"zz": "m*l^2/10", "xx": "m*l^2/10", "yy": "m*l^2/5"},
+        }
+    ],
+    "ports": [{"name": "tip", "body": "rod", "position": ["l", 0, 0]}],
+}
+SLIDER: dict[str, Any] = {
+    "name": "slider",
+    "title": "Sliding mass",
+    "tags": ["planar"],
+    "parameters": {"m": {"value": "0.5", "unit": "kg"}, "k": {"unit": "N/m"}},
+    "bodies": [
+        {
+            "name": "mass",
+            "parent": "base",
+            "joint": {"type": "prismatic", "coordinate": "x", "stiffness": "k"},
+            "mass": "m",
+        }
+    ],
+    "ports": [{"name": "top", "body": "mass"}],
+}
+TREE: dict[str, Any] = {
+    "name": "cell",
+    "gravity": [0, "-g", 0],
+    "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}},
+    "instances": [{"name": "arm", "substructure": "pendulum", "at": "world"}],
+}
+HAND: dict[str, Any] = {"name": "hand", "substructure": "pendulum", "at": "arm.tip", "parameters": {"m": "arm.m/4"}}
+
+
+def make_client(store: Store) -> TestClient:
+    """A client of an app around the store; the app must never raise into the server."""
+    return TestClient(create_app(store), base_url="http://localhost", raise_server_exceptions=True)
+
+
+@pytest.fixture(scope="session")
+def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database that knows pendulum, slider and the tree cell@1; to be copied."""
+    path = tmp_path_factory.mktemp("template") / "store.db"
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as opened:
+        client = make_client(opened)
+        for kind, body in (("substructures", PENDULUM), ("substructures", SLIDER), ("trees", TREE)):
+            answer = client.post(f"/v1/{kind}", json=body)
+            assert answer.status_code == 201, answer.text
+    return path
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(database=f"sqlite:///{tmp_path / 'store.db'}", catalogue=False)
+
+
+@pytest.fixture
+def store(settings: Settings, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Store]:
+    """The store of ``client``, and of ``filled`` when the test asks for that."""
+    if "filled" in request.fixturenames:
+        shutil.copy(request.getfixturevalue("template"), tmp_path / "store.db")
+    with open_store(settings) as opened:
+        yield opened
+
+
+@pytest.fixture
+def client(store: Store) -> Iterator[TestClient]:
+    """A client of a server with an empty store."""
+    with make_client(store) as opened:
+        yield opened
+
+
+@pytest.fixture
+def filled(client: TestClient) -> TestClient:
+    """A client of a server that knows pendulum, slider and the tree cell@1."""
+    return client
+
+
+@pytest.fixture
+def rows(store: Store) -> Callable[[], dict[str, int]]:
+    """Counts the rows of all tables."""
+
+    def count() -> dict[str, int]:
+        with store.database.read() as connection:
+            return {
+                name: connection.execute(select(func.count()).select_from(table)).scalar_one()
+                for name, table in metadata.tables.items()
+            }
+
+    return count

@@ -1,0 +1,264 @@
+"""``/v1/substructures``: submit, refer, search, alias, yank (the HTTP contract, section 2)."""
+
+from __future__ import annotations
+
+import json
+import threading
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.schemas import AliasView, FormulaIndex, VersionPage, VersionView
+
+from .conftest import PENDULUM, SLIDER
+
+VERSION_FIELDS = {
+    "name", "version", "digest", "dof", "coordinates", "bodies", "joints", "ports", "parameters", "operations",
+    "certificate", "created", "aliases", "yanked", "links",
+}  # fmt: skip
+
+
+def changed(**fields: Any) -> dict[str, Any]:
+    return {**PENDULUM, **fields}
+
+
+def test_submit_creates_a_version(client: TestClient) -> None:
+    answer = client.post("/v1/substructures", json=PENDULUM)
+    assert answer.status_code == 201
+    assert answer.headers["location"] == "/v1/substructures/pendulum@1"
+    version = answer.json()
+    VersionView.model_validate(version)
+    assert version.keys() >= VERSION_FIELDS
+    assert (version["name"], version["version"], version["dof"], version["joints"]) == ("pendulum", 1, 1, "R")
+    assert (version["coordinates"], version["bodies"], version["ports"]) == (["q"], ["rod"], ["tip"])
+    assert version["parameters"]["l"]["value"] == 1
+    assert version["operations"]["total"] > 0
+    assert version["yanked"] is False
+
+
+def test_submit_again_changes_nothing(client: TestClient, rows: Any) -> None:
+    first = client.post("/v1/substructures", json=PENDULUM)
+    before = rows()
+    reordered = dict(reversed(PENDULUM.items()))
+    second = client.post(
+        "/v1/substructures", content=json.dumps(reordered, indent=3), headers={"Content-Type": "application/json"}
+    )
+    assert (second.status_code, second.json()) == (200, first.json())
+    assert second.headers["location"] == first.headers["location"]
+    assert rows() == before
+
+
+def test_every_reference_means_the_same_version(client: TestClient) -> None:
+    client.post("/v1/substructures", json=PENDULUM)
+    newer = client.post("/v1/substructures", json=changed(title="Newer")).json()
+    client.put("/v1/substructures/pendulum/aliases/stable", json={"version": 2})
+    for ref in ("pendulum", "pendulum@2", "pendulum@stable", f"pendulum@{newer['digest']}"):
+        found = client.get(f"/v1/substructures/{ref}").json()
+        assert found == {**newer, "aliases": ["stable"]}
+    assert client.get("/v1/substructures/pendulum@1").json()["title"] == "Pendulum"
+
+
+@pytest.mark.parametrize(
+    "ref", ["nothing", "pendulum@9", "pendulum@gone", f"pendulum@sha256:{'0' * 64}", "Pendulum", "a@b@c", "pendulum@0"]
+)
+def test_unknown_references(filled: TestClient, ref: str) -> None:
+    answer = filled.get(f"/v1/substructures/{ref}")
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_definition_as_stored(filled: TestClient) -> None:
+    text = filled.get("/v1/substructures/slider@1/definition").content
+    again = filled.post("/v1/substructures", content=text, headers={"Content-Type": "application/json"})
+    assert again.status_code == 200
+    assert json.loads(text)["bodies"] == SLIDER["bodies"]
+
+
+def test_numbers_stay_exact(client: TestClient) -> None:
+    text = json.dumps(PENDULUM).replace('"value": 2', '"value": 2.10000000000000000000000000000000001')
+    answer = client.post("/v1/substructures", content=text, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 201
+    for path in ("", "/definition"):
+        assert b"2.10000000000000000000000000000000001" in client.get(f"/v1/substructures/pendulum{path}").content
+
+
+def test_formula_index(filled: TestClient) -> None:
+    index = filled.get("/v1/substructures/pendulum/formulas").json()
+    FormulaIndex.model_validate(index)
+    assert index["count"] == len(index["formulas"]) > 0
+    quantities = {formula["quantity"] for formula in index["formulas"]}
+    assert quantities >= {"Omega", "R", "metric", "composite"}
+    for quantity in quantities:
+        assert filled.get(index["links"]["quantities"][quantity]).status_code == 200
+
+
+def test_single_formulas(filled: TestClient) -> None:
+    base = "/v1/substructures/pendulum@1/formulas"
+    whole = filled.get(f"{base}/metric").json()
+    assert whole["outputs"].keys() == {"metric"}
+    single = filled.get(f"{base}/metric", params={"component": "0,0"}).json()
+    assert single["outputs"]["metric[0,0]"]["shape"] == []
+    twist = filled.get(f"{base}/Omega", params={"body": "rod", "coordinate": "q", "component": 2}).json()
+    assert list(twist["outputs"]) == ["Omega[0,0,2]"]
+    for wrong in ({"body": "nobody"}, {"coordinate": "q9"}):
+        assert filled.get(f"{base}/Omega", params=wrong).status_code == 404
+    assert filled.get(f"{base}/Omega", params={"component": "7"}).status_code == 422
+    assert filled.get(f"{base}/nothing").status_code == 404
+
+
+def test_formulas_stand_alone_unless_asked_otherwise(filled: TestClient) -> None:
+    def symbols(**query: Any) -> set[str]:
+        document = filled.get("/v1/substructures/pendulum@1/formulas/metric", params=query).json()
+        return {symbol["name"] for symbol in document["symbols"]}
+
+    assert symbols() == {"l", "m"}
+    assert symbols(bind="l:2") == {"m"}
+    assert symbols(inertia="symbols") == {"rod.Jxx", "rod.Jyy"}
+    assert filled.get("/v1/substructures/pendulum@1/formulas/metric?inertia=x").status_code == 422
+    text = filled.get("/v1/substructures/pendulum@1/formulas/metric?format=text&form=expanded").text
+    assert "= 11/10*l^2*m" in text
+
+
+def test_search(filled: TestClient) -> None:
+    def names(**query: Any) -> list[str]:
+        answer = filled.get("/v1/substructures", params=query)
+        assert answer.status_code == 200, answer.text
+        VersionPage.model_validate(answer.json())
+        return [item["name"] for item in answer.json()["items"]]
+
+    assert names() == ["pendulum", "slider"]
+    assert names(q="sliding MASS") == ["slider"]
+    assert names(q="%") == names(q="_") == []
+    assert names(tag="textbook") == ["pendulum"]
+    assert names(tag=["planar", "textbook"]) == ["pendulum"]
+    assert names(dof_min=2) == []
+    assert names(dof_max=1, joints="P") == ["slider"]
+    assert names(sort="-name") == ["slider", "pendulum"]
+    assert names(sort="-created") == ["slider", "pendulum"]
+    facets = filled.get("/v1/substructures").json()["facets"]
+    assert facets == {"tags": {"planar": 2, "textbook": 1}, "joints": {"P": 1, "R": 1}, "dof": {"1": 2}}
+
+
+def test_only_the_latest_versions_are_listed(filled: TestClient) -> None:
+    filled.post("/v1/substructures", json=changed(title="Newer"))
+    items = filled.get("/v1/substructures", params={"q": "pendulum"}).json()["items"]
+    assert [(item["version"], item["title"]) for item in items] == [(2, "Newer")]
+
+
+@pytest.mark.parametrize("sort", ["name", "-name", "dof", "-dof", "created", "-created"])
+def test_pages_cover_everything_once(client: TestClient, sort: str) -> None:
+    for k in range(7):
+        assert (
+            client.post(
+                "/v1/substructures", json=changed(name=f"p{k}", tags=["even"] if k % 2 == 0 else [])
+            ).status_code
+            == 201
+        )
+    found, url = [], f"/v1/substructures?page_size=2&sort={sort}&q=p"
+    for _ in range(10):
+        answer = client.get(url)
+        found += [item["name"] for item in answer.json()["items"]]
+        assert answer.json()["facets"]["tags"] == {"even": 4}
+        if answer.json()["next_page_token"] is None:
+            assert "link" not in answer.headers
+            break
+        url = answer.json()["links"]["next"]
+        assert answer.headers["link"] == f'<{url}>; rel="next"'
+    assert sorted(found) == [f"p{k}" for k in range(7)]
+
+
+def test_foreign_page_tokens_are_refused(filled: TestClient) -> None:
+    filled.post("/v1/substructures", json=changed(name="third"))
+    token = filled.get("/v1/substructures?page_size=1").json()["next_page_token"]
+    assert token
+    for query in (
+        {"page_token": token, "q": "x"},
+        {"page_token": "nonsense"},
+        {"page_token": token[:-2]},
+        {"page_token": ""},
+    ):
+        answer = filled.get("/v1/substructures", params=query)
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["pointer"] == "/query/page_token"
+
+
+@pytest.mark.parametrize(
+    "query", ["page_size=0", "page_size=1001", "page_size=x", "sort=mass", "dof_min=-1", "joints=RX"]
+)
+def test_wrong_queries(client: TestClient, query: str) -> None:
+    answer = client.get(f"/v1/substructures?{query}")
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == f"/query/{query.split('=')[0]}"
+
+
+def test_aliases_move_only_with_if_match(filled: TestClient) -> None:
+    filled.post("/v1/substructures", json=changed(title="Newer"))
+    url = "/v1/substructures/pendulum/aliases/stable"
+    assert filled.get(url).status_code == 404
+    assert filled.put(url.replace("pendulum", "nothing"), json={"version": 1}).status_code == 404
+    assert filled.get("/v1/substructures/nothing/aliases").status_code == 404
+    assert filled.put(url, json={"version": 1}, headers={"If-Match": '"1"'}).status_code == 412
+    created = filled.put(url, json={"version": 1})
+    assert (created.status_code, created.headers["etag"]) == (201, '"1"')
+    assert filled.put(url, json={"version": 2}).status_code == 428
+    assert filled.put(url, json={"version": 2}, headers={"If-Match": '"7"'}).status_code == 412
+    moved = filled.put(url, json={"version": 2}, headers={"If-Match": created.headers["etag"]})
+    assert (moved.status_code, moved.headers["etag"]) == (200, '"2"')
+    AliasView.model_validate(moved.json())
+    assert [change["version"] for change in filled.get(url).json()["history"]] == [2, 1]
+    assert len(filled.get("/v1/substructures/pendulum/aliases").json()["items"]) == 1
+    assert filled.get("/v1/substructures/pendulum@stable").json()["version"] == 2
+
+
+@pytest.mark.parametrize(
+    ("alias", "body"),
+    [("stable", {"version": 9}), ("stable", {"version": "1"}), ("stable", {}), ("1st", {"version": 1})],
+)
+def test_wrong_aliases(filled: TestClient, rows: Any, alias: str, body: Any) -> None:
+    before = rows()
+    answer = filled.put(f"/v1/substructures/pendulum/aliases/{alias}", json=body)
+    assert answer.status_code == 422
+    assert rows() == before
+
+
+def test_yanked_versions_stay_where_they_are_used(filled: TestClient) -> None:
+    filled.post("/v1/substructures", json=changed(title="Newer"))
+    yanked = filled.post("/v1/substructures/pendulum@2/yank", json={"reason": "wrong mass"}).json()
+    assert (yanked["yanked"], yanked["yank_reason"]) == (True, "wrong mass")
+    assert filled.get("/v1/substructures/pendulum").json()["version"] == 1
+    assert filled.get("/v1/substructures/pendulum@2").json() == yanked
+    assert filled.post("/v1/substructures/pendulum@2/yank").json()["yanked_at"] == yanked["yanked_at"]
+    assert filled.post("/v1/substructures/pendulum@1/yank").status_code == 200
+    assert filled.get("/v1/substructures/pendulum").status_code == 404
+    assert filled.post("/v1/substructures", json=changed(title="Third")).json()["version"] == 3
+    assert filled.get("/v1/substructures/pendulum").json()["version"] == 3
+
+
+def test_concurrent_submissions_give_one_version(client: TestClient) -> None:
+    codes: list[int] = []
+
+    def submit() -> None:
+        codes.append(client.post("/v1/substructures", json=PENDULUM).status_code)
+
+    threads = [threading.Thread(target=submit) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(codes) == [200] * 7 + [201]
+    assert client.get("/v1/substructures/pendulum").json()["version"] == 1
+
+
+def test_concurrent_versions_get_different_numbers(client: TestClient) -> None:
+    numbers: list[int] = []
+
+    def submit(k: int) -> None:
+        numbers.append(client.post("/v1/substructures", json=changed(title=f"Title {k}")).json()["version"])
+
+    threads = [threading.Thread(target=submit, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(numbers) == list(range(1, 9))

@@ -1,0 +1,212 @@
+"""Conventions of all endpoints (the HTTP contract, section 6)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.schemas import Problem
+from service.settings import Limits, Settings, SettingsError, from_environment
+from service.store import Store
+
+from .conftest import HAND, PENDULUM, TREE, make_client
+
+JSON = {"Content-Type": "application/json"}
+
+
+def problem(answer: Any, status: int, code: str) -> dict[str, Any]:
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    document = dict(answer.json())
+    Problem.model_validate(document)
+    assert (document["status"], document["code"]) == (status, code)
+    assert document["request_id"] == answer.headers["x-request-id"]
+    assert document["instance"] == answer.request.url.path
+    return document
+
+
+def test_problems(client: TestClient) -> None:
+    problem(client.get("/nothing"), 404, "not-found")
+    problem(client.get("/v1/trees/"), 404, "not-found")
+    problem(client.get("/v1/trees/nothing"), 404, "unknown-tree")
+    wrong = client.put("/v1/substructures", json={})
+    problem(wrong, 405, "method-not-allowed")
+    assert set(wrong.headers["allow"].replace(" ", "").split(",")) == {"GET", "POST"}
+    problem(
+        client.post("/v1/substructures", content=b"{}", headers={"Content-Type": "text/plain"}),
+        415,
+        "unsupported-media-type",
+    )
+    problem(client.post("/v1/substructures", content=b"{", headers=JSON), 422, "invalid-document")
+    problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")
+
+
+def test_defects_are_500_without_details(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("secret detail")
+
+    monkeypatch.setattr("service.routes.trees.trees.find", broken)
+    document = problem(client.get("/v1/trees/cell"), 500, "internal-error")
+    assert "secret" not in str(document)
+    assert "secret detail" in caplog.text
+
+
+def test_request_ids(client: TestClient) -> None:
+    assert client.get("/livez", headers={"X-Request-Id": "my-id.1"}).headers["x-request-id"] == "my-id.1"
+    for harmful in ("a b", "x" * 200, "<script>"):
+        given = client.get("/livez", headers={"X-Request-Id": harmful}).headers["x-request-id"]
+        assert len(given) == 16
+    assert client.get("/livez").headers["x-request-id"] != client.get("/livez").headers["x-request-id"]
+
+
+@pytest.mark.parametrize(
+    ("host", "status"),
+    [
+        ("localhost", 200),
+        ("127.0.0.1:8000", 200),
+        ("[::1]:8000", 200),
+        ("LOCALHOST", 200),
+        ("evil.example", 400),
+        ("localhost.evil.example", 400),
+        ("", 400),
+    ],
+)
+def test_host_is_checked(client: TestClient, host: str, status: int) -> None:
+    answer = client.get("/livez", headers={"Host": host})
+    assert answer.status_code == status
+    if status == 400:
+        problem(answer, 400, "host-not-allowed")
+
+
+def test_health(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert client.get("/livez").json() == client.get("/readyz").json() == {"status": "ok"}
+
+    def fail() -> None:
+        raise RuntimeError
+
+    monkeypatch.setattr(store.database, "ping", fail)
+    assert client.get("/livez").status_code == 200
+    assert client.get("/readyz").status_code == 500
+
+
+def test_metrics(filled: TestClient) -> None:
+    filled.get("/v1/trees/cell@1")
+    text = filled.get("/metrics").text
+    assert 'substructures_requests_total{method="GET",route="/v1/trees/{ref}",status="200"} 1.0' in text
+    assert "substructures_request_seconds_bucket" in text
+
+
+def test_limits_are_shown(client: TestClient) -> None:
+    shown = client.get("/v1/limits").json()
+    assert shown.items() >= Limits().model_dump().items()
+    assert (shown["json_bytes"], shown["binary_bytes"]) == (2 * 2**20, 64 * 2**20)
+    assert (shown["number_digits"], shown["exponent"], shown["nesting"], shown["program_nodes"]) == (
+        400,
+        64,
+        64,
+        100_000,
+    )
+
+
+def test_versions_revalidate_and_definitions_are_immutable(filled: TestClient) -> None:
+    version = filled.get("/v1/substructures/pendulum@1")
+    assert version.headers["cache-control"] == "no-cache"
+    known = {"If-None-Match": version.headers["etag"]}
+    assert filled.get("/v1/substructures/pendulum@1", headers=known).status_code == 304
+    filled.put("/v1/substructures/pendulum/aliases/best", json={"version": 1})
+    assert filled.get("/v1/substructures/pendulum@1", headers=known).status_code == 200
+    for path in (
+        "substructures/pendulum@1/definition",
+        "substructures/pendulum@1/formulas",
+        "substructures/pendulum@1/formulas/metric",
+        "trees/cell@1",
+    ):
+        first = filled.get(f"/v1/{path}")
+        assert "immutable" in first.headers["cache-control"], path
+        again = filled.get(f"/v1/{path}", headers={"If-None-Match": first.headers["etag"]})
+        assert (again.status_code, again.headers["etag"]) == (304, first.headers["etag"])
+    assert "immutable" not in filled.get("/v1/trees/cell").headers["cache-control"]
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Iterator[TestClient]:
+    """A server with tiny limits."""
+    limits = Limits(
+        json_bytes=4000, binary_bytes=2000, program_nodes=300, states=5, page_size=3, evaluation_operations=10**6
+    )
+    settings = Settings(database=f"sqlite:///{tmp_path / 'small.db'}", catalogue=False, limits=limits)
+    with open_store(settings) as store:
+        client = make_client(store)
+        client.post("/v1/substructures", json=PENDULUM)
+        client.post("/v1/trees", json=TREE)
+        yield client
+
+
+def test_bodies_that_are_too_long(small: TestClient) -> None:
+    long = b'{"name": "' + b"x" * 5000 + b'"}'
+    document = problem(small.post("/v1/substructures", content=long, headers=JSON), 413, "body-too-large")
+    assert document["limit"] == 4000
+    chunks = (long[i : i + 100] for i in range(0, len(long), 100))
+    problem(small.post("/v1/substructures", content=chunks, headers=JSON), 413, "body-too-large")
+
+
+def test_programs_that_are_too_large(small: TestClient) -> None:
+    links = [{**PENDULUM["bodies"][0], "name": f"b{k}", "parent": f"b{k - 1}" if k else "base"} for k in range(6)]
+    for k, link in enumerate(links):
+        link["joint"] = {"type": "revolute", "coordinate": f"q{k}", "d": "l", "theta": 1}
+    definition = {**PENDULUM, "name": "chain", "bodies": links, "ports": []}
+    document = problem(small.post("/v1/substructures", content=json.dumps(definition), headers=JSON), 422, "too-large")
+    assert document["limit"] == 300
+    assert document["size"] > 300
+
+
+def test_evaluations_that_are_too_large(small: TestClient) -> None:
+    def post(states: int, quantity: str) -> Any:
+        return small.post("/v1/trees/cell/evaluations", json={"quantities": [quantity], "q": [[0]] * states})
+
+    assert post(5, "metric").status_code == 200
+    assert post(6, "metric").status_code == 422
+    problem(post(5, "kinematics"), 422, "too-large")
+
+
+def test_pages_that_are_too_long(small: TestClient) -> None:
+    assert small.get("/v1/trees?page_size=3").status_code == 200
+    assert small.get("/v1/trees?page_size=4").json()["errors"][0]["pointer"] == "/query/page_size"
+
+
+def test_slow_work_stores_nothing(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch, rows: Any) -> None:
+    before = rows()
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
+    problem(filled.post("/v1/trees/cell/couplings", json=HAND), 503, "took-too-long")
+    assert rows() == before
+
+
+def test_settings_from_the_environment() -> None:
+    settings = from_environment(
+        {
+            "SUBSTRUCTURES_PORT": "9",
+            "SUBSTRUCTURES_LIMIT_STATES": "7",
+            "SUBSTRUCTURES_ALLOWED_HOSTS": "a, b",
+            "HOME": "/",
+        },
+        host="::1",
+        database=None,
+    )
+    assert (settings.port, settings.host, settings.limits.states, settings.allowed_hosts) == (9, "::1", 7, ("a", "b"))
+    for name, value in (
+        ("SUBSTRUCTURES_PROT", "9"),
+        ("SUBSTRUCTURES_PORT", "x"),
+        ("SUBSTRUCTURES_LIMIT_STATES", "0"),
+        ("SUBSTRUCTURES_LIMIT_STATE", "1"),
+    ):
+        with pytest.raises(SettingsError, match=name):
+            from_environment({name: value})

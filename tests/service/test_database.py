@@ -1,0 +1,188 @@
+"""Migrations, the lock on an SQLite file, transactions, and what survives a killed server."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+import sqlalchemy as sa
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from alembic.operations import Operations
+
+from service.client import Client
+from service.database import Database, DatabaseError
+from service.migrate import MigrationError, upgrade
+from service.tables import metadata, parts
+
+from .conftest import HAND, PENDULUM, TREE
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Iterator[Database]:
+    opened = Database(f"sqlite:///{tmp_path / 'x.db'}")
+    yield opened
+    opened.close()
+
+
+def test_migrated_schema_is_the_one_in_the_code(database: Database) -> None:
+    with database.read() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+
+
+def test_migrating_again_changes_nothing(database: Database) -> None:
+    upgrade(database.writer)
+    with database.read() as connection:
+        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0001"]
+
+
+def test_newer_databases_are_refused(tmp_path: Path) -> None:
+    address = f"sqlite:///{tmp_path / 'x.db'}"
+    first = Database(address)
+    with first.write() as connection:
+        connection.exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
+    first.close()
+    for _ in range(2):  # the lock was given back
+        with pytest.raises(MigrationError, match="does not know"):
+            Database(address)
+
+
+def test_altering_a_table_keeps_its_child_rows(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Alembic's batch mode drops the old table, which deletes rows that refer to it while foreign keys are on."""
+    with database.write() as connection:
+        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+        connection.exec_driver_sql("INSERT INTO programs VALUES ('p', x'00', 1, '')")
+        row = {column.name: "" for column in parts.columns} | {"digest": "d", "program": "p", "dof": 1}
+        connection.execute(parts.insert().values(row))
+        connection.exec_driver_sql("INSERT INTO versions (name, version, digest, created) VALUES ('a', 1, 'd', '')")
+
+    def alter(_configuration: Any, _revision: str) -> None:
+        with Operations(MigrationContext.configure(_configuration.attributes["connection"])).batch_alter_table(
+            "substructures", recreate="always"
+        ) as batch:
+            batch.add_column(sa.Column("extra", sa.Text))
+
+    monkeypatch.setattr("service.migrate.command.upgrade", alter)
+    upgrade(database.writer)
+    with database.read() as connection:
+        assert connection.exec_driver_sql("SELECT count(*) FROM versions").scalar() == 1
+        assert connection.exec_driver_sql("SELECT extra FROM substructures").scalar() is None
+    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # foreign keys are on again
+        connection.exec_driver_sql("DELETE FROM substructures")
+
+
+def test_failed_migrations_change_nothing(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(configuration: Any, _revision: str) -> None:
+        configuration.attributes["connection"].exec_driver_sql("CREATE TABLE half (x)")
+        raise RuntimeError("half way")
+
+    monkeypatch.setattr("service.migrate.command.upgrade", fail)
+    with pytest.raises(RuntimeError, match="half way"):
+        upgrade(database.writer)
+    with database.read() as connection:
+        assert "half" not in sa.inspect(connection).get_table_names()
+
+
+def test_pragmas(database: Database) -> None:
+    for engine in (database.reader, database.writer):
+        with engine.connect() as connection:
+            values = [
+                connection.exec_driver_sql(f"PRAGMA {name}").scalar()
+                for name in ("journal_mode", "synchronous", "foreign_keys")
+            ]
+            assert values == ["wal", 2, 1]
+
+
+def test_readers_cannot_write(database: Database) -> None:
+    with pytest.raises(sa.exc.OperationalError, match="readonly"), database.read() as connection:
+        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+
+
+def test_transactions_are_all_or_nothing(database: Database) -> None:
+    statement = "INSERT INTO substructures VALUES ('a', NULL)"
+    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012
+        for _ in range(2):
+            connection.exec_driver_sql(statement)
+    with database.read() as connection:
+        assert connection.exec_driver_sql("SELECT count(*) FROM substructures").scalar() == 0
+
+
+def test_one_server_a_file(tmp_path: Path) -> None:
+    address = f"sqlite:///{tmp_path / 'x.db'}"
+    first = Database(address)
+    with pytest.raises(DatabaseError, match="another server"):
+        Database(address)
+    Database(address, exclusive=False).close()
+    first.close()
+    Database(address).close()
+
+
+@pytest.mark.parametrize(
+    "address", ["mysql://x/y", "nonsense", "sqlite://", "sqlite:////nowhere/at/all.db", "postgresql://x@127.0.0.1:9/x"]
+)
+def test_wrong_addresses(address: str) -> None:
+    for exclusive in (True, False):
+        with pytest.raises(DatabaseError):
+            Database(address, exclusive=exclusive)
+
+
+class Server:
+    """A server process on a database file."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = free.getsockname()[1]
+        command = [
+            sys.executable,
+            "-m",
+            "service.cli",
+            "serve",
+            "--port",
+            str(self.port),
+            "--database",
+            f"sqlite:///{folder / 'x.db'}",
+        ]
+        self.process = subprocess.Popen(command, env={**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"})
+        self.client = Client(f"http://127.0.0.1:{self.port}")
+        self._wait()
+
+    def _wait(self) -> None:
+        for _ in range(300):
+            try:
+                self.client.request("GET", "/readyz")
+                return
+            except httpx2.TransportError:
+                time.sleep(0.05)
+        raise TimeoutError
+
+    def stop(self, how: signal.Signals) -> int:
+        """Send a signal; the exit status."""
+        self.client.close()
+        self.process.send_signal(how)
+        return self.process.wait(15)
+
+
+def test_acknowledged_writes_survive_a_kill(tmp_path: Path) -> None:
+    server = Server(tmp_path)
+    version, is_new = server.client.submit(PENDULUM)
+    server.client.create_tree(TREE)
+    tree = server.client.couple("cell", HAND)
+    server.stop(signal.SIGKILL)
+    assert is_new
+    server = Server(tmp_path)
+    try:
+        assert server.client.substructure("pendulum@1") == version
+        assert server.client.request("GET", "/v1/trees/cell").json() == tree
+        assert server.client.evaluate("cell", quantities=["metric"], q=[0, 0])["count"] == 1
+        assert server.client.submit(PENDULUM) == (version, False)
+    finally:
+        assert server.stop(signal.SIGTERM) == 0

@@ -1,0 +1,100 @@
+"""``Idempotency-Key``: the same request acts once, also after a restart."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.operations import trees
+from service.queries import idempotency
+from service.settings import Settings
+
+from .conftest import HAND, PENDULUM, make_client
+
+KEY = {"Idempotency-Key": "3f6b"}
+
+
+def test_replay(filled: TestClient, rows: Any) -> None:
+    first = filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY)
+    before = rows()
+    second = filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY)
+    assert (first.status_code, second.status_code) == (201, 201)
+    assert second.content == first.content
+    assert second.headers["location"] == first.headers["location"]
+    assert second.headers["idempotency-replayed"] == "true"
+    assert rows() == before
+
+
+def test_other_requests_under_the_same_key(filled: TestClient) -> None:
+    filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY)
+    for path, body in (("cell/couplings", {**HAND, "name": "other"}), ("cell@1/couplings", HAND)):
+        answer = filled.post(f"/v1/trees/{path}", json=body, headers=KEY)
+        assert (answer.status_code, answer.json()["code"]) == (422, "idempotency-key-reused")
+
+
+def test_survives_a_restart(settings: Settings) -> None:
+    with open_store(settings) as store:
+        first = make_client(store).post("/v1/substructures", json=PENDULUM, headers=KEY)
+    with open_store(settings) as store:
+        second = make_client(store).post("/v1/substructures", json=PENDULUM, headers=KEY)
+    assert (first.status_code, second.status_code) == (201, 201)
+    assert second.content == first.content
+
+
+def test_failures_free_the_key(filled: TestClient, rows: Any) -> None:
+    before = rows()
+    assert filled.post("/v1/trees/cell/couplings", json={**HAND, "at": "arm.x"}, headers=KEY).status_code == 422
+    assert rows() == before
+    assert filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY).status_code == 201
+
+
+def test_in_flight(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    started, finish = threading.Event(), threading.Event()
+    prepare = trees.prepare_coupling
+
+    def slow(*arguments: Any) -> Any:
+        started.set()
+        assert finish.wait(10)
+        return prepare(*arguments)
+
+    monkeypatch.setattr("service.operations.trees.prepare_coupling", slow)
+    answers: list[Any] = []
+    post = lambda: answers.append(filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY))  # noqa: E731
+    thread = threading.Thread(target=post)
+    thread.start()
+    assert started.wait(10)
+    second = filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY)
+    assert (second.status_code, second.json()["code"]) == (409, "idempotency-in-flight")
+    assert second.headers["retry-after"] == "1"
+    finish.set()
+    thread.join()
+    assert answers[0].status_code == 201
+
+
+def test_claims_of_a_dead_server_are_dropped(settings: Settings) -> None:
+    with open_store(settings) as store:
+        client = make_client(store)
+        with store.database.write() as connection:
+            assert idempotency.claim(connection, "local", "3f6b", "x", "dead") is None
+        assert client.post("/v1/substructures", json=PENDULUM, headers=KEY).status_code == 422
+    with open_store(settings) as store:
+        assert make_client(store).post("/v1/substructures", json=PENDULUM, headers=KEY).status_code == 201
+
+
+def test_evaluations_are_computed_again(filled: TestClient, rows: Any) -> None:
+    body = {"quantities": ["metric"], "q": [0.1]}
+    first = filled.post("/v1/trees/cell/evaluations", json=body, headers=KEY)
+    count = rows()
+    second = filled.post("/v1/trees/cell/evaluations", json=body, headers=KEY)
+    assert (first.status_code, second.content) == (200, first.content)
+    assert rows() == count
+    assert filled.post("/v1/trees/cell/evaluations", json={**body, "q": [0.2]}, headers=KEY).status_code == 422
+
+
+@pytest.mark.parametrize("key", ["", "x" * 256])
+def test_wrong_keys(client: TestClient, key: str) -> None:
+    assert client.post("/v1/substructures", json=PENDULUM, headers={"Idempotency-Key": key}).status_code == 422

@@ -1,0 +1,99 @@
+"""API keys, scopes, expiry, and the refusal to be open to others."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import update
+
+from service import keys
+from service.queries.common import now
+from service.queries.keys import list_keys, revoke_key
+from service.server import check_exposure
+from service.settings import SettingsError
+from service.store import Store
+from service.tables import api_keys
+
+from .conftest import PENDULUM
+
+
+def new_key(store: Store, *scopes: str, days: float | None = None) -> dict[str, str]:
+    with store.database.write() as connection:
+        return {"Authorization": f"Bearer {keys.create(connection, 'test', scopes, days)}"}
+
+
+def test_open_without_keys_closed_with_them(client: TestClient, store: Store) -> None:
+    assert client.get("/v1/trees").status_code == 200
+    reader, writer, admin = (new_key(store, scope) for scope in ("read", "write", "admin"))
+    denied = client.get("/v1/trees")
+    assert (denied.status_code, denied.headers["www-authenticate"]) == (401, "Bearer")
+    assert denied.json()["code"] == "unauthorized"
+    assert client.get("/v1/trees", headers=reader).status_code == 200
+    assert client.get("/v1/trees", headers=writer).status_code == 403
+    assert client.post("/v1/substructures", json=PENDULUM, headers=reader).status_code == 403
+    assert client.post("/v1/substructures", json=PENDULUM, headers=writer).status_code == 201
+    assert client.get("/v1/trees", headers=admin).status_code == 200
+    for path in ("/livez", "/readyz", "/openapi.json"):
+        assert client.get(path).status_code == 200
+    for path in ("/metrics", "/v1/limits"):
+        assert client.get(path).status_code == 401
+
+
+@pytest.mark.parametrize(
+    "header", ["", "Bearer", "Bearer x", "Basic x", "Bearer sub_x_y", "Bearer sub__", "Bearer sub_'--_x"]
+)
+def test_wrong_keys(client: TestClient, store: Store, header: str) -> None:
+    new_key(store, "read")
+    assert client.get("/v1/trees", headers={"Authorization": header}).status_code == 401
+
+
+def test_wrong_secret(client: TestClient, store: Store) -> None:
+    key = new_key(store, "read")["Authorization"]
+    assert (
+        client.get("/v1/trees", headers={"Authorization": key[:-1] + ("a" if key[-1] != "a" else "b")}).status_code
+        == 401
+    )
+
+
+def test_expired_and_revoked_keys_keep_the_server_closed(client: TestClient, store: Store) -> None:
+    key = new_key(store, "read", days=1)
+    assert client.get("/v1/trees", headers=key).status_code == 200
+    with store.database.write() as connection:
+        connection.execute(update(api_keys).values(expires=now(timedelta(seconds=-1))))
+    assert client.get("/v1/trees", headers=key).status_code == 401
+    with store.database.write() as connection:
+        connection.execute(update(api_keys).values(expires=None))
+        assert revoke_key(connection, list_keys(connection)[0].id)
+    assert client.get("/v1/trees", headers=key).status_code == 401
+    assert client.get("/v1/trees").status_code == 401
+
+
+def test_secrets_are_not_stored(store: Store) -> None:
+    secret = new_key(store, "read")["Authorization"].split("_", 2)[2]
+    with store.database.read() as connection:
+        assert secret not in str(list_keys(connection))
+
+
+def test_idempotency_keys_are_private(client: TestClient, store: Store) -> None:
+    one, two = new_key(store, "write"), new_key(store, "write")
+    shared = {"Idempotency-Key": "same"}
+    assert client.post("/v1/substructures", json=PENDULUM, headers={**one, **shared}).status_code == 201
+    assert client.post("/v1/substructures", json=PENDULUM, headers={**two, **shared}).status_code == 200
+
+
+@pytest.mark.parametrize("scopes", [(), ("root",)])
+def test_wrong_scopes(store: Store, scopes: Any) -> None:
+    with pytest.raises(ValueError, match="scope"):
+        new_key(store, *scopes)
+
+
+def test_refuses_to_be_open_to_others(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    check_exposure(store)
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"host": "0.0.0.0"}))  # noqa: S104
+    with pytest.raises(SettingsError, match="without API keys"):
+        check_exposure(store)
+    new_key(store, "read")
+    check_exposure(store)

@@ -1,0 +1,112 @@
+"""Evaluations as npz, in and out."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import zipfile
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from service.arrays import read_npz, write_npz
+from substructures.errors import InvalidDocument, TooLarge
+
+from .conftest import HAND
+
+NPZ = {"Content-Type": "application/x-npz"}
+URL = "/v1/trees/cell/evaluations"
+
+
+@pytest.fixture
+def double(filled: TestClient) -> TestClient:
+    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+    return filled
+
+
+def packed(**arrays: Any) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def test_npz_equals_json(double: TestClient) -> None:
+    q, tau = np.linspace(-1, 1, 20).reshape(10, 2), np.arange(10.0)
+    body = packed(
+        q=q,
+        qd=2 * q,
+        quantities=np.array(["metric", "forces", "kinematics"]),
+        **{"inputs.tau.arm.q": tau, "parameters.arm.m": 3.0},
+    )
+    answer = double.post(URL, content=body, headers=NPZ)
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "application/x-npz"), answer.text
+    arrays = np.load(io.BytesIO(answer.content), allow_pickle=False)
+    request = {
+        "q": q.tolist(), "qd": (2 * q).tolist(), "quantities": ["metric", "forces", "kinematics"],
+        "inputs": {"tau.arm.q": tau.tolist()}, "parameters": {"arm.m": 3},
+    }  # fmt: skip
+    expected = double.post(URL, json=request).json()
+    np.testing.assert_array_equal(arrays["metric"], expected["metric"])
+    np.testing.assert_array_equal(arrays["forces"], expected["forces"])
+    np.testing.assert_array_equal(arrays["kinematics.position"], expected["kinematics"]["position"])
+    assert arrays["coordinates"].tolist() == expected["coordinates"]
+    assert arrays["failures.state"].tolist() == []
+    mixed = double.post(URL, json=request, headers={"Accept": "application/x-npz"})
+    assert mixed.headers["content-type"] == "application/x-npz"
+    back = double.post(URL, content=body, headers={**NPZ, "Accept": "application/json"})
+    assert back.json() == expected
+
+
+def broken() -> dict[str, bytes]:
+    good = packed(q=np.zeros(2), quantities=np.array(["metric"]))
+    lying = io.BytesIO()
+    with zipfile.ZipFile(lying, "w") as archive:
+        member = io.BytesIO()
+        np.lib.format.write_array_header_1_0(member, {"descr": "<f8", "fortran_order": False, "shape": (10**12,)})
+        archive.writestr("q.npy", member.getvalue() + b"\0" * 16)
+    return {
+        "empty": b"",
+        "text": b"q=1",
+        "cut": good[: len(good) // 2],
+        "pickle": pickle.dumps({"q": [0, 0]}),
+        "objects": packed(q=np.array([{}, {}], dtype=object)),
+        "complex": packed(q=np.zeros(2, complex)),
+        "shape": lying.getvalue(),
+        "nan": packed(q=np.array([0, np.nan]), quantities=np.array(["metric"])),
+    }
+
+
+@pytest.mark.parametrize("kind", broken())
+def test_broken_files(double: TestClient, kind: str) -> None:
+    answer = double.post(URL, content=broken()[kind], headers=NPZ)
+    assert answer.status_code == 422, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["errors"]
+
+
+def test_bombs_are_refused_before_they_unpack() -> None:
+    stream = io.BytesIO()
+    np.savez_compressed(stream, q=np.zeros(10**6))
+    assert len(stream.getvalue()) < 20_000
+    with pytest.raises(TooLarge, match="8,000"):
+        read_npz(stream.getvalue(), 10**6)
+
+
+def test_round_trip() -> None:
+    arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array(["x", "yz"]), "c": np.float64(3), "d": np.zeros((0, 2))}
+    found = read_npz(write_npz(arrays), 10**6)
+    for name, value in arrays.items():
+        np.testing.assert_array_equal(found[name], value)
+    fortran = io.BytesIO()
+    np.savez(fortran, a=np.asfortranarray(arrays["a"]))
+    np.testing.assert_array_equal(read_npz(fortran.getvalue(), 10**6)["a"], arrays["a"])
+
+
+def test_members_that_are_no_arrays() -> None:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        archive.writestr("../../etc/passwd", "root")
+    with pytest.raises(InvalidDocument):
+        read_npz(stream.getvalue(), 10**6)

@@ -1,0 +1,38 @@
+"""The committed OpenAPI document is what the code generates, and it describes every answer."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from service import openapi
+from service.app import bare_app
+
+COMMITTED = Path(openapi.__file__).with_name("openapi.json")
+
+
+def operations() -> list[tuple[str, dict[str, Any]]]:
+    paths = openapi.document(bare_app())["paths"]
+    return [(f"{method} {path}", operation) for path, methods in paths.items() for method, operation in methods.items()]
+
+
+def test_committed_document_is_current() -> None:
+    """Regenerate with: substructures openapi > service/openapi.json"""
+    assert COMMITTED.read_text() == openapi.text(bare_app())
+
+
+def test_every_reference_resolves() -> None:
+    document = openapi.document(bare_app())
+    text = json.dumps(document)
+    assert document["openapi"].startswith("3.1")
+    names = {part.split('"')[0] for part in text.split("#/components/schemas/")[1:]}
+    assert names <= document["components"]["schemas"].keys()
+    assert {"Definition", "TreeSpec", "Instance", "EvaluationRequest", "Problem"} <= names
+
+
+def test_bodies_and_problems_are_described() -> None:
+    for name, operation in operations():
+        assert "application/problem+json" in operation["responses"]["default"]["content"], name
+        if name.startswith(("post", "put")):
+            assert operation["requestBody"]["content"]["application/json"]["schema"]["$ref"], name

@@ -1,0 +1,128 @@
+"""The main flows on PostgreSQL: TEST_POSTGRES_URL, or a server on 127.0.0.1:5432 that trusts us; otherwise skipped."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import threading
+from collections.abc import Iterator
+
+import pytest
+import sqlalchemy as sa
+from fastapi.testclient import TestClient
+from sqlalchemy.engine import make_url
+
+from service.app import open_store
+from service.settings import Settings
+
+from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
+
+CANDIDATES = [os.environ.get("TEST_POSTGRES_URL"), "postgresql://postgres@127.0.0.1:5432/postgres"]
+
+
+def server() -> str | None:
+    """The address of the first server that answers."""
+    for address in filter(None, CANDIDATES):
+        url = make_url(address).set(drivername="postgresql+psycopg").update_query_dict({"connect_timeout": "2"})
+        engine = sa.create_engine(url)
+        try:
+            with engine.connect():
+                return url.render_as_string(hide_password=False)
+        except sa.exc.OperationalError:
+            continue
+        finally:
+            engine.dispose()
+    return None
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """A fresh database that is dropped afterwards."""
+    base = server()
+    if base is None:
+        pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
+    name = f"substructures_test_{secrets.token_hex(6)}"
+    engine = sa.create_engine(base, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.exec_driver_sql(f'CREATE DATABASE "{name}"')
+    yield make_url(base).set(database=name).render_as_string(hide_password=False)
+    with engine.connect() as connection:
+        connection.exec_driver_sql(f'DROP DATABASE "{name}" WITH (FORCE)')
+    engine.dispose()
+
+
+@pytest.fixture
+def client(address: str) -> Iterator[TestClient]:
+    with open_store(Settings(database=address, catalogue=False)) as store:
+        yield make_client(store)
+
+
+def test_main_flow(client: TestClient) -> None:
+    for body in (PENDULUM, SLIDER):
+        assert client.post("/v1/substructures", json=body).status_code in (200, 201)
+    assert client.post("/v1/trees", json=TREE).status_code == 201
+    key = {"Idempotency-Key": "k"}
+    first = client.post("/v1/trees/cell/couplings", json=HAND, headers=key)
+    assert first.status_code == 201, first.text
+    assert client.post("/v1/trees/cell/couplings", json=HAND, headers=key).content == first.content
+    assert client.get("/v1/trees/cell/metric?format=text").status_code == 200
+    result = client.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0, 0]})
+    assert len(result.json()["metric"]) == 2
+    page = client.get("/v1/substructures?q=pend&tag=planar&dof_max=1&joints=R&page_size=1&sort=-created").json()
+    assert [item["name"] for item in page["items"]] == ["pendulum"]
+    assert page["facets"]["joints"] == {"R": 1}
+    assert client.get("/v1/substructures/pendulum/formulas/metric?format=latex").status_code == 200
+    assert client.put("/v1/substructures/pendulum/aliases/a", json={"version": 1}).status_code == 201
+    assert client.get("/v1/substructures/pendulum@a").json()["aliases"] == ["a"]
+    assert client.post("/v1/substructures/pendulum@a/yank").json()["yanked"] is True
+    assert client.post("/v1/trees", json={"name": "x", "instances": [{"name": "1"}]}).status_code == 422
+
+
+def test_nul_is_harmless(client: TestClient) -> None:
+    definition = {**PENDULUM, "name": "nul", "title": "a\0b", "description": "\0"}
+    assert client.post("/v1/substructures", json=definition).status_code == 201
+    assert client.get("/v1/substructures/nul/definition").json()["title"] == "a\0b"
+    for path in ("?q=%00", "?tag=%00", "/nul/formulas/%00", "/nul/formulas/metric?coordinate=%00"):
+        answer = client.get(f"/v1/substructures{path}")
+        assert answer.status_code in (404, 422), answer.text
+        assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_concurrency(client: TestClient) -> None:
+    definition = {**PENDULUM, "name": "contended"}
+    codes: list[int] = []
+
+    def submit() -> None:
+        codes.append(client.post("/v1/substructures", json=definition).status_code)
+
+    threads = [threading.Thread(target=submit) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(codes) == [200] * 5 + [201]
+
+
+def test_concurrent_couplings(client: TestClient) -> None:
+    client.post("/v1/substructures", json=SLIDER)
+    client.post("/v1/trees", json={"name": "rail", "instances": [{"name": "base0", "substructure": "slider"}]})
+    codes: list[int] = []
+
+    def couple(name: str) -> None:
+        body = {"name": name, "substructure": "slider", "at": "base0.top"}
+        codes.append(client.post("/v1/trees/rail/couplings", json=body).status_code)
+
+    threads = [threading.Thread(target=couple, args=(f"s{k}",)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert codes == [201] * 4
+    assert client.get("/v1/trees/rail").json()["dof"] == 5
+
+
+def test_several_servers_share_a_database(address: str) -> None:
+    settings = Settings(database=address, catalogue=False)
+    with open_store(settings) as one, open_store(settings) as two:
+        assert make_client(one).post("/v1/substructures", json={**PENDULUM, "name": "shared"}).status_code == 201
+        assert make_client(two).get("/v1/substructures/shared").status_code == 200

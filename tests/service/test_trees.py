@@ -1,0 +1,184 @@
+"""``/v1/trees`` and couplings (the HTTP contract, section 3)."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.schemas import TreePage, TreeView
+
+from .conftest import HAND, PENDULUM, SLIDER, TREE
+
+TREE_FIELDS = {
+    "name", "revision", "digest", "dof", "coordinates", "parameters", "instances", "operations", "certificate", "links",
+}  # fmt: skip
+
+
+def test_create(filled: TestClient) -> None:
+    tree = filled.get("/v1/trees/cell@1").json()
+    TreeView.model_validate(tree)
+    assert tree.keys() >= TREE_FIELDS
+    assert (tree["name"], tree["revision"], tree["dof"], tree["coordinates"]) == ("cell", 1, 1, ["arm.q"])
+    assert tree["parameters"]["g"] == {"value": 9.81, "unit": "m/s^2", "description": ""}
+    assert set(tree["parameters"]) == {"g", "arm.l", "arm.m"}
+
+
+def test_references_are_pinned(filled: TestClient) -> None:
+    before = filled.get("/v1/trees/cell@1").json()
+    digest = filled.get("/v1/substructures/pendulum").json()["digest"]
+    assert before["instances"][0]["substructure"] == f"pendulum@{digest}"
+    filled.post("/v1/substructures", json={**PENDULUM, "title": "Newer"})
+    assert filled.get("/v1/trees/cell@1").json() == before
+    assert filled.post("/v1/trees", json=before_spec(before)).status_code == 200
+
+
+def before_spec(tree: dict[str, Any]) -> dict[str, Any]:
+    return {**TREE, "instances": tree["instances"]}
+
+
+def test_creating_the_same_tree_again_changes_nothing(filled: TestClient, rows: Any) -> None:
+    before = rows()
+    answer = filled.post("/v1/trees", json=TREE)
+    assert (answer.status_code, answer.headers["location"]) == (200, "/v1/trees/cell@1")
+    assert rows() == before
+
+
+def test_coupling_makes_a_revision(filled: TestClient) -> None:
+    first = filled.get("/v1/trees/cell@1").json()
+    answer = filled.post("/v1/trees/cell/couplings", json=HAND)
+    assert (answer.status_code, answer.headers["location"]) == (201, "/v1/trees/cell@2")
+    second = answer.json()
+    assert (second["revision"], second["based_on"], second["dof"]) == (2, 1, 2)
+    assert second["coordinates"] == ["arm.q", "hand.q"]
+    assert "hand.m" not in second["parameters"]
+    assert filled.get("/v1/trees/cell").json() == second
+    assert filled.get("/v1/trees/cell@1").json() == first
+    assert filled.get(f"/v1/trees/cell@{second['digest']}").json() == second
+
+
+def test_removing_gives_back_the_old_content(filled: TestClient) -> None:
+    first = filled.get("/v1/trees/cell@1").json()
+    filled.post("/v1/trees/cell/couplings", json=HAND)
+    answer = filled.delete("/v1/trees/cell/couplings/hand")
+    assert answer.status_code == 201
+    third = answer.json()
+    assert (third["revision"], third["based_on"], third["digest"]) == (3, 2, first["digest"])
+    assert third["program"] == first["program"]
+
+
+def test_a_carrier_cannot_be_removed(filled: TestClient, rows: Any) -> None:
+    filled.post("/v1/trees/cell/couplings", json=HAND)
+    before = rows()
+    answer = filled.delete("/v1/trees/cell/couplings/arm")
+    assert answer.status_code == 409
+    assert "hand" in answer.json()["detail"]
+    assert filled.delete("/v1/trees/cell/couplings/nobody").status_code == 404
+    assert filled.delete("/v1/trees/nothing/couplings/arm").status_code == 404
+    assert rows() == before
+
+
+def test_inline_definition(filled: TestClient) -> None:
+    instance = {"name": "cart", "definition": {**SLIDER, "name": "never-submitted"}, "at": "world"}
+    answer = filled.post("/v1/trees", json={"name": "inline", "instances": [instance]})
+    assert answer.status_code == 201, answer.text
+    assert filled.get("/v1/substructures/never-submitted").status_code == 404
+    coupled = filled.post(
+        "/v1/trees/inline/couplings", json={"name": "p", "substructure": "pendulum", "at": "cart.top"}
+    )
+    assert coupled.json()["coordinates"] == ["cart.x", "p.q"]
+    submitted = filled.post("/v1/substructures", json={**SLIDER, "name": "never-submitted"})
+    assert submitted.status_code == 201
+
+
+def test_every_level_can_be_mounted_on(filled: TestClient) -> None:
+    for at in ("world", "arm.rod", "arm.tip"):
+        body = {"name": f"on_{at.replace('.', '_')}", "substructure": "slider", "at": at}
+        assert filled.post("/v1/trees/cell/couplings", json=body).status_code == 201
+    assert filled.get("/v1/trees/cell").json()["dof"] == 4
+
+
+def test_old_revisions_can_be_branched(filled: TestClient) -> None:
+    filled.post("/v1/trees/cell/couplings", json=HAND)
+    answer = filled.post("/v1/trees/cell@1/couplings", json={"name": "cart", "substructure": "slider", "at": "arm.tip"})
+    assert (answer.json()["revision"], answer.json()["based_on"]) == (3, 1)
+    assert answer.json()["coordinates"] == ["arm.q", "cart.x"]
+
+
+def test_concurrent_couplings_lose_nothing(filled: TestClient) -> None:
+    names = [f"s{k}" for k in range(6)]
+    codes: list[int] = []
+
+    def couple(name: str) -> None:
+        body = {"name": name, "substructure": "slider", "at": "arm.tip"}
+        codes.append(filled.post("/v1/trees/cell/couplings", json=body).status_code)
+
+    threads = [threading.Thread(target=couple, args=(name,)) for name in names]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert codes == [201] * 6
+    tree = filled.get("/v1/trees/cell").json()
+    assert tree["revision"] == 7
+    assert {instance["name"] for instance in tree["instances"]} == {"arm", *names}
+
+
+def test_if_match_guards_against_other_changes(filled: TestClient) -> None:
+    seen = {"If-Match": filled.get("/v1/trees/cell").headers["etag"]}
+    assert filled.post("/v1/trees/cell/couplings", json=HAND, headers=seen).status_code == 201
+    for answer in (
+        filled.post("/v1/trees/cell/couplings", json={**HAND, "name": "other"}, headers=seen),
+        filled.delete("/v1/trees/cell/couplings/hand", headers=seen),
+    ):
+        assert (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
+
+
+def test_list(filled: TestClient) -> None:
+    for k in range(4):
+        filled.post("/v1/trees", json={**TREE, "name": f"t{k}"})
+    found, url = [], "/v1/trees?page_size=2"
+    while url:
+        page = filled.get(url).json()
+        TreePage.model_validate(page)
+        found += [item["name"] for item in page["items"]]
+        url = page["links"]["next"]
+    assert found == ["cell", "t0", "t1", "t2", "t3"]
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "culprit"),
+    [
+        ({"at": "arm.nowhere"}, "/at", "nowhere"),
+        ({"at": "nobody.tip"}, "/at", "nobody"),
+        ({"substructure": "nothing"}, "/substructure", "nothing"),
+        ({"substructure": "pendulum@7"}, "/substructure", "pendulum@7"),
+        ({"name": "arm"}, "/name", "arm"),
+        ({"name": "1x"}, "/name", ""),
+        ({"parameters": {"mass": 1}}, "/parameters/mass", "mass"),
+        ({"parameters": {"m": "arm.m +"}}, "/parameters/m", "column"),
+        ({"parameters": {"m": "arm.nothing"}}, "/parameters/m", "nothing"),
+        ({"parameters": {"m": "hand.m"}}, "/parameters/m", "hand.m"),
+        ({"placement": {"position": [0, 0]}}, "/placement/position", ""),
+        ({"unknown": 1}, "/unknown", ""),
+    ],
+)
+def test_wrong_couplings(filled: TestClient, rows: Any, change: dict[str, Any], pointer: str, culprit: str) -> None:
+    before = rows()
+    answer = filled.post("/v1/trees/cell/couplings", json={**HAND, **change})
+    assert answer.status_code == 422, answer.text
+    errors = answer.json()["errors"]
+    assert any(error["pointer"].startswith(pointer) for error in errors), errors
+    assert any(culprit in error["message"] for error in errors), errors
+    assert rows() == before
+
+
+def test_hosts_in_a_cycle(filled: TestClient, rows: Any) -> None:
+    before = rows()
+    instances = [{"name": a, "substructure": "pendulum", "at": f"{b}.tip"} for a, b in (("a", "b"), ("b", "a"))]
+    answer = filled.post("/v1/trees", json={"name": "loop", "instances": instances})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == "/instances/0/at"
+    assert rows() == before
