@@ -16,13 +16,13 @@ from service.app import bare_app
 from service.client import Client, ProblemError
 from service.database import Database, DatabaseError
 from service.migrate import MigrationError
-from service.operations.lean import lean
 from service.queries.keys import list_keys, revoke_key
 from service.server import serve
 from service.settings import Settings, SettingsError, from_environment
 from substructures.definition import Definition
 from substructures.documents import read_json, read_yaml
 from substructures.errors import InvalidDocument, SubstructuresError
+from substructures.lean import lean
 from substructures.part import derive
 from substructures.printers import FORMATS, render
 

@@ -29,7 +29,7 @@ class Limits(BaseModel):
     program_nodes: int = Field(100_000, gt=0, description="most operations of a derived or coupled program")
     sync_seconds: float = Field(10.0, gt=0, description="longest time a request may compute, seconds")
     states: int = Field(1_000_000, gt=0, description="most states of one evaluation")
-    evaluation_operations: int = Field(10**8, gt=0, description="most states times operations of one evaluation")
+    evaluation_operations: int = Field(2 * 10**9, gt=0, description="most states times operations of one evaluation")
     page_size: int = Field(1000, gt=0, description="most items of a page")
     idempotency_hours: float = Field(24.0, gt=0, description="how long an Idempotency-Key is remembered, hours")
 

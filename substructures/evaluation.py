@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.errors import Fault, InvalidDocument
-from substructures.expr.interpret import interpret
+from substructures.expr.interpret import interpret_in_blocks
 from substructures.model import KINEMATICS, Model
 from substructures.states import Array, States, read_states, symbol_values
 
@@ -103,7 +103,7 @@ def evaluate(model: Model, request: Mapping[str, Any], limit: int | None = None)
     states = read_states(model, request, limit)
     needs = sorted({name for q in quantities for name in QUANTITIES[q].needs})
     values = symbol_values(model, request, states, needs)
-    batch = Batch(model, states, values, interpret(model.program, values, needs))
+    batch = Batch(model, states, values, interpret_in_blocks(model.program, values, needs, len(states.q)))
     answer: dict[str, Any] = {
         "coordinates": list(model.coordinates),
         "count": len(states.q),

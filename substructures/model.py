@@ -30,13 +30,11 @@ from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.base_functions import Twist, carried
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, transpose
 from substructures.mounting import Assembly, assemble, joint_parents
-from substructures.part import Part
+from substructures.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.skeleton import INTERFACE, christoffel_entries
 from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
-MAX_NODES = 1_000_000
-MAX_ENTRIES = 100_000
 QUANTITIES = ("metric", "christoffel", "gravity", "forces", "potential_energy", "linear_momentum", "angular_momentum")
 KINEMATICS = ("position", "rotation", "U", "Omega")
 
@@ -80,10 +78,10 @@ class Model:
         return cls(Program.from_bytes(program_bytes), *names, summary["parameters"], summary["certificate"])
 
 
-def couple(spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
+def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:
     """Couple stored parts (by instance name) to a model and verify it.
 
-    Raises InvalidDocument with pointers into the tree document, or TooLarge.
+    Raises InvalidDocument with pointers into the tree document, or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
     assembly = assemble(spec, parts)
@@ -98,8 +96,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
             "/instances", "division-by-zero", "with these bindings a formula divides by zero"
         ) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
-    if len(result) > MAX_NODES:
-        raise TooLarge("the program of the tree (in operations)", len(result), MAX_NODES)
+    if len(result) > max_nodes:
+        raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
     names = [
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates

@@ -20,6 +20,11 @@ from substructures.skeleton import BASE, Skeleton, christoffel_entries, skeleton
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
 
+#: most operations of a program by default
+MAX_NODES = 1_000_000
+#: most Christoffel symbols; known before anything is derived
+MAX_ENTRIES = 100_000
+
 
 @dataclass(frozen=True)
 class Formula:
@@ -161,10 +166,10 @@ LEADING: dict[str, tuple[str, ...]] = {
 }
 
 
-def derive(definition: Definition) -> Part:
+def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
-    Raises InvalidDocument (faults with pointers) or TooLarge.
+    Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
     m = mechanism(definition)
@@ -177,11 +182,7 @@ def derive(definition: Definition) -> Part:
     except ZeroDivisionError:
         raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
     result = program(m.graph, outputs, m.scope.symbols)
-    if len(result) > MAX_NODES:
-        raise TooLarge("the program of the substructure (in operations)", len(result), MAX_NODES)
+    if len(result) > max_nodes:
+        raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
     return Part(definition, result, certify_part(m, result, seconds))
-
-
-MAX_NODES = 1_000_000
-MAX_ENTRIES = 100_000

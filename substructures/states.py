@@ -111,7 +111,7 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
 def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
     """Values of all symbols that the needed outputs depend on."""
     count = len(states.q)
-    values: dict[str, Any] = {"": np.zeros(count)}
+    values: dict[str, Any] = {}
     for a, name in enumerate(model.coordinates):
         values[name] = states.q[:, a]
         values[f"{name}'"] = states.qd[:, a]

@@ -15,7 +15,6 @@ from service.references import ALIAS, Reference, parse_reference
 from service.store import Store
 from substructures.definition import Definition
 from substructures.documents import write_json
-from substructures.errors import TooLarge
 from substructures.part import Part, derive
 
 
@@ -41,17 +40,9 @@ def prepare(store: Store, definition: Definition) -> Submission:
     with store.database.read() as connection:
         if content.has_part(connection, definition.digest):
             return Submission(definition, None)
-    part = derive(definition)
-    check_size("the program of this substructure", len(part.program), store)
+    part = derive(definition, store.settings.limits.program_nodes)
     store.remember_part(part)
     return Submission(definition, part)
-
-
-def check_size(what: str, nodes: int, store: Store) -> None:
-    """Raise TooLarge when a program exceeds the limit."""
-    limit = store.settings.limits.program_nodes
-    if nodes > limit:
-        raise TooLarge(what, nodes, limit)
 
 
 def store_part(connection: Connection, part: Part) -> None:

@@ -94,8 +94,7 @@ def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_ex
     parts = {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
     pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
     spec = spec.model_copy(update={"instances": pinned})
-    model = couple(spec, parts)
-    catalogue.check_size("the program of this tree", len(model.program), store)
+    model = couple(spec, parts, store.settings.limits.program_nodes)
     store.remember_model(spec.digest, model)
     return Revision(spec, model, parts, base, is_exact)
 
@@ -118,10 +117,9 @@ def _derived(store: Store, index: int, instance: Instance) -> Part:
         raise ValueError("only an inline definition can be derived")
     step = f"/instances/{index}/definition"
     try:
-        part = derive(instance.definition)
+        part = derive(instance.definition, store.settings.limits.program_nodes)
     except InvalidDocument as error:
         raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
-    catalogue.check_size(f"the program of instance '{instance.name}'", len(part.program), store)
     store.remember_part(part)
     return part
 

@@ -9,7 +9,6 @@ from fastapi import APIRouter, Query, Request, Response
 from service.answers import Answer, etag, json_answer
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
-from service.operations.lean import lean
 from service.problems import not_found
 from service.queries import content
 from service.requests import StoreOf, conditional, needs
@@ -17,6 +16,7 @@ from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas import FormulaIndex
 from service.views import dump, formulas_view
+from substructures.lean import lean
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]

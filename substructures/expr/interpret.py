@@ -68,6 +68,21 @@ def interpret(program: Program, values: Mapping[str, Any], names: Iterable[str] 
     return {name: assemble(program.outputs[name], results, batch) for name in names}
 
 
+def interpret_in_blocks(
+    program: Program, values: Mapping[str, Any], names: Iterable[str], states: int, memory: int = 20_000_000
+) -> dict[str, Array]:
+    """:func:`interpret` for values that are floats or (states,), at most ``memory`` numbers at a time."""
+    names = list(names)
+    block = max(1, memory // max(1, len(program.reachable(names))))
+    arrays = {name: np.asarray(v, dtype=np.float64) for name, v in values.items()}
+    results = {name: np.empty((states, *program.outputs[name].shape)) for name in names}
+    for start in range(0, states, block):
+        part = {name: v[start : start + block] if v.shape == (states,) else v for name, v in arrays.items()}
+        for name, x in interpret(program, part, names).items():
+            results[name][start : start + block] = x
+    return results
+
+
 def _lookup(name: str, values: Mapping[str, Any]) -> Any:
     try:
         return np.asarray(values[name], dtype=np.float64)
