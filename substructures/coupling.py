@@ -44,6 +44,7 @@ USED = (
     *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
+OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J")
 
 
 @dataclass
@@ -77,6 +78,7 @@ class State:
     """What the two passes know of a mounted part."""
 
     stored: Stored
+    own: Stored  #: own inertia of the bodies, without what is mounted on them
     links: list[Link]
     tau: list[S]
     momenta: list[JointMomentum]
@@ -164,7 +166,7 @@ def _pay(
 
 
 def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
-    own = Stored(replay(m.part.program, graph, m.bindings, ("inertia.m", "inertia.s", "inertia.J")))
+    own = Stored(replay(m.part.program, graph, m.bindings, OWN))
     bindings = dict(m.bindings)
     for k, symbols in m.part.inertia_symbols.items():
         carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
@@ -174,7 +176,7 @@ def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
     joints = m.part.skeleton.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
     momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
-    return State(stored, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)
+    return State(stored, own, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)
 
 
 def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[State], gravity: Vector) -> None:

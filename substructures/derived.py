@@ -1,4 +1,4 @@
-"""Formulas that follow from metric, Christoffel symbols and forces: Coriolis matrix, bias, energy, inverse dynamics."""
+"""Formulas that follow from metric, Christoffel symbols and forces: Coriolis matrix, inverse dynamics, energy."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class _Replayed:
     def inverse_dynamics(self) -> dict[tuple[int, ...], Expr]:
         """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a."""
         result = self.product(self.elements("metric"), "''")
-        for index, x in self.product(self.coriolis(), "'").items():
+        for index, x in self.elements("bias").items():
             result[index] = result.get(index, self.graph.zero) + x
         for index, x in self.elements("forces").items():
             result[index] = result.get(index, self.graph.zero) - x
@@ -69,7 +69,6 @@ class _Replayed:
 
 _SHAPES: dict[str, tuple[int, Callable[[_Replayed], dict[tuple[int, ...], Any]]]] = {
     "coriolis": (2, _Replayed.coriolis),
-    "bias": (1, lambda r: r.product(r.coriolis(), "'")),
     "inverse_dynamics": (1, _Replayed.inverse_dynamics),
     "kinetic_energy": (0, _Replayed.kinetic_energy),
 }
@@ -79,7 +78,7 @@ DERIVED = tuple(_SHAPES)
 def derived(model: Model, quantity: str) -> Program:
     """A quantity of DERIVED as a program with one output of that name (mathematics.md, section 7).
 
-    coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; bias (n,): Gamma_abc q'^b q'^c;
+    coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew;
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N]; kinetic_energy (): [J].
     Velocities are the symbols q', accelerations q''. Raises KeyError for another name.
     """

@@ -29,10 +29,6 @@ class Batch:
         """An output of the program, (N, ...)."""
         return self.outputs[name]
 
-    def bias(self) -> Array:
-        """Gamma_abc q'^b q'^c."""
-        return np.einsum("nabc,nb,nc->na", self.output("christoffel"), self.states.qd, self.states.qd)
-
 
 @dataclass(frozen=True)
 class Quantity:
@@ -45,12 +41,12 @@ class Quantity:
 def _inverse_dynamics(b: Batch) -> Array:
     if b.states.qdd is None:
         raise InvalidDocument.at("/qdd", "missing", "inverse_dynamics needs accelerations 'qdd'")
-    return np.einsum("nab,nb->na", b.output("metric"), b.states.qdd) + b.bias() - b.output("forces")
+    return np.einsum("nab,nb->na", b.output("metric"), b.states.qdd) + b.output("bias") - b.output("forces")
 
 
 def _forward_dynamics(b: Batch) -> Array:
     """q'' from g q'' = Q - Gamma q' q'; NaN where the metric is singular (the state is listed in the failures)."""
-    rhs = b.output("forces") - b.bias()
+    rhs = b.output("forces") - b.output("bias")
     result = np.full_like(rhs, np.nan)
     for i, (g, f) in enumerate(zip(b.output("metric"), rhs, strict=True)):
         try:
@@ -77,11 +73,10 @@ def _output(name: str) -> Quantity:
 
 
 QUANTITIES: dict[str, Quantity] = {
-    **{name: _output(name) for name in ("metric", "christoffel", "forces", "gravity", "potential_energy")},
+    **{name: _output(name) for name in ("metric", "christoffel", "forces", "gravity", "bias", "potential_energy")},
     "coriolis": Quantity(("christoffel",), lambda b: np.einsum("nabc,nc->nab", b.output("christoffel"), b.states.qd)),
-    "bias": Quantity(("christoffel",), Batch.bias),
-    "inverse_dynamics": Quantity(("metric", "christoffel", "forces"), _inverse_dynamics),
-    "forward_dynamics": Quantity(("metric", "christoffel", "forces"), _forward_dynamics),
+    "inverse_dynamics": Quantity(("metric", "bias", "forces"), _inverse_dynamics),
+    "forward_dynamics": Quantity(("metric", "bias", "forces"), _forward_dynamics),
     "kinetic_energy": Quantity(("metric",), _kinetic_energy),
     "kinematics": Quantity(KINEMATICS, lambda b: {name: b.output(name) for name in KINEMATICS}),
     "momentum": Quantity(("linear_momentum", "angular_momentum"), _momentum),

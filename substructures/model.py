@@ -6,6 +6,7 @@ output                 shape        meaning
 metric                 n n          g_ab [kg m^2, kg m, kg]
 christoffel            n n n        Gamma_abc, first kind, first index = equation
 gravity                n            generalised gravity forces
+bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
 potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
 linear_momentum        n 3          momentum of unit velocity q'^a, world axes
@@ -24,6 +25,7 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
+from substructures.bias import bias_forces
 from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
@@ -103,7 +105,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
     joints = "".join(m.part.joints for m in assembly.mounted)
-    certificate = certify_tree(assembly, result, seconds)
+    certificate = certify_tree(assembly, names, result, seconds)
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
     return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate)
@@ -119,7 +121,19 @@ def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
+    bias = bias_forces(assembly.mounted, coupled.states, _rates(assembly))
+    outputs["bias"] = array((n,), lambda a: bias[a])
     return outputs | _momentum(assembly, coupled) | _kinematics(assembly, coupled)
+
+
+def _rates(assembly: Assembly) -> list[Any]:
+    """The symbols of all velocities."""
+    rates = []
+    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
+        for joint in m.part.skeleton.joints:
+            name = f"{instance.name}.{joint.coordinate}'"
+            rates.append(assembly.scope.declare(name, "velocity", "m/s" if joint.s else "rad/s"))
+    return rates
 
 
 def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:

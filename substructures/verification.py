@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -32,9 +32,10 @@ class Seat:
     z: Array
 
 
-def certify_tree(assembly: Assembly, result: Program, seconds: float) -> dict[str, Any]:
-    """Compare metric, Christoffel symbols and gravity forces with the direct form at random states.
+def certify_tree(assembly: Assembly, names: Sequence[str], result: Program, seconds: float) -> dict[str, Any]:
+    """Compare metric, Christoffel symbols, gravity and velocity forces with the direct form at random states.
 
+    ``names``: the coordinates of the tree.
     Raises VerificationFailed.
     """
     start = perf_counter()
@@ -44,8 +45,10 @@ def certify_tree(assembly: Assembly, result: Program, seconds: float) -> dict[st
     if joints:
         form = direct_form(joints, _gravity(assembly, values))
         form.metric[...] += armature[..., None] * np.eye(len(joints))
-        computed = interpret(result, values, ["metric", "christoffel", "gravity"])
-        expected = {"metric": form.metric, "christoffel": form.christoffel, "gravity": form.gravity}
+        rates = np.stack([values[f"{name}'"] for name in names], axis=-1)
+        bias = np.einsum("nabc,nb,nc->na", form.christoffel, rates, rates)
+        expected = {"metric": form.metric, "christoffel": form.christoffel, "gravity": form.gravity, "bias": bias}
+        computed = interpret(result, values, list(expected))
         certificate["direct_form"] = compare(computed, expected)
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate

@@ -1,0 +1,81 @@
+"""Accelerations at q'' = 0 and the forces they need: Gamma_abc q'^b q'^c without the Christoffel symbols.
+
+Written for a body frame with origin B: omega, alpha and the acceleration of B in frame k. With the matrix
+A = skew(alpha) + skew(omega)^2 a point x of the body has the acceleration a + A x, so that (m, s, J) about B give the
+force m a + A s and the moment s x a + axial(A J), n_i = eps_ijk (A J)_kj (Luh, Walker, Paul 1980, in Binet form).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from substructures.mechanics.inertia import Inertia
+from substructures.mechanics.linear3 import (
+    E3,
+    ZERO,
+    Matrix,
+    Rotation,
+    S,
+    Vector,
+    add,
+    apply,
+    cross,
+    dense,
+    dot,
+    scale,
+    transpose,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """omega [rad/s], alpha [rad/s^2] of a body and the acceleration a [m/s^2] of a point of it, in its frame."""
+
+    omega: Vector = ZERO
+    alpha: Vector = ZERO
+    a: Vector = ZERO
+
+    def field(self) -> Matrix:
+        """A = skew(alpha) + skew(omega)^2."""
+        x, y, z = self.omega
+        xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+        p, q, r = self.alpha
+        return (-(yy + zz), xy - r, xz + q), (xy + r, -(xx + zz), yz - p), (xz - q, yz + p, -(xx + yy))
+
+    def at(self, z: Vector, rotation: Rotation) -> Motion:
+        """The same body's motion at the point z, in a turned frame."""
+        a = add(self.a, apply(self.field(), z))
+        return Motion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
+
+    def moved(self, s: int, rate: S, tau: S) -> Motion:
+        """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q'' = 0."""
+        a = add(self.a, apply(self.field(), (0, 0, tau)))
+        turning = scale(rate, cross(self.omega, E3))
+        if s:
+            return Motion(self.omega, self.alpha, add(a, scale(2, turning)))
+        return Motion(add(self.omega, (0, 0, rate)), add(self.alpha, turning), a)
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A force and its moment about the origin of a frame, in that frame."""
+
+    f: Vector = ZERO
+    n: Vector = ZERO
+
+    def __add__(self, other: Load) -> Load:
+        return Load(add(self.f, other.f), add(self.n, other.n))
+
+    def before(self, z: Vector, rotation: Rotation) -> Load:
+        """About the origin of the frame before, from which z leads to this one."""
+        f = rotation.back(self.f)
+        return Load(f, add(rotation.back(self.n), cross(z, f)))
+
+
+def inertial_load(motion: Motion, inertia: Inertia) -> Load:
+    """What moves the body like that: m a + A s, s x a + axial(A J)."""
+    A = motion.field()
+    x, y, z = transpose(dense(inertia.J))
+    moment = (dot(A[2], y) - dot(A[1], z), dot(A[0], z) - dot(A[2], x), dot(A[1], x) - dot(A[0], y))
+    force = add(scale(inertia.m, motion.a), apply(A, inertia.s))
+    return Load(force, add(cross(inertia.s, motion.a), moment))
