@@ -17,7 +17,7 @@ from typing import Any
 from benchmarks.chains import ROWS_14, chain, general_rows, pieces, row_of
 from benchmarks.kane import derive_by_kane, operations
 from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
-from substructures.coupling import couple_parts
+from substructures.coupling import couple_parts, over_formulas
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mounting import assemble
 from substructures.one_piece import derive_in_one_piece
@@ -57,7 +57,7 @@ def paired(a: Callable[[], Any], b: Callable[[], Any], repeat: int = 11) -> tupl
 def coupled_equations(spec: TreeSpec, parts: dict[str, Part]) -> Program:
     """Coupling alone: metric, Christoffel symbols and gravity forces, without kinematics and verification."""
     assembly = assemble(spec, parts)
-    result = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
+    result = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
     n = len(result.gravity)
     outputs = {
         "metric": Formulas((n, n), result.metric, "symmetric"),

@@ -8,7 +8,7 @@ Measured against expressing those products in the interface frame (f, n, K), thi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
@@ -44,7 +44,11 @@ USED = (
     *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
+FRAMES = ("frame.E", "frame.position")
 OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J")
+
+#: the outputs of a part's stored program, by name, for the given values of its symbols
+Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
 
 
 @dataclass
@@ -56,7 +60,7 @@ class Mounted:
     frame: int
     E: Matrix
     position: Vector
-    bindings: dict[str, Expr]
+    bindings: dict[str, S]
     first: int = 0  #: index of its first coordinate in the tree
 
 
@@ -117,12 +121,25 @@ class Coupled:
     states: list[State]
 
 
-def couple_parts(graph: Graph, mounted: Sequence[Mounted], gravity: Vector) -> Coupled:
-    """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them."""
+def over_formulas(graph: Graph) -> Run:
+    """Stored programs as formulas in a graph."""
+
+    def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+        lifted = {name: x if isinstance(x, Expr) else graph.number(x) for name, x in bindings.items()}
+        return Stored(replay(part.program, graph, lifted, names))
+
+    return run
+
+
+def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector) -> Coupled:
+    """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them.
+
+    ``run`` gives the outputs of a stored program over the scalars of the bindings: formulas, floats or arrays.
+    """
     n = 0
     for part in mounted:
         part.first, n = n, n + part.part.dof
-    states, total = _pass_up(graph, mounted)
+    states, total = _pass_up(run, mounted)
     result = Coupled({}, {}, [0] * n, [0] * n, -dot(gravity, total.s), states)
     for m, state in zip(mounted, states, strict=True):
         _place(m, state, mounted, states, gravity)
@@ -133,19 +150,19 @@ def couple_parts(graph: Graph, mounted: Sequence[Mounted], gravity: Vector) -> C
     return result
 
 
-def _pass_up(graph: Graph, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
-    """Replays every program with the inertia of what is mounted on it; the total is about the world's origin."""
+def _pass_up(run: Run, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
+    """Runs every program with the inertia of what is mounted on it; the total is about the world's origin."""
     payload: list[dict[int, Inertia]] = [{} for _ in mounted]
     states: list[State] = [None] * len(mounted)  # type: ignore[list-item]
     total = Inertia()
     for i in reversed(range(len(mounted))):
         m = mounted[i]
-        states[i] = state = _replayed(graph, m, payload[i])
+        states[i] = state = _state(run, m, payload[i])
         whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
         if m.host == WORLD:
             total = total + _moved(whole, m.E, m.position)
         else:
-            _pay(graph, mounted, payload, m, whole)
+            _pay(run, mounted, payload, m, whole)
     return states, total
 
 
@@ -153,26 +170,24 @@ def _moved(inertia: Inertia, E: Matrix, position: Vector) -> Inertia:
     return inertia.turned_back(lean_rotation(E, 1, 0)).shifted(position)
 
 
-def _pay(
-    graph: Graph, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia
-) -> None:
+def _pay(run: Run, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia) -> None:
     """Add the composite of a part to what the carrier of its frame has to carry."""
     host = mounted[m.host].part
-    frame = Stored(replay(host.program, graph, mounted[m.host].bindings, ("frame.E", "frame.position")))
+    frame = run(host, mounted[m.host].bindings, FRAMES)
     E, position = frame.matrix("frame.E", m.frame), frame.vector("frame.position", m.frame)
     carrier = host.frame_carriers[m.frame]
     inertia = _moved(_moved(whole, m.E, m.position), E, position)
     payload[m.host][carrier] = payload[m.host].get(carrier, Inertia()) + inertia
 
 
-def _replayed(graph: Graph, m: Mounted, payload: dict[int, Inertia]) -> State:
-    own = Stored(replay(m.part.program, graph, m.bindings, OWN))
+def _state(run: Run, m: Mounted, payload: dict[int, Inertia]) -> State:
+    own = run(m.part, m.bindings, OWN)
     bindings = dict(m.bindings)
     for k, symbols in m.part.inertia_symbols.items():
         carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
         values = (carried_here.m, *carried_here.s, *carried_here.J)
-        bindings |= {s: v if isinstance(v, Expr) else graph.number(v) for s, v in zip(symbols, values, strict=True)}
-    stored = Stored(replay(m.part.program, graph, bindings, USED))
+        bindings |= zip(symbols, values, strict=True)
+    stored = run(m.part, bindings, USED)
     joints = m.part.skeleton.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
     momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]

@@ -26,7 +26,7 @@ from time import perf_counter
 from typing import Any
 
 from substructures.bias import bias_forces
-from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link
+from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.base_functions import Twist, carried
@@ -91,7 +91,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     if entries > MAX_ENTRIES:
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
     try:
-        coupled = couple_parts(assembly.scope.graph, assembly.mounted, assembly.gravity)
+        coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
         outputs = model_outputs(assembly, coupled)
     except ZeroDivisionError:
         raise InvalidDocument.at(
