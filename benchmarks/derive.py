@@ -19,6 +19,9 @@ from benchmarks.kane import derive_by_kane, operations
 from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
 from substructures.coupling import couple_parts, over_formulas
 from substructures.expr.program import Formulas, Program, array, program
+from substructures.interface import formulas
+from substructures.loads import read_loads
+from substructures.mechanism import mechanism
 from substructures.mounting import assemble
 from substructures.one_piece import derive_in_one_piece
 
@@ -96,16 +99,22 @@ def one_piece(figures: dict[str, float]) -> None:
     print("   (inertial parameters m, s, J as symbols; published generated code: M 1,655; C matrix 6,374)")
     spec, library = humanoid()
     parts = {i.name: derive(library[str(i.substructure)]) for i in spec.instances}
-    seconds, _ = timed(lambda: [derive(d) for d in library.values()] and couple(spec, parts), 5)
-    figures["derive_34dof_s"] = seconds
-    coupling, model = timed(lambda: coupled_equations(spec, parts), 3)
-    figures["couple_34dof_s"] = coupling
+    verified, _ = timed(lambda: [derive(d) for d in library.values()] and couple(spec, parts), 5)
+    deriving, _ = timed(lambda: [derived_formulas(d) for d in library.values()], 5)
+    coupling, model = timed(lambda: coupled_equations(spec, parts), 5)
+    figures["derive_34dof_s"] = deriving + coupling
+    figures["derive_verify_34dof_s"] = verified
     total = model.count(EQUATIONS)["total"]
-    print(f"humanoid of {len(spec.instances)} parts, {model.outputs['gravity'].shape[0]} dof: ", end="")
-    print(
-        f"parts derived and verified, coupled and verified {seconds:.2f} s; coupling alone {coupling:.2f} s, ", end=""
-    )
-    print(f"{total:,} operations")
+    dof = model.outputs["gravity"].shape[0]
+    print(f"humanoid of {len(spec.instances)} parts ({len(library)} different), {dof} dof; {total:,} operations")
+    print(f"   formulas derived {deriving:.3f} s, coupled {coupling:.3f} s (M, all Gamma, gravity)")
+    print(f"   with kinematics, momenta, operation counts, and everything verified at random states: {verified:.2f} s")
+
+
+def derived_formulas(definition: Definition) -> Program:
+    """All stored formulas of a part, without verification."""
+    m = mechanism(definition)
+    return program(m.graph, formulas(m, read_loads(m)), m.scope.symbols)
 
 
 def humanoid() -> tuple[TreeSpec, dict[str, Definition]]:

@@ -1,0 +1,124 @@
+"""Times of the service over HTTP on loopback, from a second process' point of view.
+
+python -m benchmarks.http [--json FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+from time import perf_counter, sleep
+from typing import Any
+
+import numpy as np
+
+from service.client import Client
+from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures.evaluation import evaluate
+
+PORT = 18_733
+STATES = 20_000
+
+
+@contextmanager
+def server(folder: str) -> Iterator[Client]:
+    """The service in a process of its own, on an empty database."""
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(PORT)]
+    process = subprocess.Popen([*command, "--database", f"sqlite:///{folder}/bench.db"], stderr=subprocess.DEVNULL)
+    try:
+        with Client(f"http://127.0.0.1:{PORT}") as client:
+            wait(client)
+            yield client
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def wait(client: Client) -> None:
+    """Until the server answers; at most a minute."""
+    for _ in range(600):
+        try:
+            client.request("GET", "/livez")
+        except Exception:
+            sleep(0.1)
+        else:
+            return
+    raise TimeoutError("the server did not start")
+
+
+def milliseconds(work: Callable[[], Any], repeat: int) -> float:
+    """Median wall time."""
+    times = []
+    for _ in range(repeat):
+        start = perf_counter()
+        work()
+        times.append(perf_counter() - start)
+    return median(times) * 1e3
+
+
+def couplings(client: Client) -> float:
+    """POST .../couplings of a 6 dof arm onto a 6 dof tree, each time a new tree."""
+    times = []
+    for i in range(15):
+        base = {"name": "arm", "substructure": "ur5"}
+        client.create_tree({"name": f"cell{i}", "gravity": [0, 0, "-9.81"], "instances": [base]})
+        guest = {"name": "second", "substructure": "puma560", "at": "arm.flange"}
+        start = perf_counter()
+        client.couple(f"cell{i}", guest)
+        times.append(perf_counter() - start)
+    return median(times) * 1e3
+
+
+def batch(client: Client, figures: dict[str, float]) -> None:
+    """A batch as npz over HTTP beside the same call in this process."""
+    spec = TreeSpec.read(
+        {"name": "own", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "ur5"}]}
+    )
+    model = couple(spec, {"arm": derive(Definition.read(catalogue.load("ur5")))})
+    q = np.random.default_rng(0).uniform(-3, 3, (STATES, 6))
+    request: dict[str, Any] = {"quantities": ["metric", "forces"], "q": q}
+    inside = milliseconds(lambda: evaluate(model, request), 5)
+    buffer = io.BytesIO()
+    np.savez(buffer, q=q, quantities=np.array(["metric", "forces"]))
+    headers = {"Content-Type": "application/x-npz", "Accept": "application/x-npz"}
+
+    def over_http() -> None:
+        client.request("POST", "/v1/trees/cell0@1/evaluations", content=buffer.getvalue(), headers=headers)
+
+    outside = milliseconds(over_http, 5)
+    figures["http_batch_share"] = inside / outside
+    print(f"{STATES:,} states of a 6 dof arm, M and Q, npz: {outside:.0f} ms; in process {inside:.0f} ms", end="")
+    print(f" ({inside / outside:.2f} of the in-process rate)")
+
+
+def main() -> None:
+    """Print the table; with --json FILE write the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    figures: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as folder, server(folder) as client:
+        figures["http_get_ms"] = milliseconds(lambda: client.substructure("puma560"), 200)
+        print(f"GET a catalogue entry: {figures['http_get_ms']:.1f} ms")
+        figures["http_couple_6_6_ms"] = couplings(client)
+        print(f"POST couplings, 6 dof onto 6 dof, verified and stored: {figures['http_couple_6_6_ms']:.0f} ms")
+        state: dict[str, Any] = {"quantities": ["metric", "forces"], "q": [0.1] * 6}
+        figures["http_one_state_ms"] = milliseconds(
+            lambda: client.request("POST", "/v1/trees/cell0@1/evaluations", state), 200
+        )
+        print(f"POST evaluations, one state of a 6 dof arm, M and Q: {figures['http_one_state_ms']:.1f} ms")
+        batch(client, figures)
+    if arguments.json:
+        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
