@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from service.cache import Cache
 from service.database import Connection, Database
 from service.metrics import Metrics
@@ -10,8 +12,11 @@ from service.queries.trees import Tree
 from service.settings import Settings
 from substructures.definition import Definition
 from substructures.documents import read_json
-from substructures.model import Model
+from substructures.model import Model, couple
 from substructures.part import Part
+from substructures.tree import TreeSpec
+
+PICTURES = 16 * 2**20  # characters
 
 
 class Store:
@@ -21,6 +26,7 @@ class Store:
         self.settings, self.database, self.metrics = settings, database, metrics
         self._parts: Cache[Part] = Cache(settings.cache_nodes // 2, lambda part: len(part.program))
         self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
+        self.pictures: Cache[str] = Cache(PICTURES, len)
 
     def part(self, connection: Connection, digest: str) -> Part | None:
         """The part with this digest, decoded; None when it is not stored."""
@@ -46,6 +52,15 @@ class Store:
                 raise LookupError(f"the program of tree {tree.name}@{tree.revision} is missing")
             model = Model.load(read_json(tree.summary.encode()), program)
             self._models.put(tree.digest, model)
+        return model
+
+    def coupled(self, spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
+        """The model of a tree that is not stored, coupled unless it is remembered. Raises as ``couple`` does."""
+        model = self._models.get(spec.digest)
+        self.metrics.cache("model", model is not None)
+        if model is None:
+            model = couple(spec, parts, self.settings.limits.program_nodes)
+            self._models.put(spec.digest, model)
         return model
 
     def remember_model(self, digest: str, model: Model) -> None:

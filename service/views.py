@@ -49,6 +49,7 @@ def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
             "self": path,
             "definition": f"{path}/definition",
             "formulas": f"{path}/formulas",
+            "picture": f"{path}/picture",
             "latest": f"{BASE}/substructures/{version.name}",
             "aliases": f"{BASE}/substructures/{version.name}/aliases",
         },
@@ -121,7 +122,7 @@ def tree_view(tree: Tree) -> bytes:
         "created": tree.created,
         "based_on": tree.based_on,
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
-        | {quantity: f"{path}/{quantity}" for quantity in quantities},
+        | {name: f"{path}/{name}" for name in (*quantities, "picture")},
     }
     return dump(names)[:-1] + b"," + tree.summary.encode()[1:]
 

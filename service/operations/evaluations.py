@@ -29,11 +29,11 @@ def compute(model: Model, request: Any, limits: Limits) -> dict[str, Any]:
     """Arrays by name, and ``failures``. Raises InvalidDocument, MissingValue, TooLarge."""
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    _check_size(model, request, limits)
+    check_size(model, request, limits)
     return evaluate(model, request, limits.states)
 
 
-def _check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None:
+def check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None:
     """Refuse what would take too long or too much memory, before anything is computed."""
     states = _states(request.get("q")) or 1
     given = request.get("quantities")

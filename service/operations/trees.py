@@ -90,13 +90,18 @@ def _existing(store: Store, text: str, if_match: str | None) -> tuple[trees.Tree
 
 def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_exact: bool = False) -> Revision:
     with store.database.read() as connection:
-        found = [_part(store, connection, index, instance) for index, instance in enumerate(spec.instances)]
-    parts = {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
+        parts = parts_of(store, connection, spec)
     pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
     spec = spec.model_copy(update={"instances": pinned})
     model = couple(spec, parts, store.settings.limits.program_nodes)
     store.remember_model(spec.digest, model)
     return Revision(spec, model, parts, base, is_exact)
+
+
+def parts_of(store: Store, connection: Connection, spec: TreeSpec) -> dict[str, Part]:
+    """The part that every instance is; an inline definition that is not stored is derived. Raises InvalidDocument."""
+    found = [_part(store, connection, index, instance) for index, instance in enumerate(spec.instances)]
+    return {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
 
 
 def _part(store: Store, connection: Connection, index: int, instance: Instance) -> Part:

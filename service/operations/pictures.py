@@ -1,0 +1,96 @@
+"""Pictures of parts and trees in one pose, as SVG; those in the standard pose are kept."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.database import Connection
+from service.operations import trees
+from service.operations.evaluations import check_size
+from service.problems import unprocessable
+from service.queries.catalogue import Version
+from service.queries.trees import Tree
+from service.store import Store
+from substructures.documents import read_json
+from substructures.model import Model
+from substructures.part import Part
+from substructures.picture import picture
+from substructures.tree import TreeSpec
+
+Pose = tuple[float, ...]
+INSTANCE = "part"
+LARGEST = 1e6
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What there is to draw."""
+
+    spec: TreeSpec
+    parts: Mapping[str, Part]
+    model: Model
+
+
+def read_pose(text: str | None, dof: int) -> Pose | None:
+    """The pose of ``?q=0.1,0.2``; None for the standard one. Raises Refused 422 with the pointer ``/query/q``."""
+    if text is None:
+        return None
+    fields = [field.strip() for field in text.split(",")] if text.strip() else []
+    if len(fields) != dof:
+        raise unprocessable("q", f"expected {dof} comma separated numbers, found {len(fields)}", "/query/q")
+    for field in fields:
+        if not _NUMBER.fullmatch(field) or not math.isfinite(float(field)) or abs(float(field)) > LARGEST:
+            detail = f"'{field[:40]}' is no number between -{LARGEST:g} and {LARGEST:g} (rad or m)"
+            raise unprocessable("q", detail, "/query/q")
+    return tuple(map(float, fields))
+
+
+def draw_part(store: Store, version: Version, pose: Pose | None) -> str:
+    """SVG of a part alone, mounted on the world. Raises TooLarge."""
+    return _kept(store, version.digest, pose) or _draw(store, version.digest, _part_scene(store, version), pose)
+
+
+def draw_tree(store: Store, tree: Tree, pose: Pose | None) -> str:
+    """SVG of a revision of a tree. Raises TooLarge."""
+    return _kept(store, tree.digest, pose) or _draw(store, tree.digest, _tree_scene(store, tree), pose)
+
+
+def _kept(store: Store, digest: str, pose: Pose | None) -> str | None:
+    return store.pictures.get(digest) if pose is None else None
+
+
+def _draw(store: Store, digest: str, scene: Scene, pose: Pose | None) -> str:
+    check_size(scene.model, {"quantities": ["kinematics"], "q": pose}, store.settings.limits)
+    with np.errstate(all="ignore"):  # defaults of any size may be stored; what is not finite is not drawn
+        svg = picture(scene.spec, scene.parts, scene.model, None if pose is None else list(pose))
+    if pose is None:
+        store.pictures.put(digest, svg)
+    return svg
+
+
+def _part_scene(store: Store, version: Version) -> Scene:
+    with store.database.read() as connection:
+        part = _stored(store, connection, version)
+    instance = {"name": INSTANCE, "substructure": f"{version.name}@{version.digest}"}
+    spec = TreeSpec.read({"name": version.name, "instances": [instance]})
+    parts = {INSTANCE: part}
+    return Scene(spec, parts, store.coupled(spec, parts))
+
+
+def _stored(store: Store, connection: Connection, version: Version) -> Part:
+    part = store.part(connection, version.digest)
+    if part is None:
+        raise LookupError(f"the part {version.digest} is missing")
+    return part
+
+
+def _tree_scene(store: Store, tree: Tree) -> Scene:
+    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    with store.database.read() as connection:
+        return Scene(spec, trees.parts_of(store, connection, spec), store.model(connection, tree))

@@ -1,0 +1,137 @@
+"""The first page: what this is, how to couple two parts, and everything that is stored."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+
+from service.pages.html import Content, Html, joined, link, table, tag
+from service.pages.layout import FILTER, document
+from service.queries.catalogue import Version
+from service.queries.trees import Tree
+from service.views import tree_path, version_path
+
+EQUATION = Html(
+    "g<sub>ab</sub>(q)&#8201;q&#776;<sup>b</sup> + &#915;<sub>abc</sub>(q)&#8201;q&#775;<sup>b</sup>"
+    "&#8201;q&#775;<sup>c</sup> = Q<sub>a</sub>"
+)
+PREFERRED = ("puma560", "parallel-gripper", "flange")
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What the page lists. ``total`` and ``more``: how many parts there are, whether there are more trees."""
+
+    versions: Sequence[Version]
+    total: int
+    trees: Sequence[Tree]
+    more: bool
+
+
+def page(shown: Shown, address: str, with_key: bool) -> bytes:
+    """The bytes of the page; ``address`` is the server's own, ``with_key``: requests need an API key."""
+    return document(
+        "substructures",
+        tag("h1", "Equations of motion from stored parts"),
+        tag("p", "Every part below is stored with its formulas, derived once and verified."),
+        tag(
+            "p",
+            "Coupling parts to a tree gives ",
+            EQUATION,
+            " of the whole, as formulas or as numbers, with any parameters left open.",
+        ),
+        *_example(shown.versions, address, with_key),
+        *_catalogue(shown),
+        *_trees(shown),
+        script=FILTER,
+    )
+
+
+def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[Html]:
+    chosen = _pair(versions)
+    if chosen is None:
+        text = f"Nothing is stored yet: send a definition to POST {address}/v1/substructures."
+        return [tag("h2", "Couple two parts"), tag("p", text)]
+    key = ' -H "Authorization: Bearer $SUBSTRUCTURES_KEY"' if with_key else ""
+    arm, hand, port = (json.dumps(name) for name in (chosen[0], chosen[1], f"arm.{chosen[2]}"))
+    command = (
+        f"curl -s {address}/v1/trees -H 'Content-Type: application/json'{key} -d '{{\n"
+        f'  "name": "cell", "gravity": [0, 0, "-9.81"],\n'
+        f'  "instances": [{{"name": "arm", "substructure": {arm}}},\n'
+        f'                {{"name": "hand", "substructure": {hand}, "at": {port}}}]}}\''
+    )
+    metric = f"{address}/v1/trees/cell/metric?format=text"
+    after = ("Then read its metric at ", tag("code", metric), " and see it at ", tag("code", f"{address}/trees/cell"))
+    return [tag("h2", "Couple two parts"), tag("pre", tag("code", command), tabindex="0"), tag("p", after, ".")]
+
+
+def _pair(versions: Sequence[Version]) -> tuple[str, str, str] | None:
+    """Two parts and the port of the first that the second is mounted on."""
+    ports = {version.name: orjson.loads(version.ports) for version in versions}
+    arm, hand, port = PREFERRED
+    if port in ports.get(arm, ()) and hand in ports:
+        return PREFERRED
+    return next(((name, name, some[-1]) for name, some in ports.items() if some), None)
+
+
+def _catalogue(shown: Shown) -> list[Html]:
+    count = tag("span", len(shown.versions), id="count")
+    note: Content = [count, f" of {shown.total:,} parts"]
+    if shown.total > len(shown.versions):
+        note = [note, "; search all of them with ", tag("code", "GET /v1/substructures?q=")]
+    label = "Filter by name, title, tag, joints"
+    box = tag("input", id="filter", type="search", placeholder=label, aria_label=label, autocomplete="off")
+    bar = tag("div", box, tag("span", note, class_="quiet", role="status"), class_="bar")
+    return [tag("h2", "Catalogue"), bar, tag("div", [_card(v) for v in shown.versions], class_="cards")]
+
+
+def _card(version: Version) -> Html:
+    tags = orjson.loads(version.tags)
+    path, own = version_path(version), f"/substructures/{version.name}@{version.version}"
+    words = (version.name, version.title, version.description, *tags, version.joints)
+    picture = tag(
+        "img", src=f"{path}/picture", alt=f"Picture of {version.name}", loading="lazy", width="320", height="240"
+    )
+    return tag(
+        "article",
+        link(picture, own),
+        tag("h3", link(version.title or version.name, own)),
+        tag("div", tag("code", f"{version.name}@{version.version}")),
+        tag("div", size(version.dof, version.joints)),
+        tag("div", joined(tags), class_="quiet small"),
+        tag("div", joined(links(version), " · "), class_="links small"),
+        class_="card",
+        data_text=" ".join(words).lower(),
+    )
+
+
+def size(dof: int, joints: str) -> str:
+    """Degrees of freedom and joints in words."""
+    return f"{dof} dof, joints {joints}" if dof else "0 dof"
+
+
+def links(version: Version) -> list[Html]:
+    """Where the API gives definition and formulas of a version."""
+    path = version_path(version)
+    metric: list[Any] = [link("metric as text", f"{path}/formulas/metric?format=text")] if version.dof else []
+    return [link("definition", f"{path}/definition"), link("formulas", f"{path}/formulas"), *metric]
+
+
+def _trees(shown: Shown) -> list[Html]:
+    if not shown.trees:
+        return []
+    rows = [
+        (
+            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}"),
+            tree.dof,
+            tree.created[:10],
+            link("JSON", tree_path(tree)),
+        )
+        for tree in shown.trees
+    ]
+    more = tag("p", "There are more: ", tag("code", "GET /v1/trees"), ".", class_="quiet") if shown.more else Html()
+    return [tag("h2", "Trees"), table(("latest revision", "dof", "created", ""), rows), more]

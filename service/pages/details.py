@@ -1,0 +1,129 @@
+"""The pages of one part and of one tree."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from service.pages import words
+from service.pages.catalogue import links, size
+from service.pages.html import Content, Html, facts, joined, link, table, tag
+from service.pages.layout import document
+from service.queries.catalogue import Version
+from service.queries.trees import Tree
+from service.views import tree_path, version_path
+from substructures.documents import read_json
+from substructures.expr.program import Program
+from substructures.model import Model
+from substructures.part import Part
+
+QUANTITIES = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
+OF_PART = "total: the whole stored program, with what coupling needs."
+OF_TREE = "total: metric, Christoffel symbols and forces together."
+
+
+def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Program | None) -> bytes:
+    """The bytes of the page of a version; ``metric`` is None when there are no coordinates."""
+    path, definition = version_path(version), part.definition
+    reference = f"{version.name}@{version.version}"
+    about = facts(
+        [
+            ("Reference", tag("code", reference)),
+            ("Aliases", joined([tag("code", f"{version.name}@{alias}") for alias in aliases])),
+            ("Size", size(version.dof, version.joints)),
+            ("Bodies", joined(part.bodies)),
+            ("Ports", joined(part.ports) or "none"),
+            ("Tags", joined(definition.tags)),
+            ("License", definition.license),
+            ("Source", definition.source),
+            ("Stored", version.created[:10]),
+            ("Digest", tag("code", version.digest, class_="small")),
+            ("As data", joined([link("JSON", path), *links(version)], " · ")),
+        ]
+    )
+    return document(
+        f"{reference} - substructures",
+        tag("h1", version.title or version.name),
+        _withdrawn(version),
+        tag("p", version.description) if version.description else Html(),
+        _split(path, reference, about),
+        *_sections(
+            words.coordinates(part.coordinates, part.joints),
+            words.parameters(read_json(version.parameters.encode())),
+            words.operations(read_json(version.operations.encode()), OF_PART),
+            read_json(version.certificate.encode()),
+            _metric(metric, f"{path}/formulas/metric?format=text"),
+        ),
+    )
+
+
+def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
+    """The bytes of the page of a revision of a tree; ``metric`` is None when there are no coordinates."""
+    path, summary = tree_path(tree), read_json(tree.summary.encode())
+    reference = f"{tree.name}@{tree.revision}"
+    printed = [link(name, f"{path}/{name}?format=text") for name in QUANTITIES if tree.dof]
+    base = f"{tree.name}@{tree.based_on}" if tree.based_on else ""
+    about = facts(
+        [
+            ("Reference", tag("code", reference)),
+            ("Size", size(tree.dof, model.joints)),
+            ("Gravity", f"{', '.join(map(str, summary['gravity']))} (world axes, m/s^2)"),
+            ("Changed from", link(base, f"/trees/{base}") if base else None),
+            ("Stored", tree.created[:10]),
+            ("Digest", tag("code", tree.digest, class_="small")),
+            ("As data", link("JSON", path)),
+            ("As text", joined(printed, " · ")),
+        ]
+    )
+    return document(
+        f"{reference} - substructures",
+        tag("h1", f"Tree {tree.name}"),
+        _split(path, reference, about),
+        tag("h2", "Instances"),
+        table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
+        *_sections(
+            words.coordinates(model.coordinates, model.joints),
+            words.parameters(summary["parameters"]),
+            words.operations(summary["operations"], OF_TREE),
+            summary["certificate"],
+            _metric(metric, f"{path}/metric?format=text"),
+        ),
+    )
+
+
+def _instance(instance: Mapping[str, Any]) -> tuple[Content, ...]:
+    reference = instance.get("substructure")
+    if reference is None:
+        part: Content = f"{instance['definition']['name']} (a definition of its own)"
+    else:
+        name, _, digest = reference.partition("@")
+        part = [link(name, f"/substructures/{reference}"), " ", tag("code", digest[:19], class_="quiet small")]
+    return tag("code", instance["name"]), part, tag("code", instance.get("at", "world"))
+
+
+def _withdrawn(version: Version) -> Html:
+    if version.yanked is None:
+        return Html()
+    reason = f": {version.yank_reason}" if version.yank_reason else ""
+    return tag("p", f"Withdrawn on {version.yanked[:10]}{reason}", class_="warn")
+
+
+def _split(path: str, reference: str, about: Html) -> Html:
+    picture = tag("img", src=f"{path}/picture", alt=f"Picture of {reference}", width="320", height="240")
+    return tag("div", tag("div", picture, class_="picture"), about, class_="split")
+
+
+def _sections(
+    coordinates: Html, parameters: Html, operations: Html, certificate: Mapping[str, Any], metric: Html
+) -> list[Html]:
+    return [
+        *(tag("h2", "Certificate"), words.certificate(certificate)),
+        *(tag("h2", "Coordinates"), coordinates),
+        *(tag("h2", "Metric"), metric),
+        *(tag("h2", "Parameters"), parameters),
+        *(tag("h2", "Operations"), operations),
+    ]
+
+
+def _metric(metric: Program | None, address: str) -> Html:
+    return tag("p", "There are no coordinates.", class_="quiet") if metric is None else words.formula(metric, address)

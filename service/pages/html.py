@@ -1,0 +1,74 @@
+"""HTML out of values: everything is escaped unless it was made here.
+
+>>> tag("p", "1 < 2", tag("b", "!"), class_="note")
+'<p class="note">1 &lt; 2<b>!</b></p>'
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from html import escape
+
+#: control characters, and those that turn the direction of the text around them
+_INVISIBLE = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
+)
+_VOID = frozenset(("img", "input", "link", "meta"))
+
+
+class Html(str):
+    """Text that is HTML already."""
+
+    __slots__ = ()
+
+
+Content = str | int | None | Iterable["Content"]
+
+
+def html(*content: Content) -> Html:
+    """Content as HTML, one after the other; None is nothing."""
+    return Html("".join(map(_one, content)))
+
+
+def _one(content: Content) -> str:
+    match content:
+        case None:
+            return ""
+        case Html():
+            return content
+        case str():
+            return escape(_INVISIBLE.sub("\ufffd", content))
+        case int():
+            return str(content)
+    return "".join(map(_one, content))
+
+
+def tag(name: str, /, *content: Content, **attributes: str | int | None) -> Html:
+    """An element. ``class_`` is the attribute class, ``data_text`` is data-text; None leaves an attribute out."""
+    given = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
+    start = "".join([f"<{name}", *(f' {key}="{html(value)}"' for key, value in given.items()), ">"])
+    return Html(start if name in _VOID else f"{start}{html(*content)}</{name}>")
+
+
+def table(columns: Iterable[str], rows: Iterable[Iterable[Content]]) -> Html:
+    """A table that scrolls sideways where the screen is narrow."""
+    head = tag("thead", tag("tr", [tag("th", column, scope="col") for column in columns]))
+    body = tag("tbody", [tag("tr", [tag("td", cell) for cell in row]) for row in rows])
+    return tag("div", tag("table", head, body), class_="scroll")
+
+
+def facts(pairs: Iterable[tuple[str, Content]]) -> Html:
+    """A list of names and values; what has no value is left out."""
+    shown = ((name, html(value)) for name, value in pairs)
+    return tag("dl", [html(tag("dt", name), tag("dd", value)) for name, value in shown if value])
+
+
+def link(text: Content, address: str) -> Html:
+    """A link within this server."""
+    return tag("a", text, href=address)
+
+
+def joined(items: Iterable[Content], separator: str = ", ") -> Html:
+    """Items with a separator between them."""
+    return Html(html(separator).join(html(item) for item in items))

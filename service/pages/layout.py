@@ -1,0 +1,60 @@
+"""The frame of every page: one document with its style inside, and headers that let nothing else in."""
+
+from __future__ import annotations
+
+import hashlib
+from base64 import b64encode
+from pathlib import Path
+
+from fastapi import Request, Response
+
+from service.answers import Answer, etag
+from service.pages.html import Html, html, link, tag
+from service.requests import conditional
+
+STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
+FILTER = Path(__file__).with_name("filter.js").read_text(encoding="utf-8")
+
+
+def _source(text: str) -> str:
+    """How a policy names an inline text: by its hash."""
+    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+POLICY = "; ".join(
+    [
+        "default-src 'none'",
+        "img-src 'self'",
+        f"style-src {_source(STYLE)}",
+        f"script-src {_source(FILTER)}",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    ]
+)
+HEADERS = {
+    "Content-Type": "text/html; charset=utf-8",
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+
+
+def document(title: str, *content: Html, script: str = "") -> bytes:
+    """The bytes of a page."""
+    head = html(
+        tag("meta", charset="utf-8"),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="color-scheme", content="light dark"),
+        tag("title", title),
+        tag("style", Html(STYLE)),
+    )
+    top = tag("header", link("substructures", "/"), tag("nav", link("openapi.json", "/openapi.json")))
+    body = tag("body", top, tag("main", *content), tag("script", Html(script)) if script else None)
+    return f"<!doctype html>\n{tag('html', tag('head', head), body, lang='en')}\n".encode()
+
+
+def answer(request: Request, page: bytes) -> Response:
+    """The page, or 304 when the browser has it."""
+    tag_of_content = etag("page", hashlib.sha256(page).hexdigest())
+    return conditional(request, tag_of_content, False, lambda: Answer(200, page, HEADERS))

@@ -1,0 +1,65 @@
+"""``/``, ``/substructures/{ref}`` and ``/trees/{ref}``: pages for people, read with the same keys as the API."""
+
+from __future__ import annotations
+
+import re
+
+from fastapi import APIRouter, Request, Response
+
+from service import keys
+from service.operations import catalogue, trees
+from service.operations.models import model_quantity
+from service.pages.catalogue import Shown, page
+from service.pages.details import part_page, tree_page
+from service.pages.layout import answer
+from service.queries import aliases
+from service.queries import trees as revisions
+from service.queries.catalogue import Search
+from service.requests import StoreOf, needs
+from service.settings import Settings
+from substructures.lean import lean
+
+CARDS, TREES = 500, 100
+_HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")
+
+router = APIRouter(include_in_schema=False, dependencies=[needs("read")])
+
+
+@router.get("/")
+def first_page(request: Request, store: StoreOf) -> Response:
+    """The catalogue."""
+    with store.database.read() as connection:
+        found = catalogue.search(connection, Search(), CARDS, None)
+        some = revisions.page(connection, None, TREES + 1)
+    shown = Shown(found.versions, sum(found.facets["dof"].values()), some[:TREES], len(some) > TREES)
+    with_key = request.state.principal != keys.OPEN
+    return answer(request, page(shown, _address(request, store.settings), with_key))
+
+
+def _address(request: Request, settings: Settings) -> str:
+    """The address that the browser used, if it is one that can stand in a command line."""
+    host = request.headers.get("host", "")
+    return f"{request.url.scheme}://{host if _HOST.fullmatch(host) else f'{settings.host}:{settings.port}'}"
+
+
+@router.get("/substructures/{ref}")
+def substructure(ref: str, request: Request, store: StoreOf) -> Response:
+    """A part."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        names = aliases.aliases_of(connection, (version.name, version.version))[0]
+        part = store.part(connection, version.digest)
+    if part is None:
+        raise LookupError(f"the part {version.digest} is missing")
+    metric = lean(part, part.program.select(["metric"])) if part.dof else None
+    return answer(request, part_page(version, names, part, metric))
+
+
+@router.get("/trees/{ref}")
+def tree(ref: str, request: Request, store: StoreOf) -> Response:
+    """A revision of a tree, the latest for a bare name."""
+    with store.database.read() as connection:
+        found = trees.find(connection, ref)
+        model = store.model(connection, found)
+    metric = model_quantity(model, "metric") if found.dof else None
+    return answer(request, tree_page(found, model, metric))

@@ -1,0 +1,54 @@
+"""``/v1/substructures/{ref}/picture`` and ``/v1/trees/{ref}/picture``: what it looks like, as SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.answers import Answer, etag
+from service.operations import catalogue, pictures, trees
+from service.requests import StoreOf, conditional, needs
+
+MEDIA_TYPE = "image/svg+xml"
+#: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own
+HEADERS = {
+    "Content-Type": MEDIA_TYPE,
+    "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+}
+POSE = "pose: a number for every coordinate, in order, separated by commas; rad or m"
+Q = Annotated[str | None, Query(max_length=100_000, description=POSE)]
+DRAWN: dict[int | str, dict[str, Any]] = {
+    200: {"description": "The picture", "content": {MEDIA_TYPE: {"schema": {"type": "string"}}}}
+}
+
+router = APIRouter(prefix="/v1", tags=["pictures"], dependencies=[needs("read")])
+
+
+@router.get("/substructures/{ref}/picture", response_class=Response, responses=DRAWN)
+def substructure_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Response:
+    """A part alone, in the pose given or in one that shows its joints."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+    pose = pictures.read_pose(q, version.dof)
+    pinned = catalogue.is_pinned(ref)
+    return _answer(request, version.digest, pose, pinned, lambda: pictures.draw_part(store, version, pose))
+
+
+@router.get("/trees/{ref}/picture", response_class=Response, responses=DRAWN)
+def tree_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Response:
+    """A tree, in the pose given or in one that shows its joints."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+    pose = pictures.read_pose(q, tree.dof)
+    pinned = catalogue.is_pinned(ref)
+    return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
+
+
+def _answer(
+    request: Request, digest: str, pose: pictures.Pose | None, pinned: bool, draw: Callable[[], str]
+) -> Response:
+    tag = etag(digest, "picture", repr(pose))
+    return conditional(request, tag, pinned, lambda: Answer(200, draw().encode(), HEADERS))

@@ -1,0 +1,218 @@
+"""What a person sees: pages and pictures, escaped, self-contained, and behind the same keys as the API."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.pages.html import Html, html, tag
+from service.settings import Settings
+from service.store import Store
+
+from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
+from .reading import Page, draw, read
+from .test_conventions import problem
+from .test_keys import new_key
+
+PAGES = ("/", "/substructures/pendulum", "/trees/cell")
+PICTURES = ("/v1/substructures/pendulum@1/picture", "/v1/trees/cell@1/picture")
+HOSTILE = [
+    "<script>alert(1)</script>",
+    "\"><img src=x onerror=alert(1)>",
+    "' onmouseover='alert(1)",
+    "</title></style></script><svg onload=alert(1)>",
+    "&lt;b&gt; &#60;b&#62;",
+    "{{7*7}} ${7*7} <%= 7*7 %>",
+    "javascript:alert(1)",
+    "\u202e\u0007\u0000 right to left",
+]  # fmt: skip
+
+
+def test_unknown_references(filled: TestClient) -> None:
+    for path in ("/substructures/nothing", "/v1/substructures/nothing/picture", "/substructures/pendulum@9"):
+        problem(filled.get(path, headers={"Accept": "text/html"}), 404, "unknown-substructure")
+    for path in ("/trees/nothing", "/v1/trees/nothing/picture", "/trees/cell@9"):
+        problem(filled.get(path), 404, "unknown-tree")
+
+
+def test_a_tree_of_several_parts_is_drawn(filled: TestClient) -> None:
+    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+    own = {"name": "own", "definition": {**SLIDER, "name": "not-in-the-library"}, "at": "hand.tip"}
+    assert filled.post("/v1/trees/cell/couplings", json=own).status_code == 201
+    drawn = draw(filled, "/v1/trees/cell@3/picture", q="0.1,0.2,0.3")
+    assert len(drawn) > len(draw(filled, "/v1/trees/cell@1/picture"))
+    page = read(filled, "/trees/cell")
+    assert "not-in-the-library (a definition of its own)" in page.text
+    assert "/trees/cell@2" in page.links
+    for name in ("arm.q", "hand.q", "own.x"):
+        assert name in page.text
+
+
+def test_the_first_page(filled: TestClient) -> None:
+    page = read(filled, "/")
+    for words in ("Pendulum", "pendulum@1", "1 dof, joints R", "planar, textbook", "Sliding mass", "2 of 2 parts"):
+        assert words in page.text
+    for path in ("/substructures/pendulum@1", "/trees/cell@1", "/openapi.json"):
+        assert path in page.links
+    for address in page.links:
+        assert filled.get(address).status_code == 200, address
+    assert ("data-text", "slider sliding mass  planar p") in page.attributes
+
+
+def test_the_example_can_be_sent(filled: TestClient) -> None:
+    command = read(filled, "/", Host="localhost:1234").text
+    assert "curl -s http://localhost:1234/v1/trees -H 'Content-Type: application/json' -d '" in command
+    body = command.split("-d '")[1].split("'")[0]
+    assert filled.post("/v1/trees", json=json.loads(body)).status_code == 201
+
+
+@pytest.mark.parametrize("host", ["localhost:80'; touch x", "localhost:<b>", "localhost:$(x)"])
+def test_the_address_cannot_be_made_up(filled: TestClient, host: str) -> None:
+    assert "curl -s http://127.0.0.1:8000/v1/trees" in read(filled, "/", Host=host).text
+
+
+def test_an_empty_store(client: TestClient) -> None:
+    page = read(client, "/")
+    assert "Nothing is stored yet" in page.text
+    assert "0 of 0 parts" in page.text
+
+
+def test_the_page_of_a_part(filled: TestClient) -> None:
+    filled.put("/v1/substructures/pendulum/aliases/best", json={"version": 1})
+    filled.post("/v1/substructures/pendulum@1/yank", json={"reason": "wrong mass"})
+    page = read(filled, "/substructures/pendulum@1")
+    for words in (
+        *("pendulum@best", "revolute", "random states; largest deviation", "positive definite", "metric[1, 1] = "),
+        *("Withdrawn on", "wrong mass", "kg", "Christoffel symbols"),
+    ):
+        assert words in page.text, words
+    for address in page.links:
+        assert filled.get(address).status_code == 200, address
+
+
+def test_the_page_of_a_tree(filled: TestClient) -> None:
+    page = read(filled, "/trees/cell")
+    for words in ("arm.q", "arm.m", "9.81", "0, -g, 0 (world axes, m/s^2)", "gravity forces", "metric[1, 1] = "):
+        assert words in page.text, words
+    for address in page.links:
+        assert filled.get(address).status_code == 200, address
+
+
+def test_parts_without_coordinates_or_values(client: TestClient) -> None:
+    still = {"name": "block", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
+    for definition in (still, SLIDER, {"name": "nothing", "bodies": []}):
+        assert client.post("/v1/substructures", json=definition).status_code == 201
+        draw(client, f"/v1/substructures/{definition['name']}/picture")
+        for address in read(client, f"/substructures/{definition['name']}").links:
+            assert client.get(address).status_code == 200, address
+    assert "to be given" in read(client, "/substructures/slider").text
+    assert client.get("/v1/substructures/block/picture", params={"q": ""}).status_code == 200
+
+
+def test_long_formulas_are_not_shown(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.pages.words.SHOWN", 2)
+    for path in PAGES[1:]:
+        page = read(filled, path)
+        assert "Too long for a page" in page.text
+        assert "metric[1, 1]" not in page.text
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_texts_are_escaped(filled: TestClient, text: str) -> None:
+    parameter = {"value": 1, "unit": text[:60], "description": text}
+    definition = {
+        **PENDULUM,
+        "title": text,
+        "description": text,
+        "source": text,
+        "license": text,
+        "tags": [text[:60]],
+        "parameters": {**PENDULUM["parameters"], "m": parameter},
+    }
+    answer = filled.post("/v1/substructures", json=definition)
+    if answer.status_code == 422:  # tags and units may be refused; the texts may not
+        definition |= {"tags": [], "parameters": {**PENDULUM["parameters"], "m": {**parameter, "unit": "kg"}}}
+        answer = filled.post("/v1/substructures", json=definition)
+    assert answer.status_code == 201, answer.text
+    assert filled.post("/v1/trees", json={**TREE, "name": "hostile"}).status_code == 201
+    filled.post("/v1/substructures/pendulum@2/yank", json={"reason": text})
+    filled.post("/v1/substructures", json={**definition, "description": text + text})
+    seen = "".join("\ufffd" if c in "\u202e\u0007" else c for c in text.replace("\0", "\ufffd"))
+    for path in ("/", "/substructures/pendulum", "/substructures/pendulum@2", "/trees/hostile"):
+        page = read(filled, path)
+        if path.startswith("/substructures"):
+            assert " ".join(seen.split()) in page.text
+        assert "\u202e" not in page.text
+    draw(filled, "/v1/substructures/pendulum/picture")
+    draw(filled, "/v1/trees/hostile/picture")
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_nothing_foreign_runs_in_a_page(filled: TestClient, path: str) -> None:
+    answer = filled.get(path)
+    policy = dict(item.split(" ", 1) for item in answer.headers["content-security-policy"].split("; "))
+    assert policy["default-src"] == policy["base-uri"] == policy["frame-ancestors"] == "'none'"
+    assert policy["img-src"] == "'self'"
+    assert "unsafe" not in str(policy)
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    for element, text in Page(answer.text).inline.items():
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert policy[f"{element}-src"] == f"'sha256-{digest}'"
+        assert "//" not in text
+    again = filled.get(path, headers={"If-None-Match": answer.headers["etag"]})
+    assert (again.status_code, answer.headers["cache-control"]) == (304, "no-cache")
+
+
+def test_pages_obey_keys(filled: TestClient, store: Store) -> None:
+    assert "Bearer" not in read(filled, "/").text
+    reader, writer = new_key(store, "read"), new_key(store, "write")
+    for path in (*PAGES, *PICTURES):
+        problem(filled.get(path), 401, "unauthorized")
+        problem(filled.get(path, headers=writer), 403, "forbidden")
+        assert filled.get(path, headers=reader).status_code == 200
+    assert '-H "Authorization: Bearer $SUBSTRUCTURES_KEY"' in read(filled, "/", **reader).text
+
+
+def test_pages_are_not_part_of_the_api(client: TestClient) -> None:
+    paths = client.get("/openapi.json").json()["paths"]
+    assert not {"/", "/substructures/{ref}", "/trees/{ref}"} & paths.keys()
+    drawn = paths["/v1/trees/{ref}/picture"]["get"]["responses"]["200"]["content"]
+    assert list(drawn) == ["image/svg+xml"]
+
+
+def test_html_escapes() -> None:
+    assert tag("a", "<&>", href="\"'") == '<a href="&quot;&#x27;">&lt;&amp;&gt;</a>'
+    assert html(["a", None, 3, Html("<b>"), ["<"]]) == "a3<b>&lt;"
+    assert tag("img", alt=None, data_text="x") == '<img data-text="x">'
+    assert html("a\u202eb\x00\ud800\n") == "a\ufffdb\ufffd\ufffd\n"
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server with the shipped catalogue."""
+    path: Path = tmp_path_factory.mktemp("shipped") / "store.db"
+    with open_store(Settings(database=f"sqlite:///{path}")) as store, make_client(store) as client:
+        yield client
+
+
+def test_the_whole_catalogue_can_be_seen(shipped: TestClient) -> None:
+    items: list[dict[str, Any]] = shipped.get("/v1/substructures?page_size=1000").json()["items"]
+    assert len(items) > 40
+    assert len(shipped.get("/").content) < 200_000
+    for item in items:
+        drawn = shipped.get(item["links"]["picture"])
+        assert len(drawn.content) < 20_000
+        assert "nan" not in drawn.text
+        draw(shipped, item["links"]["picture"], q=",".join(["0.1"] * item["dof"]))
+        page = read(shipped, f"/substructures/{item['name']}")
+        assert item["title"] in page.text
+        assert len(page.text) < 100_000
+    assert '"substructure": "puma560"' in read(shipped, "/").text
