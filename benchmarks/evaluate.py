@@ -2,14 +2,13 @@
 
 python -m benchmarks.evaluate [--quick] [--json FILE]
 
-Ours, one thread, Python part of the call included, in three forms: *blocks* (`Kernel.blocks`: independent entries, vectors
-of states), *rows* (`evaluate_into`: M and Q as dense arrays of every state, Gamma as its independent entries), *dense* (Gamma
-as well: of 34^3 = 39,304 numbers 1,953 are independent). Pinocchio: crba, computeGeneralizedGravity, computeCoriolisMatrix
-for one state after the other. What a call from Python costs is measured with an empty model and given beside ("calls");
-"net" leaves it out. The ratios are those of blocks. Rounds alternate and take about the same time each; medians.
+Ours, one thread, Python part of the call included, in three forms: *blocks* (`Kernel.blocks`: independent entries,
+vectors of states), *rows* (`evaluate_into`: M and Q as dense arrays of every state, Gamma as its independent entries),
+*dense* (Gamma as well: of 34^3 = 39,304 numbers 1,953 are independent). Pinocchio: crba, computeGeneralizedGravity,
+computeCoriolisMatrix for one state after the other. What a call from Python costs is measured with an empty model and
+given beside ("calls"); "net" leaves it out. The ratios are those of blocks, and of the other forms beside. Rounds
+alternate and take about the same time each; medians.
 """
-
-# ruff: noqa: N806 -- symbols of the notation
 
 from __future__ import annotations
 
@@ -17,7 +16,6 @@ import argparse
 import gc
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from statistics import median
@@ -27,104 +25,19 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from benchmarks.chains import chain, general_rows, row_of
-from benchmarks.derive import humanoid
-from benchmarks.peers import Peer
-from substructures import Definition, TreeSpec, couple, derive
+from benchmarks.robots import CALLS, Robot, robots
 from substructures.compile import Kernel, compile_program
 from substructures.compile.engine import shared_runtime
 from substructures.compile.target import host
 from substructures.expr.bind import bind
-from substructures.model import Model
-from substructures.states import default_number
 
 Array = Any
-#: states of a batch; the results of a batch should stay in the third-level cache
-BATCHES = {"6r": 4096, "34": 1024}
-#: states that Pinocchio is called for in a round
-CALLS = 1024
 #: seconds of a turn, at least
 TURN = 5e-3
 ONE = ("crba", "computeGeneralizedGravity")
 ALL = (*ONE, "computeCoriolisMatrix")
 METRIC_FORCES = ("metric", "forces")
 EVERYTHING = (*METRIC_FORCES, "christoffel")
-
-
-@dataclass
-class Robot:
-    """A model with numbers for its parameters, random states, and the same robot in Pinocchio."""
-
-    name: str
-    model: Model
-    peer: Peer
-    numbers: dict[str, float]
-    q: Array
-    qd: Array
-
-    @classmethod
-    def of(
-        cls, name: str, spec: TreeSpec, library: Mapping[str, Definition], values: dict[str, float], batch: int
-    ) -> Robot:
-        """Couples the tree; parameters without a value have their defaults."""
-        model = couple(spec, {i.name: derive(library[str(i.substructure)]) for i in spec.instances})
-        numbers = {
-            n: default_number(p["value"]) for n, p in model.parameters.items() if p["value"] is not None
-        } | values
-        # actuators rest; velocities and times that no force depends on do not matter
-        numbers |= {s.name: 0.0 for s in model.program.symbols if s.kind not in ("parameter", "inertia", "coordinate")}
-        q, qd = np.random.default_rng(0).uniform(-3, 3, (2, batch, model.dof))
-        return cls(name, model, Peer.of(spec, library, numbers), numbers, q, qd)
-
-    def kernel(self, names: tuple[str, ...]) -> Kernel:
-        """Compiled anew."""
-        return compile_program(self.model.program, names)
-
-    def ours(self, kernel: Kernel, packed: tuple[str, ...] = ("christoffel",)) -> Callable[[], Any]:
-        """One batch into arrays that are used again."""
-        columns = [(self.model.coordinates, self.q)]
-        out = {n: np.zeros((len(self.q), *kernel.shape(n, n in packed))) for n in kernel.names}
-        return lambda: kernel.evaluate_into(out, self.numbers, columns=columns, packed=packed, clean=True)
-
-    def in_blocks(self, kernel: Kernel) -> Callable[[], Any]:
-        """One batch in the form that the vector unit gives."""
-        columns = [(self.model.coordinates, self.q)]
-        out = kernel.blocks(self.numbers, columns=columns).array
-        return lambda: kernel.blocks(self.numbers, columns=columns, out=out)
-
-    def theirs(self, functions: tuple[str, ...]) -> Callable[[], None]:
-        """The same states one by one, each function in a loop of its own."""
-        order = np.argsort(self.peer.order)
-        q, qd = list(self.q[:CALLS, order]), list(self.qd[:CALLS, order])
-        model, data = self.peer.model, self.peer.model.createData()
-
-        def work() -> None:
-            for name in functions:
-                function = getattr(pin, name)
-                if name == "computeCoriolisMatrix":
-                    for x, v in zip(q, qd, strict=True):
-                        function(model, data, x, v)
-                else:
-                    for x in q:
-                        function(model, data, x)
-
-        return work
-
-    def check(self) -> float:
-        """Largest relative deviation of metric, gravity and Coriolis matrix from Pinocchio's."""
-        names = ("metric", "gravity", "christoffel")
-        found = self.kernel(names).evaluate(self.numbers, columns=[(self.model.coordinates, self.q[:20])])
-        order, worst = self.peer.order, 0.0
-        place, data = np.argsort(order), self.peer.model.createData()
-        for i in range(20):
-            x, v = self.q[i][place], self.qd[i][place]
-            M = np.triu(pin.crba(self.peer.model, data, x))
-            M = (M + np.triu(M, 1).T)[np.ix_(order, order)]
-            forces = -pin.computeGeneralizedGravity(self.peer.model, data, x)[order]
-            C = pin.computeCoriolisMatrix(self.peer.model, data, x, v)[np.ix_(order, order)]
-            pairs = ((found["metric"][i], M), (found["gravity"][i], forces), (found["christoffel"][i] @ self.qd[i], C))
-            worst = max(worst, *(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs))
-        return worst
 
 
 def alternating(works: Mapping[str, tuple[Callable[[], Any], int]], rounds: int) -> dict[str, list[float]]:
@@ -210,17 +123,18 @@ def beside_pinocchio(robot: Robot, key: str, figures: dict[str, float], rounds: 
 
 
 def threads(robot: Robot, figures: dict[str, float], rounds: int) -> None:
-    """The same large batch with one thread and with two."""
-    kernel, count = robot.kernel(EVERYTHING), 8 * len(robot.q)
-    columns = [(robot.model.coordinates, np.tile(robot.q, (8, 1)))]
-    out = {n: np.zeros((count, *kernel.shape(n, packed=True))) for n in kernel.names}
+    """The same large batch with one thread and with two; with Gamma the memory is the limit rather than the cores."""
+    for names, times_larger, figure in ((METRIC_FORCES, 64, "two_threads"), (EVERYTHING, 16, "two_threads_all")):
+        kernel, count = robot.kernel(names), times_larger * len(robot.q)
+        columns = [(robot.model.coordinates, np.tile(robot.q, (times_larger, 1)))]
+        out = {n: np.zeros((count, *kernel.shape(n, packed=True))) for n in names}
 
-    def work(n: int) -> tuple[Callable[[], None], int]:
-        return lambda: kernel.evaluate_into(out, robot.numbers, columns=columns, packed=True, threads=n), count
+        def work(n: int, kernel: Kernel = kernel, out: Any = out, columns: Any = columns) -> Callable[[], Any]:
+            return lambda: kernel.evaluate_into(out, robot.numbers, columns=columns, packed=True, threads=n)
 
-    times = alternating({"one": work(1), "two": work(2)}, rounds)
-    figures["two_threads"] = ratio(times["one"], times["two"])
-    print(f"two threads: {figures['two_threads']:.2f} times one ({robot.name}, {count:,} states)")
+        times = alternating({"one": (work(1), count), "two": (work(2), count)}, rounds)
+        figures[figure] = ratio(times["one"], times["two"])
+        print(f"two threads: {figures[figure]:.2f} times one ({robot.name}, {count:,} states, {', '.join(names)})")
 
 
 def parameters(robot: Robot, figures: dict[str, float], rounds: int) -> None:
@@ -232,7 +146,11 @@ def parameters(robot: Robot, figures: dict[str, float], rounds: int) -> None:
     columns = [(robot.model.coordinates, robot.q)]
     out = {n: np.zeros((len(robot.q), *kernel.shape(n))) for n in kernel.names}
     swept = robot.numbers | {n: np.full(len(robot.q), robot.numbers[n]) for n in exact}
-    given = {"folded": (folded, rest), "free": (kernel, robot.numbers), "swept": (kernel, swept)}
+    given: dict[str, tuple[Kernel, dict[str, Any]]] = {
+        "folded": (folded, rest),
+        "free": (kernel, robot.numbers),
+        "swept": (kernel, swept),
+    }
 
     def work(k: Kernel, values: Mapping[str, Any]) -> tuple[Callable[[], None], int]:
         return lambda: k.evaluate_into(out, values, columns=columns, clean=True), len(robot.q)
@@ -259,19 +177,6 @@ def one_state(robot: Robot, key: str, figures: dict[str, float]) -> None:
         figures[f"one_state_{key}_{name}_us"] = median(some) * 1e6
     print(f"one state, {robot.name}: prepared call {median(times['bound']) * 1e6:.1f} us, ", end="")
     print(f"evaluate {median(times['evaluate']) * 1e6:.1f} us")
-
-
-def robots() -> tuple[Robot, Robot]:
-    """The general 6R chain with random constants, and the humanoid of the catalogue."""
-    definition = chain("general-6r", general_rows(6))
-    rng = np.random.default_rng(7)
-    values = {f"p0.{p}": float(rng.uniform(0.1, 1)) for p in definition.parameters}
-    values |= {n: 1 + v for n, v in values.items() if n.startswith(("p0.Ixx", "p0.Iyy", "p0.Izz"))}
-    small = Robot.of(
-        "general 6R", row_of([definition]), {definition.name: definition}, values | {"g": 9.81}, BATCHES["6r"]
-    )
-    spec, library = humanoid()
-    return small, Robot.of("humanoid, 34 dof", spec, library, {}, BATCHES["34"])
 
 
 def main() -> None:

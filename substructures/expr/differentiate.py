@@ -57,13 +57,13 @@ def _derivatives(roots: Sequence[Expr], name: str) -> list[Expr]:
             if node.value == name:
                 d[node] = node.graph.one
         elif any(a in d for a in node.args):
-            value = _step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
+            value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
             if not value.is_zero:
                 d[node] = value
     return [d.get(root, root.graph.zero) for root in roots]
 
 
-def _step(graph: Graph, node: Expr, d: list[Expr]) -> Expr:
+def step(graph: Graph, node: Expr, d: list[Expr]) -> Expr:
     """Derivative of a node from those of its operands."""
     op, args = node.op, node.args
     if op == "add":

@@ -1,0 +1,111 @@
+"""Values of symbols as addresses and strides: no value that varies over the batch is copied before it is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import prod
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.errors import MissingValue
+
+Array = NDArray[np.float64]
+#: names, and an array whose columns (last axis) are their values
+Columns = tuple[Sequence[str], Array]
+
+
+class Column(NamedTuple):
+    """A column of an array of doubles, one row for every state."""
+
+    address: int
+    stride: int
+    array: Array
+    number: int
+
+
+@dataclass(slots=True)
+class Arguments:
+    """Inputs of one stage: numbers for all states, and (place, address, stride in bytes) of those that vary."""
+
+    numbers: Array
+    varying: list[tuple[int, int, int]] = field(default_factory=list)
+    alive: list[Array] = field(default_factory=list)
+
+
+def batch_shape(values: Mapping[str, Any], columns: Iterable[Columns] = ()) -> tuple[int, ...]:
+    """The common shape of all values. Raises ValueError when there is none."""
+    shapes = {v.shape if type(v) is np.ndarray else np.shape(v) for v in values.values() if type(v) is not float}
+    shapes |= {np.shape(array)[:-1] for _, array in columns}
+    shapes.discard(())
+    if not shapes:
+        return ()
+    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+
+
+def merged(values: Mapping[str, Any], columns: Iterable[Columns], batch: tuple[int, ...]) -> Mapping[str, Any]:
+    """Columns as values by name; without a copy where an array has one row of doubles for every state."""
+    result = None
+    for names, array in columns:
+        result = dict(values) if result is None else result
+        shape = np.shape(array)
+        if not shape or shape[-1] != len(names):
+            raise ValueError(f"{len(names)} names for an array of shape {shape}")
+        if isinstance(array, np.ndarray) and array.dtype == np.float64 and shape[:-1] == batch and len(batch) == 1:
+            base, (row, step) = array.__array_interface__["data"][0], array.strides
+            result |= {name: Column(base + k * step, row, array, k) for k, name in enumerate(names)}
+        else:
+            result |= {name: np.asarray(array)[..., k] for k, name in enumerate(names)}
+    return values if result is None else result
+
+
+class Inputs:
+    """The inputs of a stage by name, looked up at once."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(names)
+        # a getter of two names and more answers with a tuple; of the repeated first one with a pair
+        self.get = itemgetter(*self.names, *self.names[:1]) if names else lambda _: (None,)
+
+    def read(self, values: Mapping[str, Any], batch: tuple[int, ...], in_place: bool = False) -> Arguments:
+        """Arguments from the values. ``in_place``: arrays of one element are read anew by every run.
+
+        Raises MissingValue.
+        """
+        try:
+            found = self.get(values)[:-1]
+        except KeyError as error:
+            raise MissingValue(str(error.args[0])) from None
+        result = Arguments(np.zeros(0))
+        if set(map(type, found)) - {float}:
+            found = tuple(self._number(result, k, x, batch, in_place) for k, x in enumerate(found))
+        result.numbers = np.array(found, dtype=np.float64)
+        return result
+
+    @staticmethod
+    def _number(result: Arguments, place: int, value: Any, batch: tuple[int, ...], in_place: bool) -> float:
+        """The value when it is the same for all states; arrays are noted in the result."""
+        if type(value) is float:
+            return value
+        if type(value) is Column:
+            result.varying.append((place, value.address, value.stride))
+            result.alive.append(value.array)
+            return np.nan
+        value = np.asarray(value, dtype=np.float64)
+        if value.ndim and (in_place or value.size != 1):
+            _vary(result, place, value, batch)
+            return np.nan
+        return float(value.reshape(-1)[0])
+
+
+def _vary(result: Arguments, place: int, value: Array, batch: tuple[int, ...]) -> None:
+    """A value for every state; arrays of more axes are laid out in one."""
+    if value.shape != batch:
+        value = np.broadcast_to(value, batch)
+    if value.ndim != 1:
+        value = value.reshape(prod(batch))
+    result.varying.append((place, value.__array_interface__["data"][0], value.strides[0]))
+    result.alive.append(value)

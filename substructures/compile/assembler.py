@@ -1,0 +1,93 @@
+"""A small writer of LLVM assembly for hand-written functions with loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from substructures.compile.emission import literal, vector
+
+
+class Assembly:
+    """Writes LLVM assembly; loops as context managers, so that control flow reads like a program."""
+
+    def __init__(self, width: int) -> None:
+        self.width, self.kind, self.lines, self.counter = width, vector(width), list[str](), 0
+        self.block = "entry"
+
+    def name(self) -> str:
+        """A fresh value."""
+        self.counter += 1
+        return f"%x{self.counter}"
+
+    def do(self, text: str) -> str:
+        """An instruction with a result."""
+        result = self.name()
+        self.lines.append(f"{result} = {text}")
+        return result
+
+    def put(self, text: str) -> None:
+        """An instruction without a result."""
+        self.lines.append(text)
+
+    def label(self, name: str) -> None:
+        """Starts a basic block."""
+        self.lines.append(f"{name}:")
+        self.block = name
+
+    @contextmanager
+    def loop(self, start: str, stop: str, step: int = 1) -> Iterator[str]:
+        """for i in range(start, stop, step)."""
+        self.counter += 1
+        n, before = self.counter, self.block
+        self.put(f"br label %head{n}")
+        self.label(f"head{n}")
+        at = len(self.lines)
+        self.put("")
+        test = self.do(f"icmp slt i64 %i{n}, {stop}")
+        self.put(f"br i1 {test}, label %body{n}, label %done{n}")
+        self.label(f"body{n}")
+        yield f"%i{n}"
+        self.put(f"%n{n} = add i64 %i{n}, {step}")
+        self.lines[at] = f"%i{n} = phi i64 [ {start}, %{before} ], [ %n{n}, %{self.block} ]"
+        self.put(f"br label %head{n}")
+        self.label(f"done{n}")
+
+    @contextmanager
+    def when(self, condition: str) -> Iterator[None]:
+        """if condition."""
+        self.counter += 1
+        n = self.counter
+        self.put(f"br i1 {condition}, label %then{n}, label %end{n}")
+        self.label(f"then{n}")
+        yield
+        self.put(f"br label %end{n}")
+        self.label(f"end{n}")
+
+    def offset(self, base: str, offset: str | int, unit: str = "i8") -> str:
+        """Address of base[offset]."""
+        return self.do(f"getelementptr {unit}, ptr {base}, i64 {offset}")
+
+    def words(self, base: str, names: Sequence[str]) -> dict[str, str]:
+        """The words of a row of a table by name."""
+        return {n: self.do(f"load i64, ptr {self.offset(base, k, 'i64')}, align 8") for k, n in enumerate(names)}
+
+    def pointer(self, word: str) -> str:
+        """A word as an address."""
+        return self.do(f"inttoptr i64 {word} to ptr")
+
+    def arithmetic(self, op: str, a: str, b: str | int) -> str:
+        """Integers."""
+        return self.do(f"{op} i64 {a}, {b}")
+
+    def real(self, op: str, a: str, b: str | float) -> str:
+        """Vectors of doubles; a number stands for all lanes."""
+        return self.do(f"{op} {self.kind} {a}, {literal(b, self.width) if isinstance(b, float) else b}")
+
+    def fused(self, op: str, a: str, b: str | float) -> str:
+        """The same; a product may be contracted with the sum or difference that it goes into."""
+        return self.real(f"{op} contract", a, b)
+
+    def function(self, name: str, arguments: str) -> str:
+        """What has been written, as a function without a result."""
+        return f"define void @{name}({arguments}) #0 {{\nentry:\n" + "\n".join(self.lines) + "\nret void\n}\n"

@@ -1,0 +1,134 @@
+"""The shared functions in executable memory, memory with known addresses, and calls of the driver."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.compile import cache, target
+from substructures.compile.arguments import Array
+from substructures.compile.lowering import Step
+from substructures.compile.runtime import CONTEXT, STEP, runtime
+
+WORDS = ctypes.c_int64 * len(CONTEXT)
+#: of the scratch arrays: a cache line, and the widest vector
+ALIGNMENT = 64
+
+
+def address(array: NDArray[Any]) -> int:
+    """Where the data of an array begin."""
+    return int(array.__array_interface__["data"][0])
+
+
+class Table(NamedTuple):
+    """Rows of 64-bit words for the runtime; ``alive`` owns the memory."""
+
+    address: int
+    rows: int
+    alive: Any
+
+    @classmethod
+    def of(cls, array: NDArray[np.int64]) -> Table:
+        """A table that is used often."""
+        return cls(address(array), len(array), array)
+
+    @classmethod
+    def written(cls, rows: Sequence[Iterable[int]]) -> Table:
+        """A table for one call."""
+        words = [word for row in rows for word in row]
+        memory = (ctypes.c_int64 * len(words))(*words)
+        return cls(ctypes.addressof(memory), len(rows), memory)
+
+
+class Scratch(NamedTuple):
+    """Rows of doubles, one for every vector of a group; ``stride`` in bytes is 0 when one row serves all."""
+
+    address: int
+    stride: int
+    array: Array
+
+    @classmethod
+    def zeros(cls, rows: int, doubles: int) -> Scratch:
+        """Aligned rows; their length must be a multiple of the vector width."""
+        raw = np.zeros(rows * doubles + ALIGNMENT // 8)
+        start = -address(raw) % ALIGNMENT // 8
+        array = raw[start : start + rows * doubles].reshape(rows, doubles)
+        return cls(address(array), 8 * doubles if rows > 1 else 0, array)
+
+    def copy(self) -> Scratch:
+        """The same for another thread."""
+        result = Scratch.zeros(*self.array.shape)
+        result.array[...] = self.array
+        return result
+
+
+@dataclass(frozen=True)
+class Runtime:
+    """The shared functions for one vector width."""
+
+    width: int
+    loaded: target.Loaded
+    call: Callable[[Any], None]
+    pair: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, code: bytes, width: int) -> Runtime:
+        """Loads the object code of the shared functions. Raises RuntimeError."""
+        loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
+        call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
+        library = target.library()
+        return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
+
+    def steps(self, steps: Iterable[Step], region: str, parts: Mapping[str, int]) -> NDArray[np.int64]:
+        """The table STEP."""
+        rows = [self._step(step, region, parts) for step in steps]
+        return np.array(rows, dtype=np.int64).reshape(-1, len(STEP))
+
+    def _step(self, step: Step, region: str, parts: Mapping[str, int]) -> list[int]:
+        if step.function == "part":
+            return [0, parts[f"part{step.number}"], 0, 0, 0, 0, 0]
+        kind, (a, b, c) = (1 if region == "s" else 2), (8 * self.width * x for x in (step.a, step.b, step.c))
+        if step.function == "sincos":
+            return [kind, self.loaded.names["sincos"], a, b, c, step.count, address(self.pair)]
+        shared = "binary" if step.function in ("atan2", "pow") else "unary"
+        return [kind, self.loaded.names[shared], a, b, c, step.count, target.library()[step.function]]
+
+    def drive(self, *words: int) -> None:
+        """One call of the driver, without the interpreter's lock; words in the order of CONTEXT."""
+        self.call(WORDS(*words))
+
+
+_pools: dict[int, ThreadPoolExecutor] = {}
+
+
+def workers() -> ThreadPoolExecutor:
+    """Threads of this process, kept for all batches; a forked process has its own."""
+    process = os.getpid()
+    if process not in _pools:
+        _pools.clear()
+        _pools[process] = ThreadPoolExecutor(os.cpu_count() or 1, thread_name_prefix="kernel")
+    return _pools[process]
+
+
+_runtimes: dict[int, Runtime] = {}
+
+
+def shared_runtime(width: int, folder: Path | None = None) -> Runtime:
+    """Compiled, or taken from the folder, once in a process."""
+    if width not in _runtimes:
+        text = runtime(width)
+        wanted = cache.key(text, (), target.host().identity) if folder is not None else ""
+        found = cache.read(folder, wanted) if folder is not None else None
+        code = found[1] if found is not None else target.assemble(text)
+        if folder is not None and found is None:
+            cache.write(folder, wanted, None, code)
+        _runtimes[width] = Runtime.of(code, width)
+    return _runtimes[width]

@@ -1,0 +1,237 @@
+"""Kernels: a program compiled once, evaluated for one state or many."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.compile.arguments import Array, Column, Columns, batch_shape, merged
+from substructures.compile.recipe import needed_symbols
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Output, Program
+
+#: states that :meth:`Kernel.chunks` takes at once
+CHUNK = 16_384
+#: outputs of which only the independent elements are wanted: all, none, or these
+Packed = bool | Collection[str]
+
+
+def is_packed(name: str, packed: Packed) -> bool:
+    """Whether only the independent elements of this output are wanted."""
+    return packed if isinstance(packed, bool) else name in packed
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Results as they leave the vector unit: ``array[vector, result, lane]``, state = vector * lanes + lane.
+
+    ``places[name]``: the results that are the elements ``outputs[name].index``. The last vector is filled up with the
+    last state.
+    """
+
+    count: int
+    array: Array
+    places: Mapping[str, NDArray[np.int64]]
+
+    def entries(self, name: str) -> Array:
+        """The independent elements of an output in rows, (states, elements)."""
+        chosen = self.array[:, self.places[name]]
+        vectors, size, lanes = chosen.shape
+        return chosen.swapaxes(1, 2).reshape(vectors * lanes, size)[: self.count]
+
+
+class Kernel(ABC):
+    """Evaluates the outputs of a program. Safe to use from several threads at a time.
+
+    ``values``: a float or an array of the common batch shape for every symbol, as for
+    :func:`substructures.expr.interpret.interpret`; ``columns``: pairs of k names and an array batch + (k,) of their
+    values, which is read in place. All methods raise MissingValue for a symbol without a value.
+    """
+
+    def __init__(self, program: Program, names: Sequence[str]) -> None:
+        self.names = tuple(dict.fromkeys(names))
+        self.outputs: Mapping[str, Output] = {name: program.outputs[name] for name in self.names}
+        self.symbols = tuple(needed_symbols(program, self.names))
+
+    @property
+    @abstractmethod
+    def compiled(self) -> bool:
+        """False for the reference interpreter."""
+
+    def shape(self, name: str, packed: bool = False) -> tuple[int, ...]:
+        """Shape of one state's output; packed: the elements of ``outputs[name].index`` only."""
+        return (len(self.outputs[name].entries),) if packed else self.outputs[name].shape
+
+    def evaluate(
+        self,
+        values: Mapping[str, Any],
+        names: Iterable[str] | None = None,
+        *,
+        columns: Iterable[Columns] = (),
+        packed: Packed = False,
+        threads: int = 1,
+    ) -> dict[str, Array]:
+        """Arrays of shape batch + :meth:`shape`; ``packed``: all or the named ones by independent elements only.
+
+        Same bits for any number of threads and any split of the batch."""
+        columns = list(columns)
+        batch = batch_shape(values, columns)
+        out = {
+            n: np.zeros(batch + self.shape(n, is_packed(n, packed))) for n in (self.names if names is None else names)
+        }
+        self._run(merged(values, columns, batch), batch, out, packed, threads, clean=True)
+        return out
+
+    def evaluate_into(
+        self,
+        out: Mapping[str, Array],
+        values: Mapping[str, Any],
+        *,
+        columns: Iterable[Columns] = (),
+        packed: Packed = False,
+        threads: int = 1,
+        clean: bool = False,
+    ) -> None:
+        """The same into arrays of the caller, (N, ...) with rows in C order. Raises ValueError when one does not fit.
+
+        ``clean``: the arrays hold zeros, or results of an earlier call: elements that are always zero are not written.
+        """
+        columns = list(columns)
+        batch = batch_shape(values, columns)
+        self._check(out, batch, packed)
+        self._run(merged(values, columns, batch), batch, out, packed, threads, clean=clean)
+
+    def bind(
+        self,
+        out: Mapping[str, Array],
+        values: Mapping[str, Any],
+        *,
+        columns: Iterable[Columns] = (),
+        packed: Packed = False,
+    ) -> Callable[[], None]:
+        """evaluate_into for these arrays, prepared: every call reads them anew. For one state at a time.
+
+        Arrays of doubles with one axis or more are read in place, numbers are kept. Not for several threads at a time.
+        """
+        columns = list(columns)
+        batch = batch_shape(values, columns)
+        self._check(out, batch, packed)
+        return self._bound(merged(values, columns, batch), batch, out, packed)
+
+    @abstractmethod
+    def blocks(
+        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
+    ) -> Blocks:
+        """Independent elements of all outputs without any rearrangement: the fastest form. ``out``: the array of
+        earlier blocks of the same shape, to be overwritten. Raises ValueError when it does not fit.
+        """
+
+    def _check(self, out: Mapping[str, Array], batch: tuple[int, ...], packed: Packed) -> None:
+        for name, array in out.items():
+            expected = batch + self.shape(name, is_packed(name, packed))
+            fits = array.shape == expected and array.dtype == np.float64 and array.flags.writeable
+            if not fits or not (array.flags.c_contiguous or _rows(array, batch)):
+                raise ValueError(f"'{name}': a writable C-ordered array of doubles of shape {expected} is needed")
+
+    def chunks(
+        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), size: int = CHUNK, threads: int = 1
+    ) -> Iterator[dict[str, Array]]:
+        """The results for ``size`` states after the other, in bounded memory; for batches of one axis."""
+        columns = list(columns)
+        (count,) = batch_shape(values, columns) or (1,)
+        for start in range(0, count, size):
+            part = slice(start, start + size)
+            some = {n: v[part] if np.ndim(v) and len(v) == count else v for n, v in values.items()}
+            yield self.evaluate(
+                some, columns=[(n, a[part] if len(a) == count else a) for n, a in columns], threads=threads
+            )
+
+    @abstractmethod
+    def _run(
+        self,
+        values: Mapping[str, Any],
+        batch: tuple[int, ...],
+        out: Mapping[str, Array],
+        packed: Packed,
+        threads: int,
+        *,
+        clean: bool,
+    ) -> None:
+        """Fills ``out``; ``clean``: it holds zeros or earlier results."""
+
+    @abstractmethod
+    def _bound(
+        self, values: Mapping[str, Any], batch: tuple[int, ...], out: Mapping[str, Array], packed: Packed
+    ) -> Callable[[], None]:
+        """The same for later."""
+
+
+def _rows(array: Array, batch: tuple[int, ...]) -> bool:
+    """Whether the elements of one state are contiguous, and states follow each other at one distance."""
+    return len(batch) == 1 and len(array) > 0 and bool(array[0].flags.c_contiguous)
+
+
+class InterpretedKernel(Kernel):
+    """The reference interpreter in the same clothes, where LLVM is missing."""
+
+    def __init__(self, program: Program, names: Sequence[str]) -> None:
+        super().__init__(program, names)
+        self.program = program
+
+    @property
+    def compiled(self) -> bool:
+        """False."""
+        return False
+
+    def blocks(
+        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
+    ) -> Blocks:
+        """One lane."""
+        columns = list(columns)
+        count = prod(batch_shape(values, columns))
+        found = self.evaluate(values, columns=columns, packed=True, threads=threads)
+        rows = [found[n].reshape(count, -1) for n in self.names]
+        ends = np.cumsum([0, *(row.shape[1] for row in rows)])
+        places = {n: np.arange(a, b) for n, a, b in zip(self.names, ends[:-1], ends[1:], strict=True)}
+        array = np.concatenate([*rows, np.zeros((count, 0))], axis=1)[..., None]
+        if out is not None:
+            out[...] = array
+        return Blocks(count, array if out is None else out, places)
+
+    def _run(
+        self,
+        values: Mapping[str, Any],
+        batch: tuple[int, ...],  # noqa: ARG002 -- the interpreter finds out itself
+        out: Mapping[str, Array],
+        packed: Packed,
+        threads: int,  # noqa: ARG002 -- numpy has one
+        *,
+        clean: bool,  # noqa: ARG002
+    ) -> None:
+        values = {n: _array(v) for n, v in values.items() if n in self.symbols}
+        for name, result in interpret(self.program, values, list(out)).items():
+            out[name][...] = _independent(self.outputs[name], result) if is_packed(name, packed) else result
+
+    def _bound(
+        self, values: Mapping[str, Any], batch: tuple[int, ...], out: Mapping[str, Array], packed: Packed
+    ) -> Callable[[], None]:
+        return lambda: self._run(values, batch, out, packed, 1, clean=True)
+
+
+def _array(value: Any) -> Any:
+    """A value as the interpreter takes it."""
+    return value.array[:, value.number] if type(value) is Column else value
+
+
+def _independent(output: Output, result: Array) -> Array:
+    """The elements at ``output.index`` along one last axis."""
+    if not output.shape:
+        return result[..., None][..., : len(output.entries)]
+    index = np.array(output.index, dtype=np.int64).reshape(-1, len(output.shape))
+    return result[(..., *index.T)]

@@ -1,0 +1,177 @@
+"""LLVM assembly of what all kernels share: input, sines and cosines, library calls, output, and the driver loop.
+
+Widths are fixed by the host, so this module is compiled once. Its functions take addresses in tables of 64-bit words
+(:mod:`substructures.compile.tables`); compiled objects contain no address and no name to be resolved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from substructures.compile.assembler import Assembly
+from substructures.compile.emission import literal, vector
+from substructures.compile.scatter import scatter, scatter_some
+from substructures.compile.sincos import LIMIT, sincos_body
+
+#: words of the driver's context
+CONTEXT = (
+    *("last", "counter", "inputs", "n_inputs", "steps", "n_steps", "s", "s_stride", "p", "p_stride"),
+    *("outputs", "n_outputs", "o", "o_stride", "o_advance", "group"),
+)
+#: words of the rows of the tables
+INPUT = ("base", "stride", "offset", "region")
+STEP = ("kind", "function", "a", "b", "c", "count", "extra")
+
+
+def runtime(width: int) -> str:
+    """The module: sincos, unary, binary, drive."""
+    body = [
+        _sincos(width),
+        _library(width, 1),
+        _library(width, 2),
+        _load(width),
+        scatter(width),
+        scatter_some(width),
+        _drive(width),
+    ]
+    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
+    declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
+    return declared + "\n".join(body) + f"\nattributes #0 = {{ nounwind {wide} }}\n"
+
+
+BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
+
+
+def _sincos(width: int) -> str:
+    """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos."""
+    w = Assembly(width)
+    size = 8 * width
+    with w.loop("0", "%count") as i:
+        at = w.arithmetic("mul", i, size)
+        x = w.do(f"load {w.kind}, ptr {w.offset('%a', at)}, align {size}")
+        sine, cosine = sincos_body(w, x)
+        w.put(f"store {w.kind} {sine}, ptr {w.offset('%b', at)}, align {size}")
+        w.put(f"store {w.kind} {cosine}, ptr {w.offset('%c', at)}, align {size}")
+        magnitude = w.do(f"call {w.kind} @llvm.fabs.v{width}f64({w.kind} {x})")
+        large = w.do(f"fcmp ugt {w.kind} {magnitude}, {literal(LIMIT, width)}")
+        mask = w.do(f"bitcast <{width} x i1> {large} to i{width}")
+        some = w.do(f"icmp ne i{width} {mask}, 0")
+        with w.when(some), w.loop("0", str(width)) as lane:
+            place = w.arithmetic("add", at, w.arithmetic("shl", lane, 3))
+            one = w.do(f"load double, ptr {w.offset('%a', place)}")
+            magnitude = w.do(f"call double @llvm.fabs.f64(double {one})")
+            beyond = w.do(f"fcmp ugt double {magnitude}, {LIMIT:.1f}")
+            with w.when(beyond):
+                for k, target in enumerate(("%b", "%c")):
+                    function = w.do(f"load ptr, ptr {w.offset('%extra', k, 'ptr')}")
+                    value = w.do(f"call double {function}(double {one})")
+                    w.put(f"store double {value}, ptr {w.offset(target, place)}")
+    return "declare double @llvm.fabs.f64(double)\n" + w.function("sincos", BATCH)
+
+
+def _library(width: int, arguments: int) -> str:
+    """The C function ``extra`` of every number at a (and b), to c."""
+    w = Assembly(width)
+    with w.loop("0", w.arithmetic("mul", "%count", width)) as i:
+        given = [w.do(f"load double, ptr {w.offset(x, i, 'double')}") for x in ("%a", "%b")[:arguments]]
+        value = w.do(f"call double %extra({', '.join(f'double {x}' for x in given)})")
+        w.put(f"store double {value}, ptr {w.offset('%c', i, 'double')}")
+    return w.function(("unary", "binary")[arguments - 1], BATCH)
+
+
+def _load(width: int) -> str:
+    """Inputs of the states first, first + 1, ... into the scratch arrays; the last state fills a vector up.
+
+    Every input is a column of some array of the caller: a base address and a stride.
+    """
+    w = Assembly(width)
+    lanes = []
+    for lane in range(width):
+        state = w.arithmetic("add", "%first", lane)
+        beyond = w.do(f"icmp sgt i64 {state}, %final")
+        lanes.append(w.do(f"select i1 {beyond}, i64 %final, i64 {state}"))
+    with w.loop("0", "%count") as i:
+        row = w.words(w.offset("%table", w.arithmetic("mul", i, 8 * len(INPUT))), INPUT)
+        base = w.pointer(row["base"])
+        value = "undef"
+        for lane, state in enumerate(lanes):
+            source = w.offset(base, w.arithmetic("mul", state, row["stride"]))
+            one = w.do(f"load double, ptr {source}, align 8")
+            value = w.do(f"insertelement {w.kind} {value}, double {one}, i32 {lane}")
+        is_state = w.do(f"icmp eq i64 {row['region']}, 0")
+        region = w.do(f"select i1 {is_state}, ptr %s, ptr %p")
+        target = w.offset(region, row["offset"])
+        w.put(f"store {w.kind} {value}, ptr {target}, align {8 * width}")
+    return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %s, ptr %p")
+
+
+def _drive(width: int) -> str:
+    """The states [0, last) in groups of vectors: inputs, every step for the whole group, outputs.
+
+    Taking a function for several vectors in turn keeps its instructions in the cache. Several threads may drive the
+    same batch, each with scratch of its own: they share the counter of groups.
+    """
+    w = Assembly(width)
+    c = w.words("%context", CONTEXT)
+    tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", "s", "p", "o")}
+    final = w.arithmetic("sub", c["last"], 1)
+    advance = w.arithmetic("mul", c["group"], width)
+
+    def scratch(block: str) -> tuple[str, str, str]:
+        s, p, o = (w.offset(tables[n], w.arithmetic("mul", block, c[f"{n}_stride"])) for n in "spo")
+        return s, p, w.offset(o, advanced)
+
+    rounds = w.arithmetic("sdiv", w.arithmetic("add", c["last"], w.arithmetic("sub", advance, 1)), advance)
+    with w.loop("0", rounds), _turn(w, tables["counter"], rounds) as turn:
+        start = w.arithmetic("mul", turn, advance)
+        # results stay in scratch, or move on through an array of the caller
+        advanced = w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"])
+        rest = w.arithmetic("add", w.arithmetic("sub", c["last"], start), width - 1)
+        blocks = w.do(f"call i64 @llvm.smin.i64(i64 {w.arithmetic('sdiv', rest, width)}, i64 {c['group']})")
+        with w.loop("0", blocks) as block:
+            s, p, _ = scratch(block)
+            state = w.arithmetic("add", start, w.arithmetic("mul", block, width))
+            arguments = f"ptr {tables['inputs']}, i64 {c['n_inputs']}, i64 {state}, i64 {final}, ptr {s}, ptr {p}"
+            w.put(f"call void @load({arguments})")
+        _steps(w, tables["steps"], c["n_steps"], blocks, scratch)
+        with w.loop("0", blocks) as block:
+            *_, o = scratch(block)
+            _rows(w, c, tables["outputs"], o, (start, block))
+    return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
+
+
+@contextmanager
+def _turn(w: Assembly, counter: str, rounds: str) -> Iterator[str]:
+    """The next group that no other thread has taken, if there is one left."""
+    turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
+    with w.when(w.do(f"icmp slt i64 {turn}, {rounds}")):
+        yield turn
+
+
+def _steps(w: Assembly, table: str, count: str, blocks: str, scratch: Callable[[str], tuple[str, str, str]]) -> None:
+    """kind 0: function(s, p, o); 1 and 2: batch on places of s or p."""
+    with w.loop("0", count) as k:
+        row = w.words(w.offset(table, w.arithmetic("mul", k, 8 * len(STEP))), STEP)
+        function, extra = w.pointer(row["function"]), w.pointer(row["extra"])
+        is_part, is_state = w.do(f"icmp eq i64 {row['kind']}, 0"), w.do(f"icmp eq i64 {row['kind']}, 1")
+        with w.when(is_part), w.loop("0", blocks) as block:
+            s, p, o = scratch(block)
+            w.put(f"call void {function}(ptr {s}, ptr {p}, ptr {o})")
+        with w.when(w.do(f"xor i1 {is_part}, true")), w.loop("0", blocks) as block:
+            s, p, _ = scratch(block)
+            base = w.do(f"select i1 {is_state}, ptr {s}, ptr {p}")
+            a, b, c = (w.offset(base, row[n]) for n in "abc")
+            w.put(f"call void {function}(ptr {a}, ptr {b}, ptr {c}, i64 {row['count']}, ptr {extra})")
+
+
+def _rows(w: Assembly, c: dict[str, str], table: str, o: str, place: tuple[str, str]) -> None:
+    """Outputs of one vector of states; the last one may be partial."""
+    state = w.arithmetic("add", place[0], w.arithmetic("mul", place[1], w.width))
+    some = w.arithmetic("sub", c["last"], state)
+    full = w.do(f"icmp sge i64 {some}, {w.width}")
+    arguments = f"ptr {table}, i64 {c['n_outputs']}, i64 {state}, ptr {o}"
+    with w.when(full):
+        w.put(f"call void @scatter({arguments})")
+    with w.when(w.do(f"xor i1 {full}, true")):
+        w.put(f"call void @scatter_some({arguments}, i64 {some})")

@@ -1,0 +1,77 @@
+"""Compiled models of the whole catalogue beside the reference interpreter; unit: the last place of the terms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import catalogue
+from substructures.compile import compile_program
+from substructures.model import Model
+
+pytest.importorskip("llvmlite")
+
+HUMANOID = (
+    ("pelvis", "humanoid-pelvis", "world"),
+    ("torso", "humanoid-torso", "pelvis.waist"),
+    ("head", "humanoid-head", "torso.neck"),
+    ("left_arm", "humanoid-arm", "torso.left_shoulder"),
+    ("right_arm", "humanoid-arm", "torso.right_shoulder"),
+    ("left_leg", "humanoid-leg", "pelvis.left_hip"),
+    ("right_leg", "humanoid-leg", "pelvis.right_hip"),
+)
+TREES: dict[str, tuple[tuple[str, str, str], ...]] = {
+    **{name: (("x", name, "world"),) for name in catalogue.names()},
+    "arm-with-gripper": (("arm", "puma560", "world"), ("hand", "parallel-gripper", "arm.flange")),
+    "arm-on-rail": (("rail", "linear-rail", "world"), ("arm", "ur5", "rail.carriage")),
+    "two-arms": (("a", "planar-2r", "world"), ("b", "planar-2r", "a.flange"), ("c", "planar-3r", "world")),
+}
+#: of rounding errors that neither add up nor cancel; the interpreter has as many of its own
+FEW = 4.0
+
+
+def all_agree(model: Model, values: dict[str, Any], deviation: Callable[..., float]) -> float:
+    kernel = compile_program(model.program, list(model.program.outputs))
+    assert kernel.compiled
+    return deviation(model.program, values, kernel.evaluate(values))
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_catalogue(name: str, tree: Any, states: Any, deviation: Any) -> None:
+    model = tree(*TREES[name])
+    assert all_agree(model, states(model, 37), deviation) < FEW
+
+
+def test_humanoid(tree: Any, states: Any, deviation: Any) -> None:
+    model = tree(*HUMANOID)
+    values = states(model, 70)
+    names = ["metric", "forces", "christoffel"]
+    kernel = compile_program(model.program, names)
+    found = kernel.evaluate(values)
+    assert deviation(model.program, values, found) < FEW
+    threaded = kernel.evaluate(states(model, 1030), threads=2)
+    whole = kernel.evaluate(states(model, 1030))
+    for name in names:
+        np.testing.assert_array_equal(threaded[name], whole[name])
+
+
+def test_a_state_that_is_not_finite(tree: Any, states: Any) -> None:
+    model = tree(("x", "puma560", "world"))
+    values = states(model, 9)
+    values[model.coordinates[1]][4] = np.inf
+    values[model.coordinates[2]][6] = np.nan
+    found = compile_program(model.program, ["metric"]).evaluate(values)["metric"]
+    finite = np.isfinite(found).all(axis=(1, 2))
+    np.testing.assert_array_equal(np.flatnonzero(~finite), [4, 6])
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", TREES)
+def test_many_states_of_the_catalogue(name: str, tree: Any, states: Any, deviation: Any) -> None:
+    """Over all entries 10^5 states and more."""
+    model = tree(*TREES[name])
+    for seed in range(10):
+        assert all_agree(model, states(model, 230, seed + 1), deviation) < FEW
