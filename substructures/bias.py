@@ -22,7 +22,7 @@ def bias_forces(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequ
     return _pass_back(mounted, states, loads, len(rates))
 
 
-def _from_body(state: State, carrier: int, z: Vector) -> Vector:
+def from_body(state: State, carrier: int, z: Vector) -> Vector:
     """A vector from O of a carrier, as vector from its body frame origin."""
     return z if carrier == INTERFACE else (z[0], z[1], z[2] - state.tau[carrier])
 
@@ -33,10 +33,10 @@ def _motions(m: Mounted, state: State, motions: list[list[Motion]], rates: Seque
     if state.host is not None and state.link is not None:
         carrier = state.link.parent
         host = motions[m.host][carrier]
-        interface = host.at(_from_body(state.host, carrier, state.link.Z), state.link.rotation)
+        interface = host.at(from_body(state.host, carrier, state.link.Z), state.link.rotation)
     own = [interface]
     for c, link in enumerate(state.links):
-        before = own[link.parent].at(_from_body(state, link.parent, link.Z), link.rotation)
+        before = own[link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
         own.insert(c, before.moved(link.s, rates[m.first + c], state.tau[c]))
     return own
 
@@ -51,9 +51,9 @@ def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[
             x, y, z = load.n
             tau = state.tau[c]
             at_joint = Load(load.f, (x - tau * load.f[1], y + tau * load.f[0], z))
-            own[link.parent] += at_joint.before(_from_body(state, link.parent, link.Z), link.rotation)
+            own[link.parent] += at_joint.before(from_body(state, link.parent, link.Z), link.rotation)
         if m.host != WORLD and state.host is not None and state.link is not None:
             carrier = state.link.parent
-            z_host = _from_body(state.host, carrier, state.link.Z)
+            z_host = from_body(state.host, carrier, state.link.Z)
             loads[m.host][carrier] += own[INTERFACE].before(z_host, state.link.rotation)
     return result

@@ -10,6 +10,7 @@ import numpy as np
 
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.program import Program
 from substructures.model import KINEMATICS, Model
 from substructures.states import Array, States, read_states, symbol_values
 
@@ -87,7 +88,18 @@ ADVICE = {
 }
 
 
-def evaluate(model: Model, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Any]:
+#: outputs of a program for (program, values, names, number of states)
+Engine = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
+
+
+def interpreted(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+    """The engine that needs nothing: the reference interpreter, in blocks of states."""
+    return interpret_in_blocks(program, values, names, states)
+
+
+def evaluate(
+    model: Model, request: Mapping[str, Any], limit: int | None = None, engine: Engine = interpreted
+) -> dict[str, Any]:
     """Evaluate quantities for states.
 
     ``request``: the JSON body of the contract (lists, numbers) or the same with arrays. The answer holds numpy arrays,
@@ -98,7 +110,7 @@ def evaluate(model: Model, request: Mapping[str, Any], limit: int | None = None)
     states = read_states(model, request, limit)
     needs = sorted({name for q in quantities for name in QUANTITIES[q].needs})
     values = symbol_values(model, request, states, needs)
-    batch = Batch(model, states, values, interpret_in_blocks(model.program, values, needs, len(states.q)))
+    batch = Batch(model, states, values, engine(model.program, values, needs, len(states.q)))
     answer: dict[str, Any] = {
         "coordinates": list(model.coordinates),
         "count": len(states.q),
