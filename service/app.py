@@ -30,8 +30,8 @@ def open_store(settings: Settings) -> Iterator[Store]:
     Raises DatabaseError, MigrationError.
     """
     database = Database(settings.database)
+    store = Store(settings, database, Metrics())
     try:
-        store = Store(settings, database, Metrics())
         if database.is_sqlite:  # this is the only server: whatever is in flight died with the last one
             with database.write() as connection:
                 idempotency.forget(connection, timedelta(hours=settings.limits.idempotency_hours), timedelta(0))
@@ -39,6 +39,7 @@ def open_store(settings: Settings) -> Iterator[Store]:
             import_catalogue(store)
         yield store
     finally:
+        store.kernels.close()
         database.close()
 
 

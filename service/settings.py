@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -45,7 +46,16 @@ class Settings(BaseModel):
     allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
     cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
+    kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
     limits: Limits = Limits()
+
+    @property
+    def kernel_folder(self) -> Path | None:
+        """Where compiled kernels are kept between starts, if anywhere."""
+        if self.kernels:
+            return None if self.kernels == "-" else Path(self.kernels)
+        file = self.database.removeprefix("sqlite:///")
+        return Path(f"{file}.kernels") if file not in (self.database, "", ":memory:") else None
 
     @property
     def is_loopback(self) -> bool:

@@ -11,7 +11,7 @@ import orjson
 from service.arrays import flat, read_npz, write_npz
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES, evaluate
+from substructures.evaluation import QUANTITIES, Engine, evaluate
 from substructures.model import Model
 
 # dimensions of the answer for one state; what is not listed has one
@@ -25,12 +25,12 @@ _DIMENSIONS = {
 _FLAT_INPUTS = ("inputs", "parameters")
 
 
-def compute(model: Model, request: Any, limits: Limits) -> dict[str, Any]:
+def compute(model: Model, request: Any, limits: Limits, engine: Engine) -> dict[str, Any]:
     """Arrays by name, and ``failures``. Raises InvalidDocument, MissingValue, TooLarge."""
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
     check_size(model, request, limits)
-    return evaluate(model, request, limits.states)
+    return evaluate(model, request, limits.states, engine)
 
 
 def check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None:

@@ -34,7 +34,7 @@ def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: Onc
 
     def work() -> Answer:
         wanted = _request(request, raw, store)
-        result = {**evaluations.compute(model, wanted, limits), "digest": tree.digest}
+        result = {**evaluations.compute(model, wanted, limits, store.kernels), "digest": tree.digest}
         if _wants_npz(request):
             return Answer(200, evaluations.as_npz(result), {"Content-Type": NPZ})
         return json_answer(evaluations.as_json(result, wanted))
