@@ -12,6 +12,7 @@ from substructures.errors import Fault, InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.model import KINEMATICS, Model
+from substructures.solve import cholesky_solve
 from substructures.states import Array, States, read_states, symbol_values
 
 FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t"))
@@ -47,15 +48,7 @@ def _inverse_dynamics(b: Batch) -> Array:
 
 def _forward_dynamics(b: Batch) -> Array:
     """q'' from g q'' = Q - Gamma q' q'; NaN where the metric is singular (the state is listed in the failures)."""
-    rhs = b.output("forces") - b.output("bias")
-    result = np.full_like(rhs, np.nan)
-    for i, (g, f) in enumerate(zip(b.output("metric"), rhs, strict=True)):
-        try:
-            factor = np.linalg.cholesky(g)
-            result[i] = np.linalg.solve(factor.T, np.linalg.solve(factor, f))
-        except np.linalg.LinAlgError:
-            continue
-    return result
+    return cholesky_solve(b.output("metric"), b.output("forces") - b.output("bias"))
 
 
 def _momentum(b: Batch) -> dict[str, Array]:

@@ -28,6 +28,7 @@ from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.expr.walk import reachable
 from substructures.model import Model
+from substructures.solve import cholesky_solve
 from substructures.states import Array, States, numeric, read_states, symbol_values
 
 ID = "inverse_dynamics"
@@ -131,27 +132,6 @@ def forward_dynamics_derivative(
     slope = interpret_in_blocks(source, values, [f"{ID}_derivative"], count)[f"{ID}_derivative"]
     result = cholesky_solve(found["metric"], -slope)
     return result[0] if states.single else result
-
-
-def cholesky_solve(g: Array, f: Array) -> Array:
-    """x with g x = f for (N, n, n) and (N, n), by g = L L^T; NaN in states where g is not positive definite."""
-    try:
-        return _solved(g, f)
-    except np.linalg.LinAlgError:
-        pass
-    result = np.full_like(f, np.nan)
-    for i in range(len(f)):
-        try:
-            result[i] = _solved(g[i : i + 1], f[i : i + 1])[0]
-        except np.linalg.LinAlgError:
-            continue
-    return result
-
-
-def _solved(g: Array, f: Array) -> Array:
-    L = np.linalg.cholesky(g)
-    y = np.linalg.solve(L, f[..., None])
-    return np.asarray(np.linalg.solve(np.swapaxes(L, -1, -2), y)[..., 0], dtype=np.float64)
 
 
 def _directions(model: Model, along: Mapping[str, Any], states: States) -> dict[str, Any]:

@@ -12,11 +12,11 @@ from substructures import Definition, InvalidDocument, MissingValue, Model, Prog
 from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
 from substructures.sensitivity import (
-    cholesky_solve,
     forward_dynamics_derivative,
     inverse_dynamics_derivative,
     inverse_dynamics_jacobians,
 )
+from substructures.solve import cholesky_solve
 from substructures.states import default_number
 
 N = 2
