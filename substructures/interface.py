@@ -82,7 +82,8 @@ def kinematics(chain: tuple[Link, ...], columns: list[Columns]) -> Kinematics:
     r: list[Vector] = []
     for link in chain:
         R_p, r_p = (R[link.parent], r[link.parent]) if link.parent >= 0 else (IDENTITY, ZERO)
-        R.append(transpose(tuple(link.rotation.forward(column) for column in transpose(R_p))))  # type: ignore[arg-type]
+        x, y, z = (link.rotation.forward(column) for column in transpose(R_p))
+        R.append(transpose((x, y, z)))
         r.append(add(r_p, apply(transpose(R_p), link.Z)))
     return Kinematics(chain, columns, R, r)
 
@@ -98,8 +99,8 @@ def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
             continue
         for symbol, unit in inertia_names(name[k]):
             m.scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
-        values = [graph.symbol(symbol) for symbol, _ in inertia_names(name[k])]
-        result.append(Inertia(values[0], tuple(values[1:4]), tuple(values[4:])))  # type: ignore[arg-type]
+        mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(symbol) for symbol, _ in inertia_names(name[k]))
+        result.append(Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
     return tuple(result)
 
 

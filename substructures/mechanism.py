@@ -9,7 +9,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.frames import AXES, Frame, axis_rotation
-from substructures.mechanics.inertia import Inertia, binet, body_inertia
+from substructures.mechanics.inertia import Inertia, binet
 from substructures.mechanics.joints import Joint, lean_rotation
 from substructures.mechanics.linear3 import (
     IDENTITY,
@@ -19,8 +19,8 @@ from substructures.mechanics.linear3 import (
     Rotation,
     Symmetric,
     Turn,
-    Vector,
     multiply,
+    scale,
     transpose,
 )
 from substructures.scope import Scope, no_names
@@ -217,23 +217,17 @@ class _Builder:
         scope, tensor = self.scope, body.inertia
         mass = scope.read(body.mass, f"{pointer}/mass")
         com = scope.vector(body.com, f"{pointer}/com")
-        theta = tuple(
-            scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz", "xy", "xz", "yz")
-        )
-        inertia = body_inertia(mass, com, theta) if tensor.about == "com" else _about_origin(mass, com, theta)  # type: ignore[arg-type]
-        central = binet(theta) if tensor.about == "com" else _central(inertia, com)  # type: ignore[arg-type]
-        self.central[i] = mass, central
+        xx, yy, zz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz"))
+        xy, xz, yz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xy", "xz", "yz"))
+        J = binet((xx, yy, zz, xy, xz, yz))
+        if tensor.about == "com":
+            inertia = Inertia(mass, ZERO, J).shifted(com)
+        else:
+            inertia = Inertia(mass, scale(mass, com), J)
+            J = Inertia(-mass, ZERO, J).shifted(com).J  # J about the mass centre: J - m h h^T
+        self.central[i] = mass, J
         moved = inertia.turned_back(Rotation((Turn(frame.E),))).shifted(frame.position)
         if frame.carrier == INTERFACE:
             self.base = self.base + moved
         else:
             self.own[frame.carrier] = self.own[frame.carrier] + moved
-
-
-def _central(inertia: Inertia, com: Vector) -> Symmetric:
-    """J about the mass centre: J - m h h^T."""
-    return Inertia(-inertia.m, ZERO, inertia.J).shifted(com).J
-
-
-def _about_origin(mass: Expr, com: Vector, theta: tuple[Expr, ...]) -> Inertia:
-    return Inertia(mass, (mass * com[0], mass * com[1], mass * com[2]), body_inertia(0, ZERO, theta).J)  # type: ignore[arg-type]

@@ -84,7 +84,7 @@ class Runtime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
         loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
         call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
-        library = target.library()
+        library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 
     def steps(self, steps: Iterable[Step], region: str, parts: Mapping[str, int]) -> NDArray[np.int64]:
@@ -99,7 +99,7 @@ class Runtime:
         if step.function == "sincos":
             return [kind, self.loaded.names["sincos"], a, b, c, step.count, address(self.pair)]
         shared = "binary" if step.function in ("atan2", "pow") else "unary"
-        return [kind, self.loaded.names[shared], a, b, c, step.count, target.library()[step.function]]
+        return [kind, self.loaded.names[shared], a, b, c, step.count, target.math_library()[step.function]]
 
     def drive(self, *words: int) -> None:
         """One call of the driver, without the interpreter's lock; words in the order of CONTEXT."""

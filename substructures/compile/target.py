@@ -94,7 +94,7 @@ class Loaded:
 
 
 @cache
-def library() -> dict[str, int]:
+def math_library() -> dict[str, int]:
     """Addresses of the C library's mathematical functions."""
     name = "ucrtbase" if sys.platform == "win32" else ctypes.util.find_library("m")
     functions = ctypes.CDLL(name)

@@ -62,11 +62,6 @@ def binet(theta: Symmetric, half: S = Fraction(1, 2)) -> Symmetric:
     return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz
 
 
-def body_inertia(mass: S, com: Vector, theta: Symmetric, half: S = Fraction(1, 2)) -> Inertia:
-    """(m, s, J) about the body frame origin from mass, mass centre and inertia tensor about the mass centre."""
-    return Inertia(mass, ZERO, binet(theta, half)).shifted(com)
-
-
 def composites(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...]) -> tuple[list[Inertia], Inertia]:
     """Inertia of every subtree about O_k in frame k, and of the whole about the interface (without fixed bodies).
 

@@ -156,10 +156,9 @@ class Turn:
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
         """E^T t E."""
-        half = multiply(dense(t), self.e)
-        et = transpose(self.e)
-        columns = transpose(half)
-        return packed(tuple(tuple(dot(row, column) for column in columns) for row in et))  # type: ignore[arg-type]
+        x, y, z = transpose(multiply(dense(t), self.e))
+        ex, ey, ez = transpose(self.e)
+        return dot(ex, x), dot(ey, y), dot(ez, z), dot(ex, y), dot(ex, z), dot(ey, z)
 
     def matrix(self) -> Matrix:
         """E."""
