@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from time import perf_counter
 from typing import Any
 
@@ -47,31 +47,49 @@ def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[s
     start = perf_counter()
     warnings = physical_warnings(m)
     values = random_values(m.scope.symbols)
-    joints = _numeric_joints(m, values)
     certificate: dict[str, Any] = {"states": STATES, "tolerance": TOLERANCE, "warnings": warnings}
-    if joints:
+    if m.joints:
         certificate["positive_definite"] = _positive_definite(m, result, values)
-        form = direct_form(joints, np.zeros((STATES, 3)))
-        computed = interpret(result, values, ["metric", "christoffel", "armature"])
-        form.metric[...] += computed["armature"][..., None] * np.eye(len(joints))
-        expected = {"metric": form.metric, "christoffel": form.christoffel}
-        certificate["direct_form"] = compare(computed, expected)
+        certificate["direct_form"] = finite_comparison(
+            lambda some: _comparison(m, result, some), values, default_values(m)
+        )
     certificate["seconds"] = {"derive": round(derive_seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate
 
 
+def _comparison(m: Mechanism, result: Program, values: Mapping[str, Array]) -> dict[str, Any]:
+    joints = _numeric_joints(m, values)
+    form = direct_form(joints, np.zeros((STATES, 3)))
+    computed = interpret(result, values, ["metric", "christoffel", "armature"])
+    form.metric[...] += computed["armature"][..., None] * np.eye(len(joints))
+    return compare(computed, {"metric": form.metric, "christoffel": form.christoffel})
+
+
+def finite_comparison(
+    comparison: Callable[[Mapping[str, Array]], dict[str, Any]],
+    values: Mapping[str, Array],
+    defaults: Mapping[str, float],
+) -> dict[str, Any]:
+    """The comparison at random values; where these are outside of a formula's domain, at the parameters' defaults."""
+    result = comparison(values)
+    if None in result["max_relative_error"].values():
+        result = comparison({**values, **{name: np.full(STATES, x) for name, x in defaults.items()}})
+    return result
+
+
 def compare(computed: Mapping[str, Array], expected: Mapping[str, Array]) -> dict[str, Any]:
-    """Largest deviation of each quantity, relative to its largest entry. Raises VerificationFailed."""
-    errors: dict[str, Any] = {}
+    """Largest deviation of each quantity relative to the largest entry of all; None where something is not finite.
+
+    Raises VerificationFailed.
+    """
+    largest = [float(np.abs(x[np.isfinite(x)]).max(initial=0.0)) for x in expected.values()]
+    scale = max(largest) or 1.0
+    errors: dict[str, float | None] = {}
     for name, value in expected.items():
-        finite = np.isfinite(value) & np.isfinite(computed[name])
-        if not finite.all():
-            errors[name] = None  # a formula is singular at the random values; nothing can be said
-            continue
-        scale = max(float(np.abs(value).max(initial=0.0)), 1.0)
-        errors[name] = float(np.abs(computed[name] - value).max(initial=0.0)) / scale
-        if errors[name] > TOLERANCE:
-            raise VerificationFailed(f"{name} deviates from the direct form by {errors[name]:.3g}")
+        error = float(np.abs(computed[name] - value).max(initial=0.0)) / scale
+        errors[name] = error if np.isfinite(error) else None
+        if np.isfinite(error) and error > TOLERANCE:
+            raise VerificationFailed(f"{name} deviates from the direct form by {error:.3g}")
     return {"max_relative_error": errors}
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.mechanics.linear3 import dense
 from substructures.mechanism import Mechanism
-from substructures.scope import no_names
+from substructures.scope import Scope, no_names
 
 Array = NDArray[np.float64]
 Problem = tuple[str, str]  #: code, message
@@ -61,12 +62,13 @@ def _checks(m: Mechanism) -> Iterator[_Check]:
 
 def default_values(m: Mechanism) -> dict[str, float]:
     """The parameters that have a default, as doubles."""
-    values = {
-        name: m.scope.read(p.value, f"/parameters/{name}/value", no_names)
-        for name, p in m.definition.parameters.items()
-        if p.value is not None
-    }
-    numbers = interpret(program(m.graph, {n: array((), lambda v=v: v) for n, v in values.items()}, {}), {})
+    return constants(m.scope, {name: p.value for name, p in m.definition.parameters.items()})
+
+
+def constants(scope: Scope, given: Mapping[str, Any]) -> dict[str, float]:
+    """Numbers and constant expressions as doubles; None is left out."""
+    read = {n: scope.read(v, f"/parameters/{n}/value", no_names) for n, v in given.items() if v is not None}
+    numbers = interpret(program(scope.graph, {n: array((), lambda v=v: v) for n, v in read.items()}, {}), {})
     return {name: float(v) for name, v in numbers.items()}
 
 
