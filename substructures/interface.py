@@ -123,9 +123,8 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", subtree) | _inertia_outputs("inertia", list(m.own))
-    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True) | _inertia_outputs(
-        "base", [m.base], scalar=True
-    )
+    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True)
+    outputs |= _inertia_outputs("base", [m.base], scalar=True)
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
     outputs |= _interface_outputs(k, momenta)
     forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(m, k, carrier, at))

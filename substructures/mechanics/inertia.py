@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from substructures.mechanics.joints import Joint
@@ -22,14 +22,26 @@ from substructures.mechanics.linear3 import (
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """m [kg], s = m h [kg m] and J = integral of x x^T dm [kg m^2] (Binet tensor) about a point, in a frame."""
+    """m [kg], s = m h [kg m] and J = integral of x x^T dm [kg m^2] (Binet tensor) about a point, in a frame.
+
+    ``polar``: J_xx + J_yy where a shorter form than that sum is known: turns about the third axis leave it as it is.
+    """
 
     m: S = 0
     s: Vector = ZERO
     J: Symmetric = ZERO6
+    polar: S | None = None
+
+    @property
+    def about_third_axis(self) -> S:
+        """J_xx + J_yy, the moment of inertia about the third axis."""
+        return self.J[0] + self.J[1] if self.polar is None else self.polar
 
     def __add__(self, other: Inertia) -> Inertia:
-        return Inertia(self.m + other.m, add(self.s, other.s), add6(self.J, other.J))
+        polar = None
+        if self.polar is not None or other.polar is not None:
+            polar = self.about_third_axis + other.about_third_axis
+        return Inertia(self.m + other.m, add(self.s, other.s), add6(self.J, other.J), polar)
 
     def shifted(self, z: Vector) -> Inertia:
         """The same masses about a point at -z: s + m z, J + s z^T + z s^T + m z z^T."""
@@ -38,6 +50,7 @@ class Inertia:
         s = add(self.s, scale(self.m, z))
         both = add(self.s, s)
         j = self.J
+        polar = None if self.polar is None else self.polar + (z[0] * both[0] + z[1] * both[1])
         return Inertia(
             self.m,
             s,
@@ -49,6 +62,7 @@ class Inertia:
                 j[4] + (self.s[0] * z[2] + z[0] * s[2]),
                 j[5] + (self.s[1] * z[2] + z[1] * s[2]),
             ),
+            polar,
         )
 
     def turned_back(self, rotation: Rotation) -> Inertia:
@@ -65,16 +79,30 @@ def binet(theta: Symmetric, half: S = Fraction(1, 2)) -> Symmetric:
 def composites(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...]) -> tuple[list[Inertia], Inertia]:
     """Inertia of every subtree about O_k in frame k, and of the whole about the interface (without fixed bodies).
 
-    One pass from the leaves to the base; ``bodies`` are given about the body frame origins.
+    One pass from the leaves to the base; ``bodies`` are given about the body frame origins. Joints that are parallel
+    all the way to the base never need J_xx and J_yy alone, only their sum, which their turns leave as it is
+    (mathematics.md, section 8.4).
     """
     total: list[Inertia] = list(bodies)
+    parallel = _parallel_to_root(joints)
     base = Inertia()
     for k in reversed(range(len(joints))):
         joint = joints[k]
         total[k] = total[k].shifted((0, 0, joint.tau))
-        up = total[k].turned_back(joint.rotation).shifted(joint.offset)
+        up = total[k].turned_back(joint.rotation)
+        if parallel[k]:
+            up = replace(up, polar=total[k].about_third_axis)
+        up = up.shifted(joint.offset)
         if joint.parent < 0:
             base = base + up
         else:
             total[joint.parent] = total[joint.parent] + up
     return total, base
+
+
+def _parallel_to_root(joints: tuple[Joint, ...]) -> list[bool]:
+    """For every joint but a root: whether it and its ancestors turn about one direction, down to the root's axis."""
+    group: list[bool] = []
+    for joint in joints:
+        group.append(joint.parent < 0 or (joint.rotation.keeps_third_axis and group[joint.parent]))
+    return [is_in and joint.parent >= 0 for is_in, joint in zip(group, joints, strict=True)]

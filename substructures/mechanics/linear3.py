@@ -171,6 +171,11 @@ class Rotation:
 
     factors: tuple[Planar | Turn, ...] = ()
 
+    @property
+    def keeps_third_axis(self) -> bool:
+        """True when all factors are known to turn about the third axis."""
+        return all(isinstance(factor, Planar) and factor.axis == 2 for factor in self.factors)
+
     def forward(self, v: Vector) -> Vector:
         """E v: components in the child frame of a vector given in the parent frame."""
         for factor in self.factors:

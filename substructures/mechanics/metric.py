@@ -45,8 +45,8 @@ def joint_momentum(s: int, composite: Inertia) -> JointMomentum:
     x, y, _ = composite.s
     if s:
         return JointMomentum(1, (0, 0, composite.m), (y, -x, 0), composite)
-    xx, yy, _, _, xz, yz = composite.J
-    return JointMomentum(0, (-y, x, 0), (-xz, -yz, xx + yy), composite)
+    _, _, _, _, xz, yz = composite.J
+    return JointMomentum(0, (-y, x, 0), (-xz, -yz, composite.about_third_axis), composite)
 
 
 def pairing(twist: Twist, force: Vector, moment: Vector) -> S:
