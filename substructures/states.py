@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -167,6 +168,7 @@ def _defaults(model: Model) -> dict[str, float]:
     return {name: default_number(p["value"]) for name, p in model.parameters.items() if p["value"] is not None}
 
 
+@lru_cache(maxsize=100_000)
 def default_number(value: Any) -> float:
     """A default as a double: a number, or a constant expression in the grammar."""
     if not isinstance(value, str):
