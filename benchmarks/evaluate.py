@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from benchmarks.first_answer import first_answer
 from benchmarks.robots import CALLS, Robot, robots
 from substructures.compile import Kernel, compile_program
 from substructures.compile.engine import shared_runtime
@@ -206,6 +207,7 @@ def main() -> None:
     threads(small, figures, rounds)
     one_state(small, "6r", figures)
     one_state(large, "34", figures)
+    first_answer(figures, rounds)
     if arguments.json:
         arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
 
