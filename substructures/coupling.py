@@ -131,10 +131,11 @@ def over_formulas(graph: Graph) -> Run:
     return run
 
 
-def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector) -> Coupled:
+def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christoffel: bool = True) -> Coupled:
     """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them.
 
     ``run`` gives the outputs of a stored program over the scalars of the bindings: formulas, floats or arrays.
+    ``christoffel``: False leaves the Christoffel symbols out.
     """
     n = 0
     for part in mounted:
@@ -144,7 +145,9 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector) -> Coupl
     for m, state in zip(mounted, states, strict=True):
         _place(m, state, mounted, states, gravity)
         _twists(m, state)
-        _dynamics(m, state, result)
+        _metric(m, state, result)
+        if christoffel:
+            _christoffel(m, state, result)
         _gravity(m, state, result)
         _applied(m, state, result)
     return result
@@ -230,18 +233,21 @@ def _twists(m: Mounted, state: State) -> None:
             state.columns[c][m.first + a] = Twist(state.stored.vector("U", c, a), state.stored.vector("Omega", c, a))
 
 
-def _dynamics(m: Mounted, state: State, result: Coupled) -> None:
+def _metric(m: Mounted, state: State, result: Coupled) -> None:
     """The stored own entries, and the products of host columns with the joint momenta."""
-    first, own = m.first, state.stored.outputs
-    result.metric |= {(first + a, first + c): x for (a, c), x in own["metric"].entries.items()}
-    result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in own["christoffel"].entries.items()}
-    if not state.outside:
-        return
+    first, own = m.first, state.stored.outputs["metric"].entries
+    result.metric |= {(first + a, first + c): x for (a, c), x in own.items()}
     for c, momentum in enumerate(state.momenta):
         columns = state.columns[c]
-        for a in state.outside:
-            result.metric[a, first + c] = pairing(columns[a], momentum.p, momentum.H)
-        block = christoffel_block(first + c, columns, momentum, inside=first)
+        result.metric |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in state.outside}
+
+
+def _christoffel(m: Mounted, state: State, result: Coupled) -> None:
+    """The stored own entries, and those with host columns."""
+    first, own = m.first, state.stored.outputs["christoffel"].entries
+    result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in own.items()}
+    for c, momentum in enumerate(state.momenta if state.outside else ()):
+        block = christoffel_block(first + c, state.columns[c], momentum, inside=first)
         result.christoffel |= {(a, b, first + c): x for (a, b), x in block.items()}
 
 

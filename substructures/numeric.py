@@ -59,7 +59,8 @@ class NumericTree:
         constants = interpret(self._constants, {**inputs, **rates, "t": 0.0, **values})
         mounted = [_numeric(m, k, constants) for k, m in enumerate(self.assembly.mounted)]
         gravity = tuple(_scalars(constants["gravity"], 1))
-        coupled = couple_parts(self._run(), mounted, (gravity[0], gravity[1], gravity[2]))
+        wanted = "christoffel" in quantities
+        coupled = couple_parts(self._run(), mounted, (gravity[0], gravity[1], gravity[2]), wanted)
         result = _dense(coupled, batch, [q for q in quantities if q != "bias"])
         if "bias" in quantities:
             given = {**rates, **values}
