@@ -145,9 +145,7 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
     for m, state in zip(mounted, states, strict=True):
         _place(m, state, mounted, states, gravity)
         _twists(m, state)
-        _metric(m, state, result)
-        if christoffel:
-            _christoffel(m, state, result)
+        _dynamics(m, state, result, christoffel)
         _gravity(m, state, result)
         _applied(m, state, result)
     return result
@@ -233,22 +231,19 @@ def _twists(m: Mounted, state: State) -> None:
             state.columns[c][m.first + a] = Twist(state.stored.vector("U", c, a), state.stored.vector("Omega", c, a))
 
 
-def _metric(m: Mounted, state: State, result: Coupled) -> None:
+def _dynamics(m: Mounted, state: State, result: Coupled, christoffel: bool) -> None:
     """The stored own entries, and the products of host columns with the joint momenta."""
-    first, own = m.first, state.stored.outputs["metric"].entries
-    result.metric |= {(first + a, first + c): x for (a, c), x in own.items()}
-    for c, momentum in enumerate(state.momenta):
+    first, own = m.first, state.stored.outputs
+    result.metric |= {(first + a, first + c): x for (a, c), x in own["metric"].entries.items()}
+    if christoffel:
+        entries = own["christoffel"].entries
+        result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in entries.items()}
+    for c, momentum in enumerate(state.momenta if state.outside else ()):
         columns = state.columns[c]
         result.metric |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in state.outside}
-
-
-def _christoffel(m: Mounted, state: State, result: Coupled) -> None:
-    """The stored own entries, and those with host columns."""
-    first, own = m.first, state.stored.outputs["christoffel"].entries
-    result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in own.items()}
-    for c, momentum in enumerate(state.momenta if state.outside else ()):
-        block = christoffel_block(first + c, state.columns[c], momentum, inside=first)
-        result.christoffel |= {(a, b, first + c): x for (a, b), x in block.items()}
+        if christoffel:
+            block = christoffel_block(first + c, columns, momentum, inside=first)
+            result.christoffel |= {(a, b, first + c): x for (a, b), x in block.items()}
 
 
 def _gravity(m: Mounted, state: State, result: Coupled) -> None:
