@@ -119,23 +119,9 @@ def derived_formulas(definition: Definition) -> Program:
 
 def humanoid() -> tuple[TreeSpec, dict[str, Definition]]:
     """Pelvis, torso, head, two arms and two legs of the catalogue: 34 degrees of freedom."""
-    mounts = [
-        ("pelvis", "humanoid-pelvis", "world"),
-        ("torso", "humanoid-torso", "pelvis.waist"),
-        ("head", "humanoid-head", "torso.neck"),
-        ("left_arm", "humanoid-arm", "torso.left_shoulder"),
-        ("right_arm", "humanoid-arm", "torso.right_shoulder"),
-        ("left_leg", "humanoid-leg", "pelvis.left_hip"),
-        ("right_leg", "humanoid-leg", "pelvis.right_hip"),
-    ]
-    instances = [{"name": n, "substructure": s, "at": at} for n, s, at in mounts]
-    document = {
-        "name": "humanoid",
-        "gravity": [0, 0, "-g"],
-        "parameters": {"g": {"value": "9.81"}},
-        "instances": instances,
-    }
-    return TreeSpec.read(document), {s: Definition.read(catalogue.load(s)) for _, s, _ in mounts}
+    spec = TreeSpec.read(catalogue.load_tree("humanoid"))
+    used = dict.fromkeys(str(instance.substructure) for instance in spec.instances)
+    return spec, {name: Definition.read(catalogue.load(name)) for name in used}
 
 
 def coupling(figures: dict[str, float]) -> None:

@@ -172,7 +172,10 @@ def one_state(robot: Robot, key: str, figures: dict[str, float]) -> None:
     columns = [(robot.model.coordinates, state)]
     out = {n: np.zeros((1, *kernel.shape(n, packed=True))) for n in kernel.names}
     prepared = kernel.bind(out, robot.numbers, columns=columns, packed=True)
-    evaluate = lambda: kernel.evaluate(robot.numbers, columns=columns, packed=True)  # noqa: E731
+
+    def evaluate() -> Any:
+        return kernel.evaluate(robot.numbers, columns=columns, packed=True)
+
     times = alternating({"bound": (prepared, 1), "evaluate": (evaluate, 1)}, 15)
     for name, some in times.items():
         figures[f"one_state_{key}_{name}_us"] = median(some) * 1e6

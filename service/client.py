@@ -65,7 +65,7 @@ class Client:
         """Couple one more instance onto a tree; the new revision."""
         return dict(self.request("POST", f"/v1/trees/{tree}/couplings", instance).json())
 
-    def formula(self, tree: str, quantity: str, format: str = "text", form: str = "compact", bind: str = "") -> str:  # noqa: A002
+    def formula(self, tree: str, quantity: str, format: str = "text", form: str = "compact", bind: str = "") -> str:  # noqa: A002 -- the name in the contract
         """A quantity of a tree as text in one of the formats."""
         wanted = {"format": format, "form": form, "bind": bind}
         return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text

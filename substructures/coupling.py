@@ -154,11 +154,12 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
 def _pass_up(run: Run, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
     """Runs every program with the inertia of what is mounted on it; the total is about the world's origin."""
     payload: list[dict[int, Inertia]] = [{} for _ in mounted]
-    states: list[State] = [None] * len(mounted)  # type: ignore[list-item]
+    states: list[State] = []
     total = Inertia()
     for i in reversed(range(len(mounted))):
         m = mounted[i]
-        states[i] = state = _state(run, m, payload[i])
+        state = _state(run, m, payload[i])
+        states.insert(0, state)
         whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
         if m.host == WORLD:
             total = total + _moved(whole, m.E, m.position)

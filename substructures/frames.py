@@ -63,8 +63,9 @@ def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Ma
     """Rows: a unit vector across n and the frame axis least aligned with it, its complement, n."""
     graph = scope.graph
     length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2]
-    unit = tuple(c / graph.sqrt(length2) for c in n)
+    root = graph.sqrt(length2)
+    unit: Vector = (n[0] / root, n[1] / root, n[2] / root)
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
-    first: Vector = tuple(c / length for c in across)
-    return first, cross(unit, first), unit  # type: ignore[return-value, arg-type]
+    first: Vector = (across[0] / length, across[1] / length, across[2] / length)
+    return first, cross(unit, first), unit

@@ -37,7 +37,6 @@ from substructures.skeleton import INTERFACE, christoffel_entries
 from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
-QUANTITIES = ("metric", "christoffel", "gravity", "forces", "potential_energy", "linear_momentum", "angular_momentum")
 KINEMATICS = ("position", "rotation", "U", "Omega")
 
 

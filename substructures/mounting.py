@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.coupling import WORLD, Mounted
-from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.mechanics.linear3 import Vector
@@ -187,9 +186,3 @@ def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
         joints = m.part.skeleton.joints
         result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
     return result
-
-
-def unknown_instance(spec: TreeSpec, name: str) -> InvalidDocument:
-    """The exception for an instance that is not there."""
-    known = ", ".join(i.name for i in spec.instances)
-    return InvalidDocument.at("", "unknown-instance", f"'{spec.name}' has no instance '{name}'; it has {known}")

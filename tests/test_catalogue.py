@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from substructures import couple, derive
-from substructures.catalogue import load, names
+from substructures.catalogue import load, load_tree, names
 from substructures.definition import Definition
 from substructures.evaluation import evaluate
 from substructures.expr.expand import is_zero
@@ -32,15 +32,7 @@ REFERENCE = Path(__file__).parent / "reference"
 #: published moments of inertia that no rigid body can have, kept as published
 NOT_PHYSICAL = {("puma560", "link1"), ("puma560", "link3")}
 
-HUMANOID = [
-    ("pelvis", "humanoid-pelvis", "world"),
-    ("torso", "humanoid-torso", "pelvis.waist"),
-    ("head", "humanoid-head", "torso.neck"),
-    ("left_arm", "humanoid-arm", "torso.left_shoulder"),
-    ("right_arm", "humanoid-arm", "torso.right_shoulder"),
-    ("left_leg", "humanoid-leg", "pelvis.left_hip"),
-    ("right_leg", "humanoid-leg", "pelvis.right_hip"),
-]
+HUMANOID = [(i["name"], i["substructure"], i["at"]) for i in load_tree("humanoid")["instances"]]
 
 FUNCTIONS = {"sin": math.sin, "cos": math.cos, "tan": math.tan, "sqrt": math.sqrt}
 OPERATORS: dict[type[ast.AST], Any] = {

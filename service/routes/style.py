@@ -11,7 +11,7 @@ from service.operations.models import Style
 
 
 async def style_of(
-    format: Annotated[str | None, Query(max_length=40, description="wins over Accept")] = None,  # noqa: A002
+    format: Annotated[str | None, Query(max_length=40, description="wins over Accept")] = None,  # noqa: A002 -- the name in the contract
     form: Annotated[str, Query(description="compact (shared subexpressions) or expanded")] = "compact",
     bind: Annotated[str, Query(max_length=100_000, description="name:value,... or defaults")] = "",
     accept: Annotated[str, Header()] = "*/*",

@@ -31,6 +31,17 @@ def load(name: str) -> dict[str, Any]:
     """
     if name not in names():
         raise KeyError(f"no catalogue entry '{name}'; there are: {', '.join(names())}")
-    data = resources.files(__name__).joinpath(name + _SUFFIX).read_bytes()
-    definition: dict[str, Any] = read_yaml(data)
-    return definition
+    return _read(name + _SUFFIX)
+
+
+def load_tree(name: str) -> dict[str, Any]:
+    """A shipped tree of entries as plain data: ``humanoid``, 34 degrees of freedom in seven parts.
+
+    Raises :class:`FileNotFoundError` for another name.
+    """
+    return _read("trees", name + _SUFFIX)
+
+
+def _read(*path: str) -> dict[str, Any]:
+    data: dict[str, Any] = read_yaml(resources.files(__name__).joinpath(*path).read_bytes())
+    return data

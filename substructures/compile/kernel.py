@@ -212,7 +212,7 @@ class InterpretedKernel(Kernel):
         packed: Packed,
         threads: int,  # noqa: ARG002 -- numpy has one
         *,
-        clean: bool,  # noqa: ARG002
+        clean: bool,  # noqa: ARG002 -- it makes new arrays
     ) -> None:
         values = {n: _array(v) for n, v in values.items() if n in self.symbols}
         for name, result in interpret(self.program, values, list(out)).items():

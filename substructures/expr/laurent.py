@@ -89,7 +89,8 @@ class Ring:
         i = self.context.gen(self.unit)
         cosine = self.reduced(((re + i * im) * up + (re - i * im) * down) * half)
         sine = self.reduced(((im - i * re) * up + (im + i * re) * down) * half)
-        return (Quotient(Laurent(p, shift, 16), self.one.n) for p in (cosine, sine))  # type: ignore[return-value]
+        one = self.one.n
+        return Quotient(Laurent(cosine, shift, 16), one), Quotient(Laurent(sine, shift, 16), one)
 
     def reduced(self, poly: Any) -> Any:
         """The polynomial with all squares of related generators replaced."""

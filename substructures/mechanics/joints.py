@@ -24,11 +24,6 @@ class Joint:
     tau: S
 
 
-def row_offset(psi: tuple[S, S], d: S, sigma: S) -> Vector:
-    """(d cos psi, d sin psi, sigma)."""
-    return d * psi[0], d * psi[1], sigma
-
-
 @dataclass(frozen=True, slots=True)
 class Link:
     """What the base functions need of a joint: parent, kind, E_k and Z_k = from O_p to O_k in frame p."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import prod
+from typing import ClassVar
 
 from substructures.printers.code import Code, indented
 from substructures.printers.language import Listing, Piece
@@ -17,7 +19,7 @@ class C(Code):
     media = "text/x-c; charset=utf-8"
     mark = "//"
     infinity = "HUGE_VAL"
-    functions = {"abs": "fabs", "sign": "sign_of"}  # noqa: RUF012
+    functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
 
     def pi(self) -> Piece:
         return Piece("3.141592653589793")

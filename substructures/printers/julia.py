@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 from substructures.printers.matlab import Matlab
 
 
@@ -11,7 +14,7 @@ class Julia(Matlab):
     media = "text/x-julia; charset=utf-8"
     mark = "#"
     opening, closing = "[", "]"
-    functions = {"atan2": "atan"}  # noqa: RUF012
+    functions: ClassVar[Mapping[str, str]] = {"atan2": "atan"}
 
     def head(self, name: str) -> list[str]:
         return [*self.comments(name), f"function {self.function_name(name)}(x)"]

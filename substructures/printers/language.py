@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from substructures.expr.program import Program
 
@@ -27,7 +28,7 @@ class Listing:
     entries: Mapping[str, tuple[str, ...]]
 
 
-class Language:
+class Language(ABC):
     """Base of all languages; writes formulas as most of them do. Make one for each program.
 
     ``width``: longer formulas become temporaries; ``powers``: whether squares are written as powers;
@@ -39,14 +40,14 @@ class Language:
     powers = True
     first = 0
     times, power_sign = "*", "^"
-    functions: Mapping[str, str] = {}
+    functions: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, program: Program) -> None:
         self.program = program
 
+    @abstractmethod
     def render(self, listing: Listing, name: str) -> str:
         """The whole text."""
-        raise NotImplementedError
 
     def symbol(self, n: int) -> Piece:
         """Symbol number n of the program."""

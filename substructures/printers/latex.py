@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from typing import ClassVar
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, Language, Listing, Piece
@@ -23,7 +25,7 @@ class Latex(Language):
 
     media = "application/x-latex; charset=utf-8"
     width = 300
-    functions = _NAMED
+    functions: ClassVar[Mapping[str, str]] = _NAMED
 
     def __init__(self, program: Program) -> None:
         super().__init__(program)

@@ -67,7 +67,7 @@ def expanded(program: Program, language: Language, limit: int) -> Listing:
     check_size(sum(1 + len(t.powers) + 2 * len(t.angle) for t in terms), limit)
     writer = _ExpandedWriter(program, language, terms, limit)
     texts = {e: writer.form(form).text for e, form in forms.items()}
-    return Listing((), {name: tuple(texts[e] for e in some) for name, some in exprs.items()})  # type: ignore[index]
+    return Listing((), {name: tuple(texts[e] for e in some if isinstance(e, Expr)) for name, some in exprs.items()})
 
 
 def _uses(program: Program, needed: Iterable[int], powers: bool) -> dict[int, int]:

@@ -42,7 +42,7 @@ LIMIT = 100_000
 INLINE_LIMIT = 20_000
 
 
-def render(program: Program, format: str, form: str = "compact", name: str = "model", limit: int = LIMIT) -> str:  # noqa: A002
+def render(program: Program, format: str, form: str = "compact", name: str = "model", limit: int = LIMIT) -> str:  # noqa: A002 -- the name in the contract
     """A program in one of FORMATS.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
@@ -65,7 +65,7 @@ def render(program: Program, format: str, form: str = "compact", name: str = "mo
 def entries(
     program: Program,
     output: str,
-    format: str = "text",  # noqa: A002
+    format: str = "text",  # noqa: A002 -- the name in the contract
     form: str = "compact",
     limit: int = INLINE_LIMIT,
 ) -> list[dict[str, Any]]:
@@ -106,7 +106,7 @@ def _json(program: Program, form: str, limit: int) -> str:
         check_size(sum(len(t.powers) + 2 for e in nodes for t in forms[e].terms), limit)
         rebuilt = {e: form.to_expr(new) for e, form in forms.items()}
         formulas = {
-            n: Formulas(f.shape, {i: rebuilt[e] for i, e in f.entries.items()}, f.symmetry)  # type: ignore[index]
+            n: Formulas(f.shape, {i: rebuilt[e] for i, e in f.entries.items() if isinstance(e, Expr)}, f.symmetry)
             for n, f in outputs.items()
         }
         program = collect(new, formulas, {s.name: s for s in program.symbols})

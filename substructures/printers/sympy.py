@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from typing import ClassVar
 
 from substructures.expr.program import Output
 from substructures.printers.code import Code
@@ -19,7 +21,7 @@ class SymPy(Code):
     media = "text/x-python; charset=utf-8"
     powers = True
     power_sign = "**"
-    functions = {"abs": "Abs"}  # noqa: RUF012
+    functions: ClassVar[Mapping[str, str]] = {"abs": "Abs"}
 
     def number(self, value: Fraction) -> Piece:
         if value < 0:

@@ -14,15 +14,7 @@ from substructures.model import Model
 
 pytest.importorskip("llvmlite")
 
-HUMANOID = (
-    ("pelvis", "humanoid-pelvis", "world"),
-    ("torso", "humanoid-torso", "pelvis.waist"),
-    ("head", "humanoid-head", "torso.neck"),
-    ("left_arm", "humanoid-arm", "torso.left_shoulder"),
-    ("right_arm", "humanoid-arm", "torso.right_shoulder"),
-    ("left_leg", "humanoid-leg", "pelvis.left_hip"),
-    ("right_leg", "humanoid-leg", "pelvis.right_hip"),
-)
+HUMANOID = tuple((i["name"], i["substructure"], i["at"]) for i in catalogue.load_tree("humanoid")["instances"])
 TREES: dict[str, tuple[tuple[str, str, str], ...]] = {
     **{name: (("x", name, "world"),) for name in catalogue.names()},
     "arm-with-gripper": (("arm", "puma560", "world"), ("hand", "parallel-gripper", "arm.flange")),

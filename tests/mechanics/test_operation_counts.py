@@ -87,15 +87,7 @@ def in_pieces(rows: list[tuple[str, str]], sizes: list[int], thetas: bool = Fals
 
 
 def humanoid() -> Model:
-    limbs = [
-        ("pelvis", "humanoid-pelvis", "world"),
-        ("torso", "humanoid-torso", "pelvis.waist"),
-        ("head", "humanoid-head", "torso.neck"),
-        ("left_arm", "humanoid-arm", "torso.left_shoulder"),
-        ("right_arm", "humanoid-arm", "torso.right_shoulder"),
-        ("left_leg", "humanoid-leg", "pelvis.left_hip"),
-        ("right_leg", "humanoid-leg", "pelvis.right_hip"),
-    ]
+    limbs = [(i["name"], i["substructure"], i["at"]) for i in catalogue.load_tree("humanoid")["instances"]]
     parts = {name: entry(name) for _, name, _ in limbs}
     model = mounted(*((instance, parts[name], at) for instance, name, at in limbs))
     assert model.dof == 34
