@@ -1,0 +1,1 @@
+"""Batch jobs: items in the database, computed by processes that can be killed."""

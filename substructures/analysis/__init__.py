@@ -1,0 +1,1 @@
+"""What follows from metric, Christoffel symbols and forces: motion, stability, closed loops, optimal control."""

@@ -1,0 +1,62 @@
+"""A computed motion with its judges: quantities that must be constant, must fall or must vanish along it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Rule = Literal["constant", "falling", "zero"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A necessary condition along a motion.
+
+    ``rule``: the quantity ``name`` is constant (first integral), never rises (energy with dissipation) or is zero (a
+    residual of closures). ``worst``: the largest violation, in ``unit``; relative to ``scale`` it is judged against
+    ``limit``. ``time``: when the limit was first exceeded [s], None where the condition holds.
+    """
+
+    name: str
+    rule: Rule
+    reason: str
+    unit: str
+    worst: float
+    scale: float
+    limit: float
+    time: float | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the condition holds everywhere."""
+        return self.time is None
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States at the times ``t`` (K,): ``q``, ``qd`` (K, n) in the order of ``coordinates`` [rad, m; per s].
+
+    ``series``: further quantities by name, (K, ...): energies, momenta, residuals, reactions. ``status`` is a value:
+    ``finished``; ``stopped`` by an event; ``failed``, and ``message`` says why and what to change, with the motion up
+    to there. ``steps``: accepted steps of the integrator.
+    """
+
+    coordinates: tuple[str, ...]
+    t: Array
+    q: Array
+    qd: Array
+    series: Mapping[str, Array] = field(default_factory=dict)
+    checks: tuple[Check, ...] = ()
+    status: Literal["finished", "stopped", "failed"] = "finished"
+    message: str = ""
+    steps: int = 0
+
+    @property
+    def is_right(self) -> bool:
+        """False when a necessary condition is violated: the numbers are wrong, whatever the integrator says."""
+        return all(check.holds for check in self.checks)
