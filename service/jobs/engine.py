@@ -64,7 +64,7 @@ class Engine(Protocol):
     def start(self, work: Work) -> None:
         """Start to compute; reports follow."""
 
-    def stop(self, id: str) -> None:
+    def stop(self, attempt: str) -> None:
         """Kill what computes the attempt; no report follows. Nothing happens when there is none."""
 
     def reports(self, seconds: float) -> list[Report]:
