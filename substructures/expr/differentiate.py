@@ -1,4 +1,4 @@
-"""Exact partial derivatives, forward mode on the graph.
+"""Exact partial derivatives on the graph: forward mode, and reverse mode for products of a row and the Jacobian.
 
 The derivatives are nodes of the same graph and therefore simplify while they are formed.
 
@@ -11,7 +11,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin, tan
@@ -47,6 +47,65 @@ def gradient(exprs: Iterable[Expr], names: Sequence[str]) -> list[list[Expr]]:
     rows = list(exprs)
     columns = [_derivatives(rows, name) for name in names]
     return [[column[i] for column in columns] for i in range(len(rows))]
+
+
+def pullback(exprs: Iterable[Expr], weights: Iterable[Expr], names: Sequence[str]) -> list[Expr]:
+    """weights_i d exprs_i / d name_j for every j, in one walk from the results to the symbols (reverse mode), for
+    one expression or more.
+
+    The cost is a small multiple of that of the expressions, for any number of names (A. Griewank and A. Walther,
+    Evaluating Derivatives, 2nd ed., SIAM 2008, chapter 3). Derivatives of ``abs`` and ``sign`` as for derivative.
+
+    >>> graph = Graph()
+    >>> x, y, w = (graph.symbol(name) for name in "xyw")
+    >>> pullback([x * x * y], [w], ["x", "y"]) == [2 * w * x * y, w * x * x]
+    True
+    """
+    roots = list(exprs)
+    nodes = _varied(reachable(roots), set(names))
+    bar: dict[Expr, Expr] = {}
+    for root, weight in zip(roots, weights, strict=True):
+        bar[root] = bar[root] + weight if root in bar else weight
+    found: dict[str, Expr] = {}
+    for node in reversed(nodes):
+        w = bar.get(node)
+        if w is None or w.is_zero:
+            continue
+        if node.op == "sym":
+            found[str(node.value)] = w
+        for x, share in zip(node.args, _shares(node, w), strict=False):
+            bar[x] = bar[x] + share if x in bar else share
+    return [found.get(name, roots[0].graph.zero) for name in names]
+
+
+def _varied(nodes: Sequence[Expr], names: Collection[str]) -> list[Expr]:
+    """Those of the nodes (operands first) that depend on one of the symbols."""
+    varied: dict[Expr, None] = {}
+    for node in nodes:
+        if any(x in varied for x in node.args) or (node.op == "sym" and node.value in names):
+            varied[node] = None
+    return list(varied)
+
+
+def _shares(node: Expr, w: Expr) -> tuple[Expr, ...]:
+    """w times the partial derivatives of a node with respect to its operands."""
+    op, args = node.op, node.args
+    if op == "add":
+        return w, w
+    if op == "sub":
+        return w, -w
+    if op == "neg":
+        return (-w,)
+    if op == "mul":
+        return w * args[1], w * args[0]
+    if op == "div":
+        share = w / args[1]
+        return share, -(share * node)
+    if op == "atan2":
+        y, x = args
+        share = w / (x * x + y * y)
+        return share * x, -(share * y)
+    return (w * _OUTER[op](args[0], node),) if op in _OUTER else ()
 
 
 def _derivatives(roots: Sequence[Expr], name: str) -> list[Expr]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from substructures.expr.differentiate import derivative, gradient
+from substructures.expr.differentiate import derivative, gradient, pullback
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.trigonometry import cos, sin, tan
@@ -45,6 +45,21 @@ def test_gradient_is_the_jacobian() -> None:
     x, y = g.symbol("x"), g.symbol("y")
     assert gradient([x * y, x + 3 * y], ["x", "y"]) == [[y, x], [g.one, g.number(3)]]
     assert gradient([], ["x"]) == []
+
+
+def test_reverse_mode_is_the_row_times_the_jacobian(sample) -> None:  # type: ignore[no-untyped-def]
+    """Node by node the same formulas as by forward mode."""
+    for seed in range(40):
+        s = sample(2000 + seed, size=30)
+        names, rows = list(s.point), s.exprs[7:]
+        weights = [s.graph.symbol(f"w{i}") for i in range(len(rows))]
+        jacobian = gradient(rows, names)
+        expected = [
+            s.graph.sum(w * row[j] for w, row in zip(weights, jacobian, strict=True)) for j in range(len(names))
+        ]
+        assert pullback(rows, weights, names) == expected
+    g = Graph()
+    assert pullback([g.one, g.symbol("x")], [g.one, g.one], ["x", "y"]) == [g.one, g.zero]
 
 
 def test_mixed_derivatives_commute(sample) -> None:  # type: ignore[no-untyped-def]
