@@ -56,10 +56,12 @@ class Rollout:
 @dataclass(frozen=True)
 class Slope:
     """Derivatives of W numbers: by the ``start`` of each segment (W, S, 2 n), the ``controls`` (W, nodes, m) and the
-    varied ``parameters`` (W, r); ``costates`` (W, J + 1, S, 2 n) before every step and at the ends."""
+    varied ``parameters`` (W, r); ``costates`` (W, J + 1, S, 2 n) before every step and at the ends; ``parts``
+    (W, S, intervals/S + 1, m): what each segment adds to the derivatives by its nodes."""
 
     start: Array
     controls: Array
+    parts: Array
     parameters: Array
     costates: Array
 
@@ -116,7 +118,7 @@ class Shooting:
         last = self._terminal(run.end[-1:], run.controls)
         lam = np.array(ends, dtype=np.float64)
         lam[:, -1] += costs[:, None] * np.concatenate([last["terminal_q"][0], last["terminal_qd"][0]])
-        slope = np.zeros((W, *run.controls.shape))
+        parts = np.zeros((W, S, self.problem.intervals // S + 1, run.controls.shape[1]))
         parameters = costs[:, None] * last["terminal_parameters"][0]
         costates = np.empty((W, self.count + 1, S, 2 * n))
         costates[:, -1] = lam
@@ -129,11 +131,11 @@ class Shooting:
                     found = self._adjoint(run, j, i, bar, self.h * WEIGHTS[i] * costs)
                     before = -np.concatenate([found["adjoint_q"], found["adjoint_qd"]], axis=-1)
                     total += before
-                    self._to_nodes(slope, found["control_gradient"], j, i)
+                    self._to_nodes(parts, found["control_gradient"], j, i)
                     parameters = parameters + found["parameter_gradient"].sum(axis=1)
                 lam = lam + total
                 costates[:, j] = lam
-        return Slope(lam, slope, parameters, costates)
+        return Slope(lam, self._joined(parts), parts, parameters, costates)
 
     def hamiltonians(self, run: Rollout, costates: Array) -> Array:
         """H before every step, (S J,), for the costates (J + 1, S, 2 n) of the cost."""
@@ -168,14 +170,23 @@ class Shooting:
             return controls[interval], t
         return (1 - inside) * controls[interval] + inside * controls[interval + 1], t
 
-    def _to_nodes(self, slope: Array, bar: Array, j: int, i: int) -> None:
-        """The adjoint of _controls: intervals of different segments are different."""
-        interval, inside = self._place(j, i)
+    def _to_nodes(self, parts: Array, bar: Array, j: int, i: int) -> None:
+        """The adjoint of _controls."""
+        _, inside = self._place(j, i)
+        k = j // self.problem.steps
         if self.problem.hold == "constant":
-            slope[:, interval] += bar
+            parts[:, :, k] += bar
         else:
-            slope[:, interval] += (1 - inside) * bar
-            slope[:, interval + 1] += inside * bar
+            parts[:, :, k] += (1 - inside) * bar
+            parts[:, :, k + 1] += inside * bar
+
+    def _joined(self, parts: Array) -> Array:
+        """Derivatives by all nodes, (W, nodes, m)."""
+        W, S, size, m = parts.shape
+        result = np.zeros((W, S * (size - 1) + 1, m))
+        for s in range(S):
+            result[:, s * (size - 1) : (s + 1) * (size - 1) + 1] += parts[:, s]
+        return result[:, : self.problem.nodes]
 
     def _motion(self, X: Array, controls: Array, j: int, i: int) -> dict[str, Array]:
         u, t = self._controls(controls, j, i)

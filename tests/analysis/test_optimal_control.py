@@ -1,0 +1,189 @@
+"""Optimal control: a closed form, a swing-up with its necessary conditions, refusals and failures."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from random_trees import Plain, model_of
+from scipy.integrate import solve_ivp
+
+from substructures import Definition, InvalidDocument, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.control import read_problem
+from substructures.analysis.optimal_control import Optimum, optimal_control
+from substructures.analysis.shooting_program import OptimalControlRequest, ShootingProgram
+from substructures.evaluation import evaluate
+
+
+@cache
+def shipped(name: str) -> Model:
+    tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": name}]}
+    return couple(TreeSpec.read(tree), {"x": derive(Definition.read(catalogue.load(name)))})
+
+
+@cache
+def slider(damping: float = 0) -> Model:
+    """2 kg on a rail."""
+    joint = {"type": "prismatic", "coordinate": "s", "damping": damping}
+    body = {"name": "b", "parent": "base", "joint": joint, "mass": 2}
+    return model_of({"name": "x", "bodies": [body]}, (0, 0, 0))
+
+
+REST: Plain = {
+    "controls": ["tau.x.s"],
+    "cost": {"running": "tau.x.s^2"},
+    "horizon": 1.5,
+    "intervals": 6,
+    "q": [0],
+    "end": {"q": [1], "qd": [0]},
+}
+
+
+@pytest.mark.parametrize("segments", [1, 3])
+def test_from_rest_to_rest(segments: int) -> None:
+    """u = 6 m (T - 2 t) / T^3 and J = 12 m^2 / T^3, to rounding, since u is linear and l of degree two."""
+    found = optimal_control(slider(), REST | {"segments": segments, "tolerance": 1e-14})
+    t = np.linspace(0, 1.5, 7)
+    assert found.status == "optimal"
+    np.testing.assert_allclose(found.controls[:, 0], 12 * (1.5 - 2 * t) / 1.5**3, atol=1e-6)
+    assert found.cost == pytest.approx(48 / 1.5**3, rel=1e-9)
+    assert found.hamiltonian_drift is not None
+    assert found.hamiltonian_drift < 1e-5
+    assert found.trajectory.is_right
+    # lambda_qd = -2 u m
+    costate = found.trajectory.series["costates"][:, 1]
+    np.testing.assert_allclose(costate, -4 * found.trajectory.series["controls"][:, 0], atol=1e-4)
+
+
+def test_bounds_and_free_ends() -> None:
+    """As far as possible in one second with |u| <= 3: u = 3 throughout, q = u T^2 / (2 m); without demands L-BFGS-B."""
+    free = REST | {"cost": {"terminal": "-x.s"}, "end": {}, "bounds": {"tau.x.s": [None, 3]}, "horizon": 1}
+    found = optimal_control(slider(), free | {"segments": 1, "hold": "constant"})
+    assert found.status == "optimal"
+    assert found.cost == pytest.approx(-0.75)
+    np.testing.assert_allclose(found.controls, 3)
+    kept = optimal_control(slider(), free | {"end": {"qd": {"x.s": 0}}, "bounds": {"tau.x.s": [-3, 3]}})
+    assert kept.status == "optimal"
+    assert kept.cost == pytest.approx(-0.75 / 2 * (1 - 1 / 27), rel=1e-2)
+    assert np.abs(kept.controls).max() <= 3 + 1e-12
+
+
+SWING_UP: Plain = {
+    "controls": ["tau.x.q0"],
+    "cost": {"running": "tau.x.q0^2"},
+    "horizon": 2,
+    "intervals": 40,
+    "steps": 2,
+    "q": {"x.q0": 0, "x.q1": np.pi},
+    "end": {"q": [0, 0], "qd": [0, 0]},
+    "bounds": {"tau.x.q0": [-20, 20]},
+}
+
+
+@cache
+def swing_up(intervals: int = 40) -> Optimum:
+    return optimal_control(shipped("cart-pendulum"), SWING_UP | {"intervals": intervals})
+
+
+def test_swing_up() -> None:
+    """A pendulum on a cart from hanging to standing: an independent integration of the controls found arrives there."""
+    found = swing_up()
+    assert found.status == "optimal"
+    assert found.stationarity < 1e-3
+    assert found.violation < 1e-8
+    assert found.hamiltonian_drift is not None
+    assert found.hamiltonian_drift < 0.03
+    assert np.abs(found.controls).max() < 20
+    assert found.history[-1, 0] == pytest.approx(found.cost, rel=1e-6)
+    assert found.history[0, 1] > 1e-2
+    model, t = shipped("cart-pendulum"), np.linspace(0, 2, 41)
+
+    def rates(time: float, x: Any) -> Any:
+        u = float(np.interp(time, t, found.controls[:, 0]))
+        state = {"q": x[:2], "qd": x[2:], "inputs": {"tau.x.q0": u}}
+        return [*x[2:], *evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]]
+
+    motion = solve_ivp(rates, (0, 2), [0, np.pi, 0, 0], rtol=1e-8, atol=1e-8, max_step=0.05)
+    np.testing.assert_allclose(motion.y[:, -1], 0, atol=1e-2)
+    energy = evaluate(model, {"quantities": ["potential_energy"], "q": found.trajectory.q[[0, -1]]})["potential_energy"]
+    assert energy[1] - energy[0] == pytest.approx(2 * 0.2 * 9.81 * 0.5)
+
+
+@pytest.mark.deep
+def test_hamiltonian_becomes_constant_with_finer_controls() -> None:
+    """The drift falls at least with the first power of the interval, and the cost converges."""
+    coarse, fine = swing_up(40), swing_up(80)
+    assert fine.status == "optimal"
+    assert coarse.hamiltonian_drift is not None
+    assert fine.hamiltonian_drift is not None
+    assert fine.hamiltonian_drift < coarse.hamiltonian_drift / 2
+    assert fine.cost == pytest.approx(coarse.cost, rel=1e-3)
+
+
+@pytest.mark.deep
+def test_acrobot() -> None:
+    """Shoulder free, elbow driven, from hanging to standing."""
+    request: Plain = {
+        "controls": ["tau.x.q2"],
+        "cost": {"running": "tau.x.q2^2"},
+        "horizon": 3,
+        "intervals": 60,
+        "steps": 2,
+        "q": [-np.pi / 2, 0],
+        "iterations": 1000,
+        "end": {"q": [np.pi / 2, 0], "qd": [0, 0]},
+        "bounds": {"tau.x.q2": [-40, 40]},
+        "segments": 12,
+    }
+    found = optimal_control(shipped("acrobot"), request)
+    assert found.status == "optimal"
+    assert found.violation < 1e-6
+
+
+def test_jacobian_against_finite_differences() -> None:
+    model = shipped("cart-pendulum")
+    request = SWING_UP | {"intervals": 6, "segments": 3, "horizon": 0.6}
+    for hold in ("linear", "constant"):
+        search = ShootingProgram(model, read_problem(OptimalControlRequest, model, request | {"hold": hold}))
+        rng = np.random.default_rng(1)
+        z = search.guess() + rng.uniform(-0.2, 0.2, len(search.guess()))
+        slopes, gradient = search.jacobian(z).copy(), search.cost(z)[1].copy()
+        assert slopes.shape == (12, (7 if hold == "linear" else 6) + 8)
+        for _ in range(3):
+            dz, h = rng.uniform(-1, 1, len(z)), 1e-5
+            change = (search.residual(z + h * dz) - search.residual(z - h * dz)) / (2 * h)
+            np.testing.assert_allclose(slopes @ dz, change, atol=1e-7)
+            slope = (search.cost(z + h * dz)[0] - search.cost(z - h * dz)[0]) / (2 * h)
+            assert gradient @ dz == pytest.approx(slope, rel=1e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "code"),
+    [
+        ({"segments": 4}, "/segments", "not-a-divisor"),
+        ({"end": {"q": [1, 2]}}, "/end/q", "wrong-length"),
+        ({"end": {"q": {"x.z": 1}}}, "/end/q/x.z", "unknown-coordinate"),
+        ({"bounds": {"tau.x.s": [1, -1]}}, "/bounds/tau.x.s", "empty"),
+        ({"bounds": {"u": [1, -1]}}, "/bounds/u", "unknown-input"),
+        ({"guess": {"tau.x.s": [1]}}, "/guess/tau.x.s", "wrong-length"),
+        ({"intervals": 9000}, "/intervals", "too-large"),
+        ({"tolerance": 2}, "/tolerance", "less-than"),
+    ],
+)
+def test_refusals(change: Plain, pointer: str, code: str) -> None:
+    with pytest.raises(InvalidDocument) as error:
+        optimal_control(slider(), REST | change)
+    assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
+
+
+def test_failures_are_values() -> None:
+    """Too weak to arrive; too few iterations."""
+    weak = optimal_control(slider(), REST | {"bounds": {"tau.x.s": [-0.1, 0.1]}, "iterations": 50})
+    assert weak.status == "failed"
+    assert "bounds" in weak.message
+    assert not weak.trajectory.is_right
+    few = optimal_control(shipped("cart-pendulum"), SWING_UP | {"iterations": 2})
+    assert few.status == "failed"
+    assert len(few.history) >= 2
