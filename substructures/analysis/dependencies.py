@@ -1,0 +1,190 @@
+"""Linear dependencies with constant coefficients between columns of functions, exactly.
+
+Columns F_1(q), ..., F_m(q) are given as rows of formulas for exact values of q. Two facts are combined:
+
+* over a prime field (:mod:`substructures.expr.modular`) the rank of samples at random points is that of the functions,
+  with an error probability of about degree / 2**100; so are the reduced echelon form, the columns that take part in
+  each dependency, and the values of their coefficients at one point;
+* the coefficients themselves, functions of whatever symbols are not coordinates, follow from samples at exact points
+  (angles that are multiples of a quarter turn, then of an eighth), where every row is a small formula in these
+  symbols: one small linear system for each dependent column. They are compared with their values in the field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from substructures.errors import TooLarge
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.modular import Field
+from substructures.expr.program import Formulas, Symbol, program
+
+#: exact samples after which the search for rows ends
+MAX_SAMPLES = 400
+
+
+@dataclass(frozen=True)
+class Functions:
+    """The columns. ``angular``: for every coordinate, whether it is an angle; ``random``: rows of values at a new
+    random point of the field (with fixed values of all other symbols); ``exact``: rows of formulas in a graph for
+    values of the coordinates; ``symbols``: values in the field of all symbols that are not coordinates.
+    """
+
+    columns: int
+    angular: Sequence[bool]
+    field: Field
+    random: Callable[[], list[dict[int, int]]]
+    exact: Callable[[Graph, Sequence[Expr]], list[dict[int, Expr]]]
+    symbols: Mapping[str, int]
+
+
+@dataclass(frozen=True)
+class Dependencies:
+    """``base``: numbers of independent columns, as far left as possible. ``others``: for every other column its
+    coefficients by column of the base: F_j = sum_b others[j][b] F_b; empty for zero columns."""
+
+    base: tuple[int, ...]
+    others: Mapping[int, Mapping[int, Expr]]
+
+
+def dependencies(functions: Functions) -> Dependencies:
+    """All dependencies. Raises TooLarge where MAX_SAMPLES exact points do not suffice for a coefficient."""
+    echelon, idle = _Echelon(functions.field.prime), 0
+    while idle < 2:
+        found = [echelon.add(row) for row in functions.random()]
+        idle = 0 if any(found) else idle + 1
+    reduced, search = echelon.reduced(), _Search(functions)
+    others = {}
+    for j in range(functions.columns):
+        if j not in reduced:
+            others[j] = search.coefficients(j, {b: row[j] for b, row in sorted(reduced.items()) if j in row})
+    return Dependencies(tuple(sorted(reduced)), others)
+
+
+class _Echelon:
+    """Rows over the prime field by pivot column; the pivot is one, and the leftmost entry."""
+
+    def __init__(self, prime: int) -> None:
+        self.prime = prime
+        self.rows: dict[int, dict[int, int]] = {}
+
+    def add(self, entries: Mapping[int, int]) -> bool:
+        """Whether the row was independent of those before."""
+        row = {j: x for j, x in entries.items() if x}
+        while row:
+            pivot = min(row)
+            known = self.rows.get(pivot)
+            if known is None:
+                inverse = pow(row[pivot], -1, self.prime)
+                self.rows[pivot] = {j: x * inverse % self.prime for j, x in row.items()}
+                return True
+            row = self._minus(row, row[pivot], known)
+        return False
+
+    def reduced(self) -> dict[int, dict[int, int]]:
+        """The reduced echelon form."""
+        result: dict[int, dict[int, int]] = {}
+        for pivot in sorted(self.rows, reverse=True):
+            row = self.rows[pivot]
+            for j in [j for j in row if j in result]:
+                row = self._minus(row, row[j], result[j])
+            result[pivot] = row
+        return result
+
+    def _minus(self, row: Mapping[int, int], factor: int, other: Mapping[int, int]) -> dict[int, int]:
+        result = dict(row)
+        for j, x in other.items():
+            value = (result.get(j, 0) - factor * x) % self.prime
+            if value:
+                result[j] = value
+            else:
+                result.pop(j, None)
+        return result
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A formula with its value in the field."""
+
+    formula: Expr
+    value: int
+
+
+class _Search:
+    """Exact samples, made as they are needed."""
+
+    def __init__(self, functions: Functions) -> None:
+        # a graph of its own: no constant may be written in the symbols of other formulas
+        self.functions, self.graph, self.prime = functions, Graph(), functions.field.prime
+        self.rows: list[dict[int, _Entry]] = []
+        self.number, self.random = 0, np.random.default_rng(0)
+
+    def coefficients(self, j: int, expected: Mapping[int, int]) -> dict[int, Expr]:
+        """c with F_j = sum c_b F_b, by as many independent rows as there are coefficients."""
+        support, echelon, at = list(expected), _Echelon(self.prime), 0
+        chosen: list[dict[int, _Entry]] = []
+        while len(chosen) < len(support):
+            while at == len(self.rows):
+                self._more()
+            row = self.rows[at]
+            at += 1
+            if echelon.add({b: row[b].value for b in support if b in row}):
+                chosen.append(row)
+        zero = _Entry(self.graph.zero, 0)
+        found = self._solved([[row.get(b, zero) for b in (*support, j)] for row in chosen], len(support))
+        if any(x.value != expected[b] for b, x in zip(support, found, strict=True)):
+            raise ArithmeticError("the coefficients of a dependency differ from their values in the field")
+        return {b: x.formula for b, x in zip(support, found, strict=True)}
+
+    def _more(self) -> None:
+        if self.number == MAX_SAMPLES:
+            raise TooLarge("the search for base parameters (in samples)", self.number + 1, MAX_SAMPLES)
+        # quarter turns first, then eighths
+        fine, quarter = self.number > MAX_SAMPLES // 4, self.graph.pi / 2
+        point = []
+        for turns in self.functions.angular:
+            k = int(self.random.integers(8 if fine else 4)) if self.number else 0
+            point.append(quarter * k / (2 if fine else 1) if turns else self.graph.number(k))
+        rows = [row for row in self.functions.exact(self.graph, point) if row]
+        self.rows += sorted(self._entries(rows), key=len)
+        self.number += 1
+
+    def _entries(self, rows: list[dict[int, Expr]]) -> list[dict[int, _Entry]]:
+        """Formulas with their values."""
+        index: dict[tuple[int, ...], Expr | int] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
+        size = (len(rows), self.functions.columns)
+        symbols = {name: Symbol(name, "parameter") for name in self.functions.symbols}
+        formulas = program(self.graph, {"rows": Formulas(size, index)}, symbols)
+        values = self.functions.field.evaluate(formulas, self.functions.symbols, "rows")
+        return [
+            {j: _Entry(x, values[r, j]) for j, x in row.items() if values.get((r, j), 0)} for r, row in enumerate(rows)
+        ]
+
+    def _solved(self, system: list[list[_Entry]], size: int) -> list[_Entry]:
+        """Gaussian elimination; pivots are numbers where there are any."""
+        place: dict[int, int] = {}
+        for _ in range(size):
+            open_rows = [r for r in range(size) if r not in place.values()]
+            r, c = min(
+                ((r, c) for r in open_rows for c in range(size) if c not in place and system[r][c].value),
+                key=lambda at: (not system[at[0]][at[1]].formula.is_number, system[at[0]][at[1]].formula.index),
+            )
+            place[c] = r
+            pivot = system[r][c]
+            inverse = pow(pivot.value, -1, self.prime)
+            system[r] = [_Entry(x.formula / pivot.formula, x.value * inverse % self.prime) for x in system[r]]
+            for other in range(size):
+                if other != r and system[other][c].value:
+                    system[other] = self._without(system[other], system[other][c], system[r])
+        return [system[place[c]][-1] for c in range(size)]
+
+    def _without(self, row: list[_Entry], factor: _Entry, other: list[_Entry]) -> list[_Entry]:
+        result = []
+        for x, y in zip(row, other, strict=True):
+            value = (x.value - factor.value * y.value) % self.prime
+            # what is zero in the field is zero
+            result.append(_Entry(x.formula - factor.formula * y.formula if value else self.graph.zero, value))
+        return result

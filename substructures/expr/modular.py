@@ -1,0 +1,186 @@
+"""Programs over a prime field: exact linear algebra with formulas at a random point.
+
+Unlike fingerprints, which must be quick and only lose simplifications, this evaluation is a homomorphism for everything
+that occurs in mechanisms: square roots of all numbers (of those that have one in the field; else another prime is
+to be drawn), rational multiples of angles, and multiples of pi/12 beside them. Other functions are independent values.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Mapping
+from fractions import Fraction
+
+from flint import fmpz
+
+from substructures.expr.operations import Operation
+from substructures.expr.program import Program
+
+Point = tuple[int, int]
+#: an angle as multiples of what its sine and cosine are built from, and of pi
+Linear = tuple[dict[int, Fraction], Fraction]
+BITS = 100
+#: multiples with denominators that divide this one are multiples of one point on the circle
+PARTS = 63 * 10**6
+
+
+class NoSquareRoot(ArithmeticError):
+    """A square root that the field does not hold: draw another one."""
+
+
+class Field:
+    """The integers modulo a random prime of 100 bits, 23 mod 24: 2 and 3 have square roots, -1 has none."""
+
+    def __init__(self) -> None:
+        self.prime = _prime()
+        self.points: dict[object, Point] = {}
+        root2, root6, quarter = self.root(2), self.root(6), pow(4, -1, self.prime)
+        self.points["pi/12"] = (root6 + root2) * quarter % self.prime, (root6 - root2) * quarter % self.prime
+
+    def draw(self) -> int:
+        """A random element."""
+        return secrets.randbelow(self.prime)
+
+    def root(self, x: int) -> int:
+        """The square root that is a square itself. Raises NoSquareRoot."""
+        y = pow(x, (self.prime + 1) // 4, self.prime)
+        if y * y % self.prime != x % self.prime:
+            raise NoSquareRoot("no square root in this field")
+        return y
+
+    def inverse(self, x: int) -> int:
+        """1/x. Raises ZeroDivisionError."""
+        if not x:
+            raise ZeroDivisionError("division by zero in the field")
+        return pow(x, -1, self.prime)
+
+    def circle(self, angle: Linear) -> Point:
+        """(cos, sin) of an angle."""
+        terms, turns = angle
+        twelfths = turns * 12
+        base = self.points["pi/12"] if twelfths.denominator == 1 else self._point(("pi", turns.denominator))
+        result = self._times(base, twelfths.numerator if twelfths.denominator == 1 else turns.numerator)
+        for atom, factor in terms.items():
+            common = PARTS if PARTS % factor.denominator == 0 else factor.denominator
+            n = factor.numerator * (common // factor.denominator)
+            result = self._sum(result, self._times(self._point((atom, common)), n))
+        return result
+
+    def _point(self, key: object) -> Point:
+        if key not in self.points:
+            t = self.draw()
+            inverse = self.inverse((1 + t * t) % self.prime)
+            self.points[key] = (1 - t * t) * inverse % self.prime, 2 * t * inverse % self.prime
+        return self.points[key]
+
+    def _sum(self, a: Point, b: Point) -> Point:
+        return (a[0] * b[0] - a[1] * b[1]) % self.prime, (a[0] * b[1] + a[1] * b[0]) % self.prime
+
+    def _times(self, point: Point, n: int) -> Point:
+        """(cos, sin) of n times an angle."""
+        point, n = (point[0], -point[1] if n < 0 else point[1]), abs(n)
+        result = (1, 0)
+        while n:
+            if n & 1:
+                result = self._sum(result, point)
+            point, n = self._sum(point, point), n >> 1
+        return result
+
+    def evaluate(self, program: Program, values: Mapping[str, int], name: str) -> dict[tuple[int, ...], int]:
+        """The independent elements of an output. Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol."""
+        run = _Run(self, program, values)
+        for i in program.reachable([name]):
+            run.step(i, program.operations[i])
+        output = program.outputs[name]
+        return {index: run.values[e] for index, e in zip(output.index, output.entries, strict=True)}
+
+
+class _Run:
+    """Values of the operations, and those of angles as linear forms; atoms are known by their values."""
+
+    def __init__(self, field: Field, program: Program, symbols: Mapping[str, int]) -> None:
+        self.field, self.program, self.symbols = field, program, symbols
+        self.values: dict[int, int] = {}
+        self.linear: dict[int, Linear] = {}
+
+    def step(self, i: int, operation: Operation) -> None:
+        """The value of one operation."""
+        op, p = operation[0], self.field.prime
+        if op == "sym":
+            self.values[i] = self.symbols[self.program.symbols[operation[1]].name] % p
+        elif op in ("int", "rat"):
+            number = Fraction(int(operation[1]), int(operation[2]) if op == "rat" else 1)
+            self.values[i] = number.numerator * self.field.inverse(number.denominator % p) % p
+            self.linear[i] = {1: number} if number else {}, Fraction(0)
+        elif op == "powi":
+            base, n = self.values[operation[1]], operation[2]
+            self.values[i] = pow(base if n >= 0 else self.field.inverse(base), abs(n), p)
+        elif op in ("sin", "cos", "tan"):
+            c, s = self.field.circle(self._form(operation[1]))
+            self.values[i] = {"sin": s, "cos": c}[op] if op != "tan" else s * self.field.inverse(c) % p
+        elif op == "sqrt":
+            self.values[i] = self.field.root(self.values[operation[1]])
+        elif op in ("add", "sub", "mul", "neg", "div"):
+            self._rational(i, operation)
+        else:
+            self._other(i, operation)
+
+    def _rational(self, i: int, operation: Operation) -> None:
+        op, p = operation[0], self.field.prime
+        a, b = self.values[operation[1]], self.values[operation[-1]]
+        if op == "add":
+            result = a + b
+        elif op == "sub":
+            result = a - b
+        elif op == "mul":
+            result = a * b
+        else:
+            result = -a if op == "neg" else a * self.field.inverse(b)
+        self.values[i] = result % p
+
+    def _other(self, i: int, operation: Operation) -> None:
+        """Independent values, the same for the same arguments; pi is acos(-1)."""
+        key = (operation[0], *(self.values[x] for x in operation[1:]))
+        if key not in self.field.points:
+            self.field.points[key] = (self.field.draw(), 0)
+        self.values[i] = self.field.points[key][0]
+        if key == ("acos", self.field.prime - 1):
+            self.linear[i] = {}, Fraction(1)
+
+    def _form(self, i: int) -> Linear:
+        """An operation as multiples of atoms and of pi."""
+        terms: dict[int, Fraction] = {}
+        turns, stack = Fraction(0), [(i, Fraction(1))]
+        while stack:
+            k, factor = stack.pop()
+            op, *args = self.program.operations[k]
+            number = next((x for x in args if op in ("mul", "div") and self._number(x) is not None), None)
+            if k in self.linear:
+                known, more = self.linear[k]
+                turns += factor * more
+                for atom, x in known.items():
+                    terms[atom] = terms.get(atom, Fraction(0)) + factor * x
+            elif op in ("add", "sub", "neg"):
+                stack.append((args[0], -factor if op == "neg" else factor))
+                stack += [(args[1], -factor if op == "sub" else factor)] if op != "neg" else []
+            elif number is not None and (op == "mul" or number == args[1]):
+                value = self._number(number) or Fraction(0)
+                other = args[1] if number == args[0] else args[0]
+                stack.append((other, factor * value if op == "mul" else factor / value))
+            else:
+                atom = self.values[k]
+                terms[atom] = terms.get(atom, Fraction(0)) + factor
+        return {atom: x for atom, x in terms.items() if x}, turns
+
+    def _number(self, i: int) -> Fraction | None:
+        """The value of a constant."""
+        op, *args = self.program.operations[i]
+        return Fraction(int(args[0]), int(args[1]) if op == "rat" else 1) if op in ("int", "rat") else None
+
+
+def _prime() -> int:
+    """A random prime, 23 mod 24."""
+    while True:
+        n = (secrets.randbits(BITS - 5) | 1 << (BITS - 6)) * 24 + 23
+        if fmpz(n).is_prime():
+            return n

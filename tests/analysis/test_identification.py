@@ -1,0 +1,230 @@
+"""Base parameters: the literature's counts, exactness, generic rank, and recovery from simulated motion."""
+
+# ruff: noqa: N806 -- symbols of the notation
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
+
+from substructures import Definition, InvalidDocument, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures.analysis import dependencies
+from substructures.analysis.base_parameters import BaseParameters, base_parameters
+from substructures.analysis.identification import excitation, identify
+from substructures.evaluation import evaluate
+from substructures.expr.interpret import interpret
+from substructures.printers import FORMATS, render
+from substructures.regressor import RegressorModel, regressor
+from substructures.states import default_number
+
+UP = (0, 0, "-9.81")
+IN_PLANE = (0, "-9.81", 0)
+
+
+@cache
+def tree(name: str, gravity: tuple[Any, ...] = UP) -> tuple[TreeSpec, dict[str, Part]]:
+    spec = {"name": "t", "gravity": list(gravity), "instances": [{"name": "x", "substructure": name}]}
+    return TreeSpec.read(spec), {"x": derive(Definition.read(catalogue.load(name)))}
+
+
+@cache
+def base_of(name: str, gravity: tuple[Any, ...] = UP, drives: tuple[str, ...] = ()) -> BaseParameters:
+    return base_parameters(regressor(*tree(name, gravity)), drives)
+
+
+def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int:
+    """Rank of the regressor stacked over random states, by singular values."""
+    rng, n = np.random.default_rng(seed), len(model.coordinates)
+    states = {name: rng.uniform(-2, 2, (samples, n)) for name in ("q", "qd", "qdd")}
+    stacked = model.evaluate(states)["regressor"].reshape(-1, len(model.names))
+    values = np.linalg.svd(stacked, compute_uv=False)
+    return int(np.sum(values > 1e-9 * values[0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "gravity", "count"),
+    [
+        # 7 N - 4 beta - 2: axis 1 along gravity, beta = 1 link of the first group of parallel axes
+        ("puma560", UP, 36),
+        ("ur5", UP, 36),
+        ("kuka-iiwa-14", UP, 43),
+        ("spherical-wrist", UP, 15),
+        # 7 N - 4 beta, beta = N = 3: axes across gravity; two less where they are along it
+        ("planar-3r", IN_PLANE, 9),
+        ("planar-3r", UP, 7),
+        ("planar-2r", IN_PLANE, 6),
+        # all ten of a free body
+        ("free-body", UP, 10),
+    ],
+)
+def test_published_counts(name: str, gravity: tuple[Any, ...], count: int) -> None:
+    """H. Mayeda, K. Yoshida and K. Osuka, Base parameters of manipulator dynamic models, IEEE Transactions on Robotics
+    and Automation 6(3), 1990: 7 N - 4 beta, less 2 where the first axis is along gravity; without rotors."""
+    base = base_of(name, gravity)
+    assert base.count == count
+    assert numeric_rank(regressor(*tree(name, gravity))) == count
+
+
+def test_combinations_of_the_planar_arm() -> None:
+    """ZZ_j + l_j^2 (masses beyond), MX_j + l_j (masses beyond), MY_j; Theta_zz = Jxx + Jyy."""
+    found = base_of("planar-3r", IN_PLANE).combinations()
+    assert found["x.link1.sx"] == {"x.link1.sx": "1", "x.link2.m": "x.l1", "x.link3.m": "x.l1"}
+    assert found["x.link2.Jxx"] == {"x.link2.Jxx": "1", "x.link2.Jyy": "1", "x.link3.m": "x.l2^2"}
+    assert list(found) == [f"x.link{k}.{e}" for k in (1, 2, 3) for e in ("sx", "sy", "Jxx")]
+
+
+def test_combinations_of_the_puma() -> None:
+    """With free kinematic parameters a2, d3, a3, d4; the masses of the wrist count with those of the links before."""
+    base = base_of("puma560")
+    found = base.combinations()
+    assert found["x.link3.Jyy"] == {
+        "x.link3.Jyy": "1",
+        "x.link4.m": "x.d4^2",
+        "x.link4.sz": "2*x.d4",
+        "x.link4.Jzz": "1",
+        "x.link5.m": "x.d4^2",
+        "x.link6.m": "x.d4^2",
+    }
+    assert found["x.link6.Jxz"] == {"x.link6.Jxz": "1"}
+    assert set(base.unseen) >= {"x.link1.m", "x.link1.sx", "x.link1.sy", "x.link1.sz", "x.link1.Jzz", "x.link2.m"}
+    assert len(base.unseen) == 10
+    # rotors: those of joints 1 and 2 count with moments of links about the same axes
+    assert base_of("puma560", UP, ("armature",)).count == 40
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_trees(seed: int) -> None:
+    """Y_B beta = Y pi, and as many as the singular values say; parameters free or bound, any joints."""
+    rng = np.random.default_rng(8200 + seed)
+    definition: Plain = {"bodies": []}
+    while not 2 <= sum(np.size(b["joint"].get("coordinate", [])) for b in definition["bodies"]) <= 5:
+        definition = random_definition(rng, Kind(4, chain=seed % 2 == 0, laws=False))
+    document = with_parameters(rng, definition, 0.25 * (seed % 3))
+    Y = regressor(tree_of(document), {"x": derive(Definition.read(document))})
+    base = base_parameters(Y)
+    n = len(Y.coordinates)
+    assert base.count == numeric_rank(Y, 40 if n > 3 else 60, seed)
+    states = {name: rng.uniform(-1, 1, (3, n)) for name in ("q", "qd", "qdd")}
+    full = Y.evaluate(states)
+    values: Plain = {name: default_number(p["value"]) for name, p in Y.parameters.items()}
+    for primes, x in (("", states["q"]), ("'", states["qd"]), ("''", states["qdd"])):
+        values |= {f"{name}{primes}": x[:, a] for a, name in enumerate(Y.coordinates)}
+    found = interpret(base.program, values)
+    expected = np.einsum("nai,ni->na", full["regressor"], full["inertial_parameters"])
+    scale = max(float(np.abs(expected).max()), 1)
+    force = np.einsum("nab,nb->na", found["base_regressor"], found["base_parameters"])
+    np.testing.assert_allclose(force, expected, rtol=0, atol=1e-10 * scale)
+    # for any standard parameters, not only those of the model
+    pi = rng.uniform(-1, 1, len(Y.names))
+    beta = np.einsum("nbi,i->nb", found["grouping"], pi)
+    np.testing.assert_allclose(
+        np.einsum("nab,nb->na", found["base_regressor"], beta), full["regressor"] @ pi, rtol=0, atol=1e-9 * scale
+    )
+
+
+def test_drives() -> None:
+    """Friction is always independent; an offset is no gravity force of a revolute joint, but one of a lift."""
+    drives = ("armature", "viscous", "coulomb", "offset")
+    base = base_of("planar-3r", IN_PLANE, drives)
+    # the rotor of joint 1 counts with link 1
+    assert base.count == 9 + 4 * 3 - 1
+    assert base.units[base.standard.index("x.q2.viscous")] == "N m s/rad"
+    lift = {"type": "prismatic", "coordinate": "z"}
+    document: Plain = {"name": "lift", "bodies": [{"name": "b", "parent": "base", "joint": lift, "mass": 2}]}
+    Y = regressor(tree_of(document, UP), {"x": derive(Definition.read(document))})
+    # m (q'' + g), q'', 1: two of them independent
+    assert base_parameters(Y).count == 1
+    assert base_parameters(Y, ("armature", "offset")).names == ("x.b.m", "x.z.armature")
+    for form in FORMATS:
+        assert render(base_parameters(Y, drives).program, form)
+
+
+def motion(n: int, samples: int, seed: int = 0) -> Plain:
+    """Finite Fourier series, as they are used for identification."""
+    rng, t = np.random.default_rng(seed), np.linspace(0, 10, samples)
+    k = np.arange(1, 6)
+    angle = 0.2 * np.pi * k[None] * t[:, None]
+    a, b = rng.uniform(-0.5, 0.5, (2, 5, n))
+    w = 0.2 * np.pi * k[:, None]
+    return {
+        "q": np.sin(angle) @ a + np.cos(angle) @ b,
+        "qd": np.cos(angle) @ (w * a) - np.sin(angle) @ (w * b),
+        "qdd": -np.sin(angle) @ (w**2 * a) - np.cos(angle) @ (w**2 * b),
+    }
+
+
+def own_values(base: BaseParameters) -> Any:
+    values = {name: default_number(p["value"]) for name, p in base.parameters.items()}
+    return interpret(base.program, values, ["base_parameters"])["base_parameters"]
+
+
+def test_recovery_of_the_puma() -> None:
+    """From forces with noise of 0.05 N m: within four standard deviations; without noise to 1e-7. Rotors are known."""
+    base, model = base_of("puma560"), couple(*tree("puma560"))
+    data = motion(6, 500)
+    clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    beta = own_values(base)
+    exact = identify(base, data | {"tau": clean}, model)
+    np.testing.assert_allclose(exact.values, beta, rtol=0, atol=1e-7)
+    noise = np.random.default_rng(4).normal(0, 0.05, clean.shape)
+    found = identify(base, data | {"tau": clean + noise}, model)
+    assert found.status == "identified"
+    assert found.excitation.is_good
+    assert np.abs(found.values - beta).max() > 1e-6
+    assert np.all(np.abs(found.values - beta) < 4 * found.deviations)
+    assert np.mean(np.abs(found.values - beta) < found.deviations) > 0.5
+    np.testing.assert_allclose(found.residual, 0.05, rtol=0.15)
+    assert found.units[0] == "kg m^2"
+
+
+def test_recovery_with_friction() -> None:
+    """Viscous and dry friction of a planar arm, identified together with its links."""
+    base, model = base_of("planar-3r", IN_PLANE, ("viscous", "coulomb")), couple(*tree("planar-3r", IN_PLANE))
+    data = motion(3, 200)
+    tau = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    tau = tau + 0.3 * data["qd"] + 0.2 * np.sign(data["qd"])
+    found = identify(base, data | {"tau": tau})
+    expected = own_values(base)
+    expected[9:] = np.repeat([0.3, 0.2], 3)
+    np.testing.assert_allclose(found.values, expected, rtol=1e-8, atol=1e-12)
+
+
+def test_excitation() -> None:
+    """One joint alone excites little, and the advice names what is missing."""
+    base, n = base_of("puma560"), 6
+    assert excitation(base, motion(n, 300)).is_good
+    lazy = motion(n, 300)
+    lazy = {name: x * (np.arange(n) == 1) for name, x in lazy.items()}
+    judged = excitation(base, lazy)
+    assert judged.rank < 36
+    assert judged.condition == np.inf
+    assert "x.link6.Jxz" in judged.advice
+    failed = identify(base, lazy | {"tau": np.zeros((300, n))})
+    assert failed.status == "failed"
+    assert failed.message == judged.advice
+    assert np.isinf(failed.deviations).all()
+
+
+def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
+    base, data = base_of("planar-3r", IN_PLANE), motion(3, 20)
+    cases: list[tuple[Plain, str, str]] = [
+        (data, "/tau", "missing"),
+        (data | {"tau": np.zeros((4, 3))}, "/tau", "wrong-length"),
+        ({"q": data["q"]}, "/qdd", "missing"),
+        (data | {"speed": 1}, "/speed", "unknown-field"),
+        ({"q": [0] * 3, "qdd": [0] * 3, "tau": [0] * 3}, "/q", "too-few"),
+    ]
+    for request, pointer, code in cases:
+        with pytest.raises(InvalidDocument) as error:
+            identify(base, request)
+        assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
+    with pytest.raises(InvalidDocument) as error:
+        base_parameters(regressor(*tree("planar-2r")), ("stiction",))
+    assert error.value.faults[0].pointer == "/drives/0"
+    monkeypatch.setattr(dependencies, "MAX_SAMPLES", 1)
+    with pytest.raises(TooLarge):
+        base_parameters(regressor(*tree("puma560")))

@@ -1,0 +1,71 @@
+"""Evaluation in a prime field is a homomorphism: what is zero as a function is zero there."""
+
+from __future__ import annotations
+
+import pytest
+
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.modular import Field, NoSquareRoot
+from substructures.expr.parse import parse
+from substructures.expr.program import Formulas, Symbol, program
+
+
+def value(field: Field, text: str, values: dict[str, int]) -> int:
+    """An expression in x and y; left sides are kept apart, so that no graph can fold them."""
+    graph = Graph()
+    names = {name: graph.symbol(name) for name in ("x", "y")}
+    root = parse(graph, text, names.get)
+    symbols = {name: Symbol(name, "parameter") for name in names}
+    found = program(graph, {"v": Formulas((), {(): root})}, symbols)
+    return field.evaluate(found, values, "v").get((), 0)
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        ("sin(x + y)", "sin(x)*cos(y) + cos(x)*sin(y)"),
+        ("cos(x + 0.4)*cos(x + 0.45) + sin(x + 0.4)*sin(x + 0.45)", "cos(0.05)"),
+        ("cos(x/3)^3*4 - 3*cos(x/3)", "cos(x)"),
+        ("cos(x + pi/4)", "(cos(x) - sin(x))/sqrt(2)"),
+        ("sin(2*(x - pi/12) - y)", "(sqrt(3)*sin(2*x - y) - cos(2*x - y))/2"),
+        ("tan(x)*cos(x)", "sin(x)"),
+        ("x/(1 + 1/y)", "x*y/(1 + y)"),
+        ("(x^2 - y^2)/(x + y)", "x - y"),
+        ("cos(-(x*y)/2)", "cos(y*x/2)"),
+        ("2*cos(pi/5)*cos(3*pi/5)", "cos(4*pi/5) + cos(2*pi/5)"),
+    ],
+)
+def test_identities(left: str, right: str) -> None:
+    field = Field()
+    values = {"x": field.draw(), "y": field.draw()}
+    assert value(field, left, values) == value(field, right, values)
+    assert value(field, f"{left} + 1", values) != value(field, right, values)
+
+
+def test_square_roots() -> None:
+    """Those of 2, 3 and their products always; of other numbers in every second field."""
+    field = Field()
+    assert field.root(2) * field.root(3) % field.prime == field.root(6)
+    found = 0
+    for _ in range(60):
+        field = Field()
+        try:
+            root = value(field, "sqrt(1.37)", {})
+        except NoSquareRoot:
+            continue
+        assert (root * root * 100 - 137) % field.prime == 0
+        found += 1
+    assert 0 < found < 60
+
+
+def test_other_functions_and_division_by_zero() -> None:
+    graph, field = Graph(), Field()
+    x = graph.symbol("x")
+    roots: list[Expr] = [graph.function("exp", x), graph.function("exp", x + 1), graph.function("atan2", x, x + 1)]
+    symbols = {"x": Symbol("x", "parameter")}
+    found = program(graph, {"v": Formulas((3,), {(i,): r for i, r in enumerate(roots)})}, symbols)
+    values = field.evaluate(found, {"x": 5}, "v")
+    assert len(set(values.values())) == 3
+    assert field.evaluate(found, {"x": 5}, "v") == values
+    with pytest.raises(ZeroDivisionError):
+        value(field, "1/(x - 5)", {"x": 5})
