@@ -12,7 +12,8 @@ models, the same issue). The parts of Y that are quadratic in q' are Christoffel
     Y c = 0 for all q, q', q''    if and only if    sum_i c_i g^i_ab(q) = 0  and  sum_i c_i G_ai(q) = 0
 
 with the metric g^i and the gravity forces G_i of parameter i put to one: functions of q alone, whose dependencies
-are found by substructures.analysis.dependencies. C is a function of the kinematic parameters that are free.
+are found by substructures.analysis.dependencies. C is a function of the kinematic parameters that are free,
+and these count as general: bind parameters to numbers where special ones (a zero, a right angle) matter.
 
 Drives add columns: ``armature`` q'' [kg m^2, kg], ``viscous`` q' [N m s, N s/m], ``coulomb`` sign(q') [N m, N] and
 ``offset`` 1 [N m, N] of every joint.
@@ -85,9 +86,9 @@ class BaseParameters:
         return tuple(self.standard[i] for i in self.base)
 
     def combinations(self) -> dict[str, dict[str, str]]:
-        """Every base parameter as a sum: coefficient (text, expanded) by standard parameter."""
+        """Every base parameter as a sum: coefficient (text) by standard parameter. Raises TooLarge for long ones."""
         found: dict[str, dict[str, str]] = {name: {} for name in self.names}
-        for entry in entries(self.program, "grouping", "text", "expanded"):
+        for entry in entries(self.program, "grouping", "text"):
             b, i = entry["index"]
             found[self.names[b]][self.standard[i]] = str(entry["formula"])
         return found

@@ -24,6 +24,8 @@ from substructures.expr.program import Formulas, Symbol, program
 
 #: exact samples after which the search for rows ends
 MAX_SAMPLES = 400
+#: of these, samples at quarter turns
+COARSE = 8
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,7 @@ class _Search:
         if self.number == MAX_SAMPLES:
             raise TooLarge("the search for base parameters (in samples)", self.number + 1, MAX_SAMPLES)
         # quarter turns first, then eighths
-        fine, quarter = self.number > MAX_SAMPLES // 4, self.graph.pi / 2
+        fine, quarter = self.number >= COARSE, self.graph.pi / 2
         point = []
         for turns in self.functions.angular:
             k = int(self.random.integers(8 if fine else 4)) if self.number else 0
