@@ -10,7 +10,7 @@ velocities (``x.q1'``), inputs (``tau.x.q1``), free parameters and ``t``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -25,7 +25,10 @@ from substructures.scope import Scope
 from substructures.states import Array, numeric, read_states
 
 MAX_INTERVALS = 10_000
-MAX_STEPS = 1_000_000
+#: numbers that are kept of a motion, for the way back
+MAX_NUMBERS = 50_000_000
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Cost(Document):
@@ -51,8 +54,8 @@ class Problem(Document):
     q: Any = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
     qd: Any = Field(None, description="rad/s, m/s; default: at rest")
     t: float = Field(0.0, allow_inf_nan=False, description="when it starts, s")
-    inputs: dict[str, float] = Field({}, description="constant values of the other inputs; default: zero")
-    parameters: dict[str, float] = Field({}, description="instead of their defaults")
+    inputs: dict[str, Finite] = Field({}, description="constant values of the other inputs; default: zero")
+    parameters: dict[str, Finite] = Field({}, description="instead of their defaults")
 
     @property
     def nodes(self) -> int:
@@ -79,8 +82,9 @@ def read_problem(kind: type[P], model: Model, data: Mapping[str, Any]) -> P:
     ]
     faults += _unknown("inputs", problem.inputs, set(known) - set(problem.controls))
     faults += _unknown("parameters", problem.parameters, model.parameters)
-    if problem.intervals * problem.steps > MAX_STEPS:
-        message = f"{problem.intervals * problem.steps:,} steps; the limit is {MAX_STEPS:,}"
+    steps, most = problem.intervals * problem.steps, MAX_NUMBERS // (4 * model.dof * (model.dof + 3) or 1)
+    if steps > most:
+        message = f"{steps:,} steps; the limit for {model.dof} coordinates is {most:,}"
         faults.append(Fault("/steps", "too-many-steps", message))
     if faults:
         raise InvalidDocument(faults)

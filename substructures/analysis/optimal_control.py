@@ -35,6 +35,8 @@ from substructures.analysis.trajectory import Check, Trajectory
 from substructures.model import Model
 from substructures.states import Array
 
+#: called with the number of an iteration, the cost and the violation
+Progress = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
 STATIONARY = 1e-3
 
@@ -69,16 +71,23 @@ class Optimum:
     iterations: int
 
 
-def optimal_control(model: Model, request: Mapping[str, Any]) -> Optimum:
+def optimal_control(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Optimum:
     """Solve a problem of optimal control; ``request``: the fields of OptimalControlRequest.
 
-    Raises InvalidDocument with pointers, and MissingValue.
+    ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
+    search. Raises InvalidDocument with pointers, and MissingValue.
     """
     problem = read_problem(OptimalControlRequest, model, request)
     search = ShootingProgram(model, problem)
     z = search.guess()
     history = [search.progress(z)]
-    found = _solve(search, z, lambda x: history.append(search.progress(x)))
+
+    def note(x: Array) -> None:
+        history.append(search.progress(x))
+        if progress is not None:
+            progress(len(history) - 1, *history[-1])
+
+    found = _solve(search, z, note)
     return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), int(found.nit))
 
 

@@ -184,6 +184,8 @@ def test_failures_are_values() -> None:
     assert weak.status == "failed"
     assert "bounds" in weak.message
     assert not weak.trajectory.is_right
-    few = optimal_control(shipped("cart-pendulum"), SWING_UP | {"iterations": 2})
+    seen: list[int] = []
+    few = optimal_control(shipped("cart-pendulum"), SWING_UP | {"iterations": 2}, lambda k, *_: seen.append(k))
+    assert seen == [1, 2]
     assert few.status == "failed"
     assert len(few.history) >= 2
