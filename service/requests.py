@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
+from fastapi.concurrency import run_in_threadpool
 
 from service import keys
 from service.answers import FOR_EVER, REVALIDATE, Answer
@@ -28,12 +29,21 @@ StoreOf = Annotated[Store, Depends(get_store)]
 def needs(scope: str) -> Any:
     """The dependency of a route that only API keys with this scope may use."""
 
-    def authorise(request: Request, store: StoreOf) -> None:
-        with store.database.read() as connection:
-            principal = keys.authorise(connection, request.headers.get("authorization"), scope)
+    async def authorise(request: Request, store: StoreOf) -> None:
+        given = request.headers.get("authorization")
+        principal = store.authorisations.get(given, scope)
+        if principal is None:
+            principal = await run_in_threadpool(_authorised, store, given, scope)
         request.state.principal = principal
 
     return Depends(authorise)
+
+
+def _authorised(store: Store, given: str | None, scope: str) -> str:
+    with store.database.read() as connection:
+        principal = keys.authorise(connection, given, scope)
+    store.authorisations.put(given, scope, principal)
+    return principal
 
 
 async def raw_body(request: Request, store: StoreOf) -> bytes:

@@ -47,6 +47,7 @@ class Settings(BaseModel):
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
     cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
+    key_seconds: float = Field(1.0, ge=0, description="how long a checked API key is not checked again, seconds")
     limits: Limits = Limits()
 
     @property
