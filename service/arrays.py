@@ -5,22 +5,24 @@ from __future__ import annotations
 import io
 import math
 import zipfile
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import IO, Any
 
 import numpy as np
 from numpy.lib import format as npy
 
 from substructures.errors import InvalidDocument, TooLarge
 
+MEDIA_TYPE = "application/x-npz"
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 
 
-def read_npz(data: bytes, limit: int) -> dict[str, np.ndarray[Any, Any]]:
+def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
     """The arrays of an npz file of at most ``limit`` bytes unpacked. Raises InvalidDocument naming the array."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with zipfile.ZipFile(file) as archive:
             members = archive.infolist()
             if len(members) > MAX_ARRAYS:
                 raise TooLarge("the number of arrays", len(members), MAX_ARRAYS)
@@ -44,21 +46,72 @@ def _array(name: str, data: bytes) -> np.ndarray[Any, Any]:
         raise InvalidDocument.at(pointer, "npy", f"not an npy array: {error}") from None
     if dtype.kind not in KINDS:
         raise InvalidDocument.at(pointer, "dtype", f"arrays of type {dtype} are not accepted")
-    body = data[stream.tell() :]
-    if math.prod(shape) * dtype.itemsize != len(body) or any(n < 0 for n in shape):
-        raise InvalidDocument.at(pointer, "npy", f"shape {shape} does not fit {len(body)} bytes")
-    return np.frombuffer(body, dtype).reshape(shape, order="F" if fortran else "C")
+    start = stream.tell()
+    if math.prod(shape) * dtype.itemsize != len(data) - start or any(n < 0 for n in shape):
+        raise InvalidDocument.at(pointer, "npy", f"shape {shape} does not fit {len(data) - start} bytes")
+    flat = np.frombuffer(data, dtype, math.prod(shape), start) if math.prod(shape) else np.zeros(0, dtype)
+    return np.require(flat.reshape(shape, order="F" if fortran else "C"), requirements="A")
 
 
-def write_npz(arrays: Mapping[str, Any]) -> bytes:
-    """An uncompressed npz file."""
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
-        for name, value in arrays.items():
-            member = io.BytesIO()
-            npy.write_array(member, np.ascontiguousarray(value), allow_pickle=False)
-            archive.writestr(f"{name}.npy", member.getvalue())
-    return stream.getvalue()
+@dataclass(frozen=True, slots=True)
+class Member:
+    """An array of an npz file whose rows come in ``parts``."""
+
+    name: str
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    parts: Iterable[np.ndarray[Any, Any]]
+
+
+def member(name: str, value: Any) -> Member:
+    """An array that is complete."""
+    array = np.asarray(value)
+    if array.dtype.kind not in KINDS:
+        raise TypeError(f"'{name}' is no array of numbers or texts")
+    return Member(name, array.shape, array.dtype, (array,))
+
+
+def npz_pieces(members: Iterable[Member]) -> Iterator[memoryview]:
+    """An uncompressed npz file, piece by piece; arrays are not copied. Sizes follow the data, as in any zip that is
+    written to a pipe.
+    """
+    sink = _Sink()
+    with zipfile.ZipFile(sink, "w", zipfile.ZIP_STORED) as archive:
+        for each in members:
+            is_large = math.prod(each.shape) * each.dtype.itemsize >= zipfile.ZIP64_LIMIT
+            with archive.open(f"{each.name}.npy", "w", force_zip64=is_large) as file:
+                file.write(_npy_header(each))
+                for part in each.parts:
+                    file.write(np.ascontiguousarray(part).reshape(-1).view(np.uint8).data)
+                    yield from sink.taken()
+    yield from sink.taken()
+
+
+def _npy_header(each: Member) -> bytes:
+    header = io.BytesIO()
+    fields = {"descr": npy.dtype_to_descr(each.dtype), "fortran_order": False, "shape": each.shape}
+    npy.write_array_header_1_0(header, fields)
+    return header.getvalue()
+
+
+class _Sink(io.RawIOBase):
+    """What is written, as it is; like a pipe it cannot go back."""
+
+    def __init__(self) -> None:
+        self._pieces: list[memoryview] = []
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        view = memoryview(data)
+        self._pieces.append(view)
+        return view.nbytes
+
+    def taken(self) -> list[memoryview]:
+        """What was written since the last time."""
+        pieces, self._pieces = self._pieces, []
+        return pieces
 
 
 def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
