@@ -47,23 +47,32 @@ class Stream:
 
 
 async def _ahead(pieces: Iterator[bytes | memoryview]) -> AsyncIterator[bytes | memoryview]:
-    following = asyncio.ensure_future(run_in_threadpool(next, pieces, None))
+    following = asyncio.ensure_future(run_in_threadpool(_some, pieces))
     try:
-        while (piece := await following) is not None:
-            following = asyncio.ensure_future(run_in_threadpool(next, pieces, None))
-            yield piece
+        while some := await following:
+            following = asyncio.ensure_future(run_in_threadpool(_some, pieces))
+            for piece in some:
+                yield piece
     finally:
         await asyncio.gather(following, return_exceptions=True)  # it may still be reading the request
 
 
-def streamed(pieces: Iterator[bytes | memoryview], content_type: str) -> Answer | Stream:
-    """An answer as a whole if it is small, so that its length is told, otherwise as a stream."""
-    headers, begun, size = {"Content-Type": content_type}, [], 0
+def _some(pieces: Iterator[bytes | memoryview]) -> list[bytes | memoryview]:
+    """Some pieces that are worth a change of threads, none at the end."""
+    some, size = [], 0
     for piece in pieces:
-        begun.append(piece)
+        some.append(piece)
         size += len(piece)
         if size > AT_ONCE:
-            return Stream(chain(begun, pieces), headers)
+            break
+    return some
+
+
+def streamed(pieces: Iterator[bytes | memoryview], content_type: str) -> Answer | Stream:
+    """An answer as a whole if it is small, so that its length is told, otherwise as a stream."""
+    begun, headers = _some(pieces), {"Content-Type": content_type}
+    if sum(map(len, begun)) > AT_ONCE:
+        return Stream(chain(begun, pieces), headers)
     return Answer(200, b"".join(begun), headers)
 
 

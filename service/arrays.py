@@ -17,6 +17,7 @@ from substructures.errors import InvalidDocument, TooLarge
 MEDIA_TYPE = "application/x-npz"
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
+SMALL = 2**16  # bytes; shorter pieces are put together
 
 
 def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -99,19 +100,27 @@ class _Sink(io.RawIOBase):
 
     def __init__(self) -> None:
         self._pieces: list[memoryview] = []
+        self._small = bytearray()
 
     def writable(self) -> bool:
         return True
 
     def write(self, data: Any) -> int:
         view = memoryview(data)
-        self._pieces.append(view)
+        if view.nbytes < SMALL:
+            self._small += view
+        else:
+            self._pieces += [*self._gathered(), view]
         return view.nbytes
 
     def taken(self) -> list[memoryview]:
         """What was written since the last time."""
-        pieces, self._pieces = self._pieces, []
+        pieces, self._pieces = [*self._pieces, *self._gathered()], []
         return pieces
+
+    def _gathered(self) -> list[memoryview]:
+        small, self._small = self._small, bytearray()
+        return [memoryview(small)] if small else []
 
 
 def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from typing import IO, Any
@@ -145,11 +145,12 @@ def _width(pointer: str, column: Any) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Results of some states: ``columns`` (N, ...); ``missing``: True without a result; ``notes``: texts."""
+    """Results of some states: ``columns`` (N, ...); ``missing``: True without a result; ``notes``: texts by state."""
 
     columns: Mapping[str, Array]
     missing: Mapping[str, NDArray[np.bool_]]
-    notes: Sequence[str | None]
+    notes: Mapping[int, str]
+    count: int
 
 
 def write_tables(tables: Iterator[Table], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
@@ -161,7 +162,8 @@ def write_tables(tables: Iterator[Table], metadata: Mapping[str, Any]) -> Iterat
     schema = None
     for table in tables:
         arrays = [_to_arrow(values, table.missing.get(name)) for name, values in table.columns.items()]
-        arrays.append(pa.array(table.notes, pa.string()))
+        notes = [table.notes.get(i) for i in range(table.count)] if table.notes else None
+        arrays.append(pa.array(notes, pa.string()) if notes else pa.nulls(table.count, pa.string()))
         if schema is None:
             fields = [_field_of(name, values) for name, values in table.columns.items()]
             texts = {key: v if isinstance(v, str) else orjson.dumps(v) for key, v in metadata.items()}

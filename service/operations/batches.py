@@ -188,13 +188,14 @@ def as_arrow(evaluate: Evaluate, cuts: Iterable[Split], quantities: Iterable[str
 
 
 def _table(answer: Mapping[str, Any], names: Iterable[str]) -> arrow.Table:
-    columns = flat({name: answer[name] for name in names})
-    notes: list[Any] = [None] * answer["count"]
+    columns, count = flat({name: answer[name] for name in names}), answer["count"]
+    failures: dict[int, list[dict[str, Any]]] = {}
     missing: dict[str, NDArray[np.bool_]] = {}
     for failure in answer["failures"]:
         state, quantity = failure["state"], failure["quantity"]
+        failures.setdefault(state, []).append({key: value for key, value in failure.items() if key != "state"})
         for name in columns:
             if name == quantity or name.startswith(f"{quantity}."):
-                missing.setdefault(name, np.zeros(len(notes), np.bool_))[state] = True
-        notes[state] = [*(notes[state] or ()), {key: failure[key] for key in ("quantity", "code", "message")}]
-    return arrow.Table(columns, missing, [None if note is None else orjson.dumps(note).decode() for note in notes])
+                missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
+    notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
+    return arrow.Table(columns, missing, notes, count)
