@@ -60,21 +60,21 @@ class Reader:
         """Read the schema; ``limit``: bytes of one record batch. Raises InvalidDocument, TooLarge."""
         with _Translated():
             self._messages = pa.ipc.MessageReader.open_stream(_Guarded(file, limit))
-            self._schema = pa.ipc.read_schema(self._messages.read_next_message())
-        self.metadata = {key.decode(): value for key, value in (self._schema.metadata or {}).items()}
+            message = self._messages.read_next_message()
+            _check_kind(message, "schema")
+            self._schema = pa.ipc.read_schema(message)
+            self.metadata = {key.decode(): value for key, value in (self._schema.metadata or {}).items()}
 
     def __iter__(self) -> Iterator[dict[str, Array]]:
-        """Arrays (N,) or (N, n) of doubles; of a stream without rows, one batch without rows."""
-        batches = 0
+        """Arrays (N,) or (N, n) of doubles."""
         while (message := self._next()) is not None:
             with _Translated():
-                _check_kind(message)
+                _check_kind(message, "record batch")
+                _check_plain(message)
                 batch = pa.ipc.read_record_batch(message, self._schema)
                 batch.validate(full=True)
-            batches += 1
-            yield _columns(batch)
-        if not batches:
-            yield _columns(self._schema.empty_table().combine_chunks().to_batches()[0])
+                columns = _columns(batch)
+            yield columns
 
     def _next(self) -> Any:
         with _Translated():
@@ -91,14 +91,17 @@ class _Translated:
         pass
 
     def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> None:
-        if isinstance(error, (pa.ArrowException, OSError, StopIteration, UnicodeDecodeError)):
+        if isinstance(error, (pa.ArrowException, OSError, StopIteration, LookupError, UnicodeError)):
             reason = str(error).partition("\n")[0] or "it has no schema"
             raise InvalidDocument.at("", "arrow", f"not an Arrow stream: {reason}") from None
 
 
-def _check_kind(message: Any) -> None:
-    if message.type != "record batch":
-        raise InvalidDocument.at("", "arrow", f"a message of kind '{message.type}' is not accepted; send plain columns")
+def _check_kind(message: Any, kind: str) -> None:
+    if message.type != kind:  # pyarrow takes it for granted
+        raise InvalidDocument.at("", "arrow", f"a message of kind '{message.type}' where a {kind} is expected")
+
+
+def _check_plain(message: Any) -> None:
     data = message.metadata.to_pybytes()
     header = _field(data, struct.unpack_from("<I", data)[0], _HEADER)
     batch = header + struct.unpack_from("<I", data, header)[0]

@@ -42,10 +42,14 @@ def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
     reader, states = arrow.Reader(file, limits.binary_bytes), 0
     constants = {name: read_json(reader.metadata[name]) for name in _CONSTANTS if name in reader.metadata}
     for columns in reader:
-        states += max((len(column) for column in columns.values()), default=0)
+        count = max((len(column) for column in columns.values()), default=0)
+        states += count
         if states > limits.stream_states:
             raise TooLarge("the number of states", states, limits.stream_states)
-        yield _request(constants, columns)
+        if count:
+            yield _request(constants, columns)
+    if not states:
+        raise InvalidDocument.at("/q", "missing", "the stream has no states")
 
 
 def _request(constants: Request, columns: Mapping[str, Any]) -> dict[str, Any]:
