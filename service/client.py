@@ -24,6 +24,7 @@ class Client:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
+        self.address = address
         headers = {} if key is None else {"Authorization": f"Bearer {key}"}
         self._http = httpx2.Client(base_url=address, headers=headers, timeout=timeout)
 

@@ -41,13 +41,13 @@ def _matches(pattern: str, media: str) -> bool:
 
 def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
     """The request, or the requests for one batch of states after the other. Raises InvalidDocument, Refused 415."""
-    body.file.seek(0)
+    body.seek(0)
     if sent == arrays.MEDIA_TYPE:
-        return [batches.npz_request(body.file, limits)]
+        return [batches.npz_request(body, limits)]
     if sent == arrow.MEDIA_TYPE:
         if not arrow.is_available():
             raise Refused(415, "arrow-not-installed", _EXTRA)
-        return batches.arrow_requests(body.file, limits)
+        return batches.arrow_requests(body, limits)
     if sent == JSON:
         return [read_json(body.read())]
     raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
