@@ -132,3 +132,15 @@ def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
         elif item is not None:
             result[prefix + name] = item
     return result
+
+
+def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """The inverse of :func:`flat`, for names with at most one dot."""
+    result: dict[str, Any] = {}
+    for name, item in columns.items():
+        group, _, key = name.partition(".")
+        if key:
+            result.setdefault(group, {})[key] = item
+        else:
+            result[name] = item
+    return result

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from math import prod
 from typing import IO, Any
 
@@ -148,15 +148,19 @@ def _width(pointer: str, column: Any) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Results of some states: ``columns`` (N, ...); ``missing``: True without a result; ``notes``: texts by state."""
+    """Columns (N, ...); ``missing``: True where a column has no value; ``notes``: texts by state, if any."""
 
     columns: Mapping[str, Array]
-    missing: Mapping[str, NDArray[np.bool_]]
-    notes: Mapping[int, str]
-    count: int
+    missing: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    notes: Mapping[int, str] | None = None
+
+    @property
+    def count(self) -> int:
+        """The number of rows."""
+        return max(map(len, self.columns.values()), default=0)
 
 
-def write_tables(tables: Iterator[Table], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
+def write_tables(tables: Iterable[Table], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
     """The pieces of a stream, one record batch for each table; all tables have the columns of the first.
 
     A column (N, ...) of more than one axis becomes fixed-size lists, row-major, with the ``shape`` of one state in the
@@ -165,15 +169,44 @@ def write_tables(tables: Iterator[Table], metadata: Mapping[str, Any]) -> Iterat
     schema = None
     for table in tables:
         arrays = [_to_arrow(values, table.missing.get(name)) for name, values in table.columns.items()]
-        notes = [table.notes.get(i) for i in range(table.count)] if table.notes else None
-        arrays.append(pa.array(notes, pa.string()) if notes else pa.nulls(table.count, pa.string()))
+        if table.notes is not None:
+            arrays.append(_texts(table.notes, table.count))
         if schema is None:
             fields = [_field_of(name, values) for name, values in table.columns.items()]
+            fields += [] if table.notes is None else [pa.field(FAILURES, pa.string())]
             texts = {key: v if isinstance(v, str) else orjson.dumps(v) for key, v in metadata.items()}
-            schema = pa.schema([*fields, pa.field(FAILURES, pa.string())], metadata=texts)
+            schema = pa.schema(fields, metadata=texts)
             yield memoryview(schema.serialize())
         yield memoryview(pa.record_batch(arrays, schema=schema).serialize())
     yield END
+
+
+def read_tables(file: IO[bytes]) -> Iterator[dict[str, Any]]:
+    """The batches of a stream from :func:`write_tables`: arrays (N, ...), and ``failures`` with places in the batch."""
+    for batch in pa.ipc.open_stream(file):
+        result: dict[str, Any] = {"count": len(batch)}
+        for described in batch.schema:
+            values = batch.column(described.name)
+            if described.name == FAILURES:
+                notes = {i: orjson.loads(text) for i, text in enumerate(values.to_pylist()) if text is not None}
+                result[FAILURES] = [{"state": i, **each} for i, note in notes.items() for each in note]
+            else:
+                result[described.name] = _from_arrow(values, orjson.loads(described.metadata[b"shape"]))
+        yield result
+
+
+def _from_arrow(column: Any, shape: list[int]) -> Array:
+    if not shape:
+        return column.to_numpy(zero_copy_only=False)
+    values: Array = column.values.to_numpy(zero_copy_only=False).reshape(len(column), *shape)
+    if not column.null_count:
+        return values
+    gone = column.is_null().to_numpy(zero_copy_only=False).reshape(len(column), *(1 for _ in shape))
+    return np.where(gone, np.nan, values)
+
+
+def _texts(notes: Mapping[int, str], count: int) -> Any:
+    return pa.array([notes.get(i) for i in range(count)], pa.string()) if notes else pa.nulls(count, pa.string())
 
 
 def _field_of(name: str, values: Array) -> Any:

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import io
+import sys
+from collections.abc import Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import Any, Self
 
 import httpx2
+import numpy as np
 
+from service import arrow
+from service.arrays import MEDIA_TYPE as NPZ
+from service.arrays import flat, member, nested, npz_pieces, read_npz
 from substructures.documents import write_json
+
+PIECE = 2**20  # bytes of an answer that are read at a time
 
 
 class ProblemError(Exception):
@@ -24,7 +33,6 @@ class Client:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
-        self.address = address
         headers = {} if key is None else {"Authorization": f"Bearer {key}"}
         self._http = httpx2.Client(base_url=address, headers=headers, timeout=timeout)
 
@@ -45,8 +53,7 @@ class Client:
             options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
         answer = self._http.request(method, path, **options)
         if answer.is_error:
-            is_problem = answer.headers.get("content-type", "").startswith("application/problem+json")
-            raise ProblemError(answer.status_code, answer.json() if is_problem else {"detail": answer.reason_phrase})
+            raise _problem(answer)
         return answer
 
     def submit(self, definition: Any) -> tuple[dict[str, Any], bool]:
@@ -72,5 +79,62 @@ class Client:
         return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
-        """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4)."""
-        return dict(self.request("POST", f"/v1/trees/{tree}/evaluations", request).json())
+        """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4).
+
+        When one of the values is a numpy array, all travel as npz, and arrays come back in place of lists.
+        """
+        path = f"/v1/trees/{tree}/evaluations"
+        given = flat(request)
+        if not any(isinstance(value, np.ndarray) for value in given.values()):
+            return dict(self.request("POST", path, request).json())
+        body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
+        answer = self.request("POST", path, content=body, headers={"Content-Type": NPZ, "Accept": NPZ})
+        return _result(read_npz(io.BytesIO(answer.content), sys.maxsize))
+
+    def evaluate_batches(
+        self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
+    ) -> Iterator[dict[str, Any]]:
+        """Numbers for any number of states, in bounded memory; needs pyarrow.
+
+        ``batches``: arrays by name (``q``, ``qd``, ``inputs``, ...) with one row for each state; ``constants``: what is
+        the same for all (``quantities``, ``parameters``, ...). Gives the answer in parts, in order, NaN where a state
+        has no result. Nothing is answered before all was sent.
+        """
+        headers = {"Content-Type": arrow.MEDIA_TYPE, "Accept": arrow.MEDIA_TYPE}
+        tables = (arrow.Table(flat(batch)) for batch in batches)
+        content = (bytes(piece) for piece in arrow.write_tables(tables, constants))
+        with self._http.stream("POST", f"/v1/trees/{tree}/evaluations", content=content, headers=headers) as answer:
+            if answer.is_error:
+                answer.read()
+                raise _problem(answer)
+            for columns in arrow.read_tables(io.BufferedReader(_Arriving(answer.iter_raw()), PIECE)):
+                yield nested(columns)
+
+
+class _Arriving(io.RawIOBase):
+    """An answer as a file, read while it arrives."""
+
+    def __init__(self, pieces: Iterator[bytes]) -> None:
+        self._pieces, self._rest = pieces, memoryview(b"")
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        self._rest = self._rest or memoryview(next(self._pieces, b""))
+        size = min(len(buffer), len(self._rest))
+        buffer[:size], self._rest = self._rest[:size], self._rest[size:]
+        return size
+
+
+def _problem(answer: httpx2.Response) -> ProblemError:
+    is_problem = answer.headers.get("content-type", "").startswith("application/problem+json")
+    return ProblemError(answer.status_code, answer.json() if is_problem else {"detail": answer.reason_phrase})
+
+
+def _result(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
+    """The answer as JSON would have it, with arrays for the quantities."""
+    result = nested({name: a if a.dtype.kind == "f" else a.tolist() for name, a in arrays.items()})
+    failures = result["failures"]
+    rows = zip(*failures.values(), strict=True)
+    return {**result, "failures": [dict(zip(failures, row, strict=True)) for row in rows]}

@@ -202,4 +202,4 @@ def _table(answer: Mapping[str, Any], names: Iterable[str]) -> arrow.Table:
             if name == quantity or name.startswith(f"{quantity}."):
                 missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
     notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
-    return arrow.Table(columns, missing, notes, count)
+    return arrow.Table(columns, missing, notes)

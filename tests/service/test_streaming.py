@@ -19,8 +19,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service import spool
-from service.arrow import END, MEDIA_TYPE
-from service.client import Client
+from service.arrow import MEDIA_TYPE
+from service.client import Client, ProblemError
 from service.operations import batches
 from service.server import background
 from service.settings import Limits, Settings
@@ -154,55 +154,56 @@ def wait(client: Client) -> None:
     raise TimeoutError("the server did not start")
 
 
-class Pieces(io.RawIOBase):
-    """An answer as a file, read while it arrives."""
-
-    def __init__(self, pieces: Iterator[bytes]) -> None:
-        self.pieces, self.rest = pieces, b""
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: Any) -> int:
-        self.rest = self.rest or next(self.pieces, b"")
-        part, self.rest = self.rest[: len(buffer)], self.rest[len(buffer) :]
-        buffer[: len(part)] = part
-        return len(part)
-
-
-def arriving(client: httpx2.Client, tree: str, q: np.ndarray[Any, Any], times: int, names: list[str]) -> Iterator[Any]:
-    """The record batches of an answer to ``times`` batches of the same states, all made and read on the fly."""
-    batch = pa.record_batch({"q": lists(q)}).replace_schema_metadata({"quantities": str(names).replace("'", '"')})
-
-    def body() -> Iterator[bytes]:
-        yield batch.schema.serialize().to_pybytes()
-        message = batch.serialize().to_pybytes()
-        for _ in range(times):
-            yield message
-        yield END
-
-    with client.stream("POST", f"/v1/trees/{tree}/evaluations", content=body(), headers=HEADERS) as answer:
-        assert answer.status_code == 200, answer.read()
-        yield from pa.ipc.open_stream(io.BufferedReader(Pieces(answer.iter_raw()), 2**20))
-
-
 def test_many_batches(tmp_path: Path) -> None:
     """200,000 states in 100 batches, more than any single answer may have."""
     limits = Limits(states=2000, binary_bytes=2**16, json_bytes=2**14)
     settings = Settings(database=f"sqlite:///{tmp_path}/store.db", catalogue=False, limits=limits)
     q = np.linspace(-3, 3, 2000)[:, None]
-    with background(settings) as address, Client(address) as client, httpx2.Client(base_url=address) as http:
+    with background(settings) as address, Client(address) as client:
         client.submit(PENDULUM)
         client.create_tree(TREE)
-        found = list(arriving(http, "cell", q, 100, ["metric", "forces"]))
-        assert sum(map(len, found)) == 200_000
         known = client.evaluate("cell", quantities=["forces"], q=q[::500].tolist())["forces"]
-        for batch in (found[0], found[-1]):
-            np.testing.assert_allclose(column(pa.table(batch), "forces")[::500], known, rtol=1e-12)
-        bad = stream([{"q": lists(np.tile(q, (20, 1))[:2000])}] * 60 + [{"q": lists(q * np.nan)}], METRIC)
-        with pytest.raises(httpx2.RemoteProtocolError):  # the answer had begun: it is cut off
-            http.post(URL, content=bad, headers=HEADERS)
-        assert http.get("/livez").status_code == 200
+        found = list(client.evaluate_batches("cell", [{"q": q}] * 100, quantities=["metric", "forces"]))
+        assert sum(part["count"] for part in found) == 200_000
+        for part in (found[0], found[-1]):
+            np.testing.assert_allclose(part["forces"][::500], known, rtol=1e-12)
+
+
+def test_faults_of_later_batches_cut_the_answer_off(tmp_path: Path) -> None:
+    """The first parts have been sent by then; what was sent before the fault is right, and the end is missing."""
+    settings = Settings(database=f"sqlite:///{tmp_path}/store.db", catalogue=False)
+    q, counts = np.linspace(-3, 3, 60_000)[:, None], list[int]()
+    with background(settings) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        parts = client.evaluate_batches("cell", [*[{"q": q}] * 20, {"q": q * np.nan}], quantities=["metric"])
+        with pytest.raises(httpx2.RemoteProtocolError):
+            counts.extend(part["count"] for part in parts)
+        assert 0 < sum(counts) <= 20 * len(q)
+        assert client.request("GET", "/livez").status_code == 200
+        with pytest.raises(ProblemError, match="not finite"):  # a fault of the first batch is told
+            next(client.evaluate_batches("cell", [{"q": q * np.nan}], quantities=["metric"]))
+
+
+def test_arrays_in_arrays_out(tmp_path: Path) -> None:
+    """The client answers arrays with arrays, structured as in JSON, whichever way they travel."""
+    settings = Settings(database=f"sqlite:///{tmp_path}/store.db", catalogue=False)
+    q, masses = np.linspace(-1, 1, 6)[:, None], np.array([1.0, 0, 1, 1, 0, 1])
+    names = ["forward_dynamics", "kinetic_energy", "kinematics"]
+    with background(settings) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        known = client.evaluate("cell", quantities=names, q=q.tolist(), parameters={"arm.m": masses.tolist()})
+        whole = client.evaluate("cell", quantities=names, q={"arm.q": q[:, 0]}, parameters={"arm.m": masses})
+        halves = [{"q": q[rows], "parameters": {"arm.m": masses[rows]}} for rows in (slice(0, 3), slice(3, 6))]
+        parts = list(client.evaluate_batches("cell", halves, quantities=names))
+    same(whole["kinematics"]["rotation"], np.array(known["kinematics"]["rotation"]))
+    for key in ("coordinates", "count", "digest", "frames", "failures"):
+        assert whole[key] == known[key]
+    assert [[failure["state"] for failure in part["failures"]] for part in parts] == [[1], [1]]
+    for name in ("forward_dynamics", "kinetic_energy"):
+        same(whole[name], np.concatenate([part[name] for part in parts]))
+    assert np.isnan(parts[1]["forward_dynamics"][:, 0]).tolist() == [False, True, False]
 
 
 def peak_memory(process: int) -> int:
@@ -220,11 +221,10 @@ def test_ten_million_states_in_a_gibibyte(tmp_path: Path) -> None:
     with server(tmp_path) as (client, process):
         client.create_tree(tree)
         known = client.evaluate("cell", quantities=["metric"], q=q[:3].tolist())["metric"]
-        count = 0
-        with httpx2.Client(base_url=str(client.address), timeout=120) as http:
-            for batch in arriving(http, "cell", q, 200, ["metric", "forces"]):
-                if count % 50_000 == 0:
-                    np.testing.assert_allclose(column(pa.table(batch), "metric")[:3], known, rtol=1e-12)
-                count += len(batch)
+        batches, count = ({"q": q} for _ in range(200)), 0
+        for part in client.evaluate_batches("cell", batches, quantities=["metric", "forces"]):
+            if count % len(q) == 0:
+                np.testing.assert_allclose(part["metric"][:3], known, rtol=1e-12)
+            count += part["count"]
         assert count == 10_000_000
         assert peak_memory(process) < 2**30
