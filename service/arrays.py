@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import struct
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,12 +12,14 @@ from typing import IO, Any
 
 import numpy as np
 from numpy.lib import format as npy
+from numpy.typing import NDArray
 
 from substructures.errors import InvalidDocument, TooLarge
 
 MEDIA_TYPE = "application/x-npz"
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
+MAX_HEADER = 10_000  # bytes
 SMALL = 2**16  # bytes; shorter pieces are put together
 
 
@@ -36,13 +39,49 @@ def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
         raise InvalidDocument.at("", "npz", f"not an npz file: {error}") from None
 
 
-def _array(name: str, data: bytes) -> np.ndarray[Any, Any]:
-    stream = io.BytesIO(data)
+def view_npz(data: NDArray[np.uint8]) -> dict[str, np.ndarray[Any, Any]]:
+    """The arrays of an uncompressed npz file in memory, where they lie; check sums are passed over."""
+    result = {}
+    with zipfile.ZipFile(io.BufferedReader(_Memory(data))) as archive:
+        for found in archive.infolist():
+            # the local header: 26 bytes, lengths of the name and of the extra field, both of these, the data
+            name, extra = struct.unpack_from("<HH", data.data, found.header_offset + 26)
+            start = found.header_offset + 30 + name + extra
+            array = _array(found.filename, data[start : start + found.file_size].data)
+            result[found.filename.removesuffix(".npy")] = array
+    return result
+
+
+class _Memory(io.RawIOBase):
+    """Bytes in memory as a file."""
+
+    def __init__(self, data: NDArray[np.uint8]) -> None:
+        self._data, self._position = data, 0
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        self._position = offset + (0, self._position, len(self._data))[whence]
+        return self._position
+
+    def readinto(self, buffer: Any) -> int:
+        part = self._data[self._position : self._position + len(buffer)]
+        buffer[: len(part)] = part.data
+        self._position += len(part)
+        return len(part)
+
+
+def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
+    stream = io.BytesIO(data[:MAX_HEADER])
     pointer = "/" + name.removesuffix(".npy").replace("~", "~0").replace("/", "~1")
     try:
         version = npy.read_magic(stream)
         read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, fortran, dtype = read_header(stream, max_header_size=10_000)
+        shape, fortran, dtype = read_header(stream, max_header_size=MAX_HEADER)
     except ValueError as error:
         raise InvalidDocument.at(pointer, "npy", f"not an npy array: {error}") from None
     if dtype.kind not in KINDS:

@@ -181,7 +181,7 @@ def write_tables(tables: Iterable[Table], metadata: Mapping[str, Any]) -> Iterat
     yield END
 
 
-def read_tables(file: IO[bytes]) -> Iterator[dict[str, Any]]:
+def read_tables(file: io.BufferedIOBase) -> Iterator[dict[str, Any]]:
     """The batches of a stream from :func:`write_tables`: arrays (N, ...), and ``failures`` with places in the batch."""
     for batch in pa.ipc.open_stream(file):
         result: dict[str, Any] = {"count": len(batch)}

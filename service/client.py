@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import io
-import sys
+import json
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.client import HTTPResponse
 from types import TracebackType
 from typing import Any, Self
 
@@ -13,10 +15,9 @@ import numpy as np
 
 from service import arrow
 from service.arrays import MEDIA_TYPE as NPZ
-from service.arrays import flat, member, nested, npz_pieces, read_npz
+from service.arrays import flat, member, nested, npz_pieces, view_npz
+from service.bulk import read_all, transfer
 from substructures.documents import write_json
-
-PIECE = 2**20  # bytes of an answer that are read at a time
 
 
 class ProblemError(Exception):
@@ -33,8 +34,9 @@ class Client:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
-        headers = {} if key is None else {"Authorization": f"Bearer {key}"}
-        self._http = httpx2.Client(base_url=address, headers=headers, timeout=timeout)
+        self.address, self.timeout = address, timeout
+        self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}
+        self._http = httpx2.Client(base_url=address, headers=self._headers, timeout=timeout)
 
     def __enter__(self) -> Self:
         return self
@@ -53,7 +55,7 @@ class Client:
             options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
         answer = self._http.request(method, path, **options)
         if answer.is_error:
-            raise _problem(answer)
+            raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
         return answer
 
     def submit(self, definition: Any) -> tuple[dict[str, Any], bool]:
@@ -88,8 +90,8 @@ class Client:
         if not any(isinstance(value, np.ndarray) for value in given.values()):
             return dict(self.request("POST", path, request).json())
         body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
-        answer = self.request("POST", path, content=body, headers={"Content-Type": NPZ, "Accept": NPZ})
-        return _result(read_npz(io.BytesIO(answer.content), sys.maxsize))
+        with self._transfer(path, body, NPZ) as answer:
+            return _result(view_npz(read_all(answer)))
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
@@ -100,36 +102,24 @@ class Client:
         the same for all (``quantities``, ``parameters``, ...). Gives the answer in parts, in order, NaN where a state
         has no result. Nothing is answered before all was sent.
         """
-        headers = {"Content-Type": arrow.MEDIA_TYPE, "Accept": arrow.MEDIA_TYPE}
         tables = (arrow.Table(flat(batch)) for batch in batches)
         content = (bytes(piece) for piece in arrow.write_tables(tables, constants))
-        with self._http.stream("POST", f"/v1/trees/{tree}/evaluations", content=content, headers=headers) as answer:
-            if answer.is_error:
-                answer.read()
-                raise _problem(answer)
-            for columns in arrow.read_tables(io.BufferedReader(_Arriving(answer.iter_raw()), PIECE)):
+        with self._transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
+            for columns in arrow.read_tables(answer):
                 yield nested(columns)
 
-
-class _Arriving(io.RawIOBase):
-    """An answer as a file, read while it arrives."""
-
-    def __init__(self, pieces: Iterator[bytes]) -> None:
-        self._pieces, self._rest = pieces, memoryview(b"")
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: Any) -> int:
-        self._rest = self._rest or memoryview(next(self._pieces, b""))
-        size = min(len(buffer), len(self._rest))
-        buffer[:size], self._rest = self._rest[:size], self._rest[size:]
-        return size
+    @contextmanager
+    def _transfer(self, path: str, content: bytes | Iterable[bytes], media_type: str) -> Iterator[HTTPResponse]:
+        headers = {**self._headers, "Content-Type": media_type, "Accept": media_type}
+        with transfer(self.address, path, content, headers, self.timeout) as answer:
+            if answer.status >= 400:
+                raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
+            yield answer
 
 
-def _problem(answer: httpx2.Response) -> ProblemError:
-    is_problem = answer.headers.get("content-type", "").startswith("application/problem+json")
-    return ProblemError(answer.status_code, answer.json() if is_problem else {"detail": answer.reason_phrase})
+def _problem(status: int, media_type: str, body: bytes) -> ProblemError:
+    is_problem = media_type.startswith("application/problem+json")
+    return ProblemError(status, json.loads(body) if is_problem else {"detail": HTTPStatus(status).phrase})
 
 
 def _result(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:

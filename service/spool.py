@@ -21,15 +21,16 @@ class Spool(SpooledTemporaryFile[bytes]):
         """Append what arrives; the event loop never waits for the disk."""
         waiting, size = bytearray(), 0
         async for chunk in chunks:
-            waiting += chunk
             size += len(chunk)
+            if size <= MEMORY:
+                self.write(chunk)
+            else:
+                waiting += chunk
             if len(waiting) >= PIECE:
-                if size > MEMORY:
-                    await run_sync(self.write, bytes(waiting))
-                else:
-                    self.write(waiting)
+                await run_sync(self.write, bytes(waiting))
                 waiting.clear()
-        self.write(waiting)
+        if waiting:
+            await run_sync(self.write, bytes(waiting))
 
     def pieces(self) -> Iterator[bytes]:
         """All of it, from the start."""
