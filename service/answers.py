@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 
+from anyio import CancelScope
 from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
@@ -17,7 +18,7 @@ from service import __version__
 JSON = "application/json"
 FOR_EVER = "max-age=31536000, immutable"
 REVALIDATE = "no-cache"
-AT_ONCE = 2**18  # bytes of a body that is sent as a whole
+AT_ONCE = 2**18  # bytes that are handed to the connection at a time; a smaller body is sent as a whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +53,12 @@ async def _ahead(pieces: Iterator[bytes | memoryview]) -> AsyncIterator[bytes | 
         while some := await following:
             following = asyncio.ensure_future(run_in_threadpool(_some, pieces))
             for piece in some:
-                yield piece
+                view = memoryview(piece)
+                for start in range(0, len(view), AT_ONCE):
+                    yield view[start : start + AT_ONCE]
     finally:
-        await asyncio.gather(following, return_exceptions=True)  # it may still be reading the request
+        with CancelScope(shield=True):  # when the client has gone, a thread may still be reading the request
+            await asyncio.gather(following, return_exceptions=True)
 
 
 def _some(pieces: Iterator[bytes | memoryview]) -> list[bytes | memoryview]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from http import HTTPStatus
 from http.client import HTTPResponse
@@ -95,7 +95,7 @@ class Client:
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
-    ) -> Iterator[dict[str, Any]]:
+    ) -> Generator[dict[str, Any], None, None]:
         """Numbers for any number of states, in bounded memory; needs pyarrow.
 
         ``batches``: arrays by name (``q``, ``qd``, ``inputs``, ...) with one row for each state; ``constants``: what is

@@ -181,6 +181,10 @@ def test_faults_of_later_batches_cut_the_answer_off(tmp_path: Path) -> None:
             counts.extend(part["count"] for part in parts)
         assert 0 < sum(counts) <= 20 * len(q)
         assert client.request("GET", "/livez").status_code == 200
+        gone = client.evaluate_batches("cell", [{"q": q}] * 20, quantities=["metric"])
+        assert next(gone)["count"]
+        gone.close()  # a client may leave at any time
+        assert client.request("GET", "/livez").status_code == 200
         with pytest.raises(ProblemError, match="not finite"):  # a fault of the first batch is told
             next(client.evaluate_batches("cell", [{"q": q * np.nan}], quantities=["metric"]))
 
