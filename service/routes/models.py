@@ -30,7 +30,15 @@ RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}}
 def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once: OnceSpooled) -> Response:
     """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
 
-    Arrow is evaluated batch by batch, and may have any number of them.
+    npz: arrays by the names of the JSON request, nested ones joined by dots (`inputs.tau.arm.q1`, `parameters.arm.m`).
+
+    Arrow: a row for each state; columns `q`, `qd`, `qdd` (lists of n doubles) or `q.<coordinate>`, `t`,
+    `inputs.<name>`, `parameters.<name>`; in the metadata of the schema, as JSON, `quantities` and what is the same for
+    all states. The stream may have any number of record batches (`stream_states`, `stream_bytes` in `/v1/limits`), each
+    at most `binary_bytes`, not compressed. The answer has fixed-size lists, row-major, with the `shape` in the metadata
+    of the field, null where a state has no result and the reason, as JSON, in the column `failures`; coordinates and
+    digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a fault
+    in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
