@@ -37,8 +37,8 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
     all states. The stream may have any number of record batches (`stream_states`, `stream_bytes` in `/v1/limits`), each
     at most `binary_bytes`, not compressed. The answer has fixed-size lists, row-major, with the `shape` in the metadata
     of the field, null where a state has no result and the reason, as JSON, in the column `failures`; coordinates and
-    digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a fault
-    in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
+    digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a
+    fault in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
