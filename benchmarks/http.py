@@ -6,8 +6,8 @@ python -m benchmarks.http [--json FILE]
 from __future__ import annotations
 
 import argparse
-import io
 import json
+import socket
 import subprocess
 import sys
 import tempfile
@@ -21,20 +21,22 @@ from typing import Any
 import numpy as np
 
 from service.client import Client
+from service.kernels import Kernels
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.evaluation import evaluate
 
-PORT = 18_733
-STATES = 20_000
+STATES = 100_000
 
 
 @contextmanager
 def server(folder: str) -> Iterator[Client]:
     """The service in a process of its own, on an empty database."""
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(PORT)]
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(port)]
     process = subprocess.Popen([*command, "--database", f"sqlite:///{folder}/bench.db"], stderr=subprocess.DEVNULL)
     try:
-        with Client(f"http://127.0.0.1:{PORT}") as client:
+        with Client(f"http://127.0.0.1:{port}") as client:
             wait(client)
             yield client
     finally:
@@ -55,13 +57,26 @@ def wait(client: Client) -> None:
 
 
 def milliseconds(work: Callable[[], Any], repeat: int) -> float:
-    """Median wall time."""
+    """Median wall time, warm."""
     times = []
+    for _ in range(3):
+        work()
     for _ in range(repeat):
         start = perf_counter()
         work()
         times.append(perf_counter() - start)
     return median(times) * 1e3
+
+
+def in_turn(ways: dict[str, Callable[[], Any]], repeat: int) -> dict[str, float]:
+    """Median wall times, warm, measured in turn: what else the machine does then disturbs all alike."""
+    times: dict[str, list[float]] = {name: [] for name in ways}
+    for _ in range(repeat + 3):
+        for name, work in ways.items():
+            start = perf_counter()
+            work()
+            times[name].append(perf_counter() - start)
+    return {name: median(some[3:]) * 1e3 for name, some in times.items()}
 
 
 def couplings(client: Client) -> float:
@@ -78,25 +93,25 @@ def couplings(client: Client) -> float:
 
 
 def batch(client: Client, figures: dict[str, float]) -> None:
-    """A batch as npz over HTTP beside the same call in this process."""
+    """A batch over HTTP beside the same call in this process: the same engine, all threads, kernels warm."""
     spec = TreeSpec.read(
         {"name": "own", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "ur5"}]}
     )
     model = couple(spec, {"arm": derive(Definition.read(catalogue.load("ur5")))})
+    engine, quantities = Kernels(None), ["metric", "forces"]
     q = np.random.default_rng(0).uniform(-3, 3, (STATES, 6))
-    request: dict[str, Any] = {"quantities": ["metric", "forces"], "q": q}
-    inside = milliseconds(lambda: evaluate(model, request), 5)
-    buffer = io.BytesIO()
-    np.savez(buffer, q=q, quantities=np.array(["metric", "forces"]))
-    headers = {"Content-Type": "application/x-npz", "Accept": "application/x-npz"}
-
-    def over_http() -> None:
-        client.request("POST", "/v1/trees/cell0@1/evaluations", content=buffer.getvalue(), headers=headers)
-
-    outside = milliseconds(over_http, 5)
-    figures["http_batch_share"] = inside / outside
-    print(f"{STATES:,} states of a 6 dof arm, M and Q, npz: {outside:.0f} ms; in process {inside:.0f} ms", end="")
-    print(f" ({inside / outside:.2f} of the in-process rate)")
+    ways: dict[str, Callable[[], Any]] = {
+        "in process": lambda: evaluate(model, {"quantities": quantities, "q": q}, engine=engine),
+        "npz": lambda: client.evaluate("cell0@1", quantities=quantities, q=q),
+        "Arrow": lambda: list(client.evaluate_batches("cell0@1", [{"q": q}], quantities=quantities)),
+    }
+    times = in_turn(ways, 25)
+    engine.close()
+    figures["http_batch_share"] = times["in process"] / times["npz"]
+    figures["http_arrow_share"] = times["in process"] / times["Arrow"]
+    print(f"{STATES:,} states of a 6 dof arm, M and Q, arrays in and out:")
+    for name, each in times.items():
+        print(f"  {name}: {each:.0f} ms ({times['in process'] / each:.2f} of the in-process rate)")
 
 
 def main() -> None:

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import io
 import math
+import struct
 import zipfile
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import IO, Any
 
 import numpy as np
 from numpy.lib import format as npy
+from numpy.typing import NDArray
 
 from substructures.errors import InvalidDocument, TooLarge
 
+MEDIA_TYPE = "application/x-npz"
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
+MAX_HEADER = 10_000  # bytes
+SMALL = 2**16  # bytes; shorter pieces are put together
 
 
-def read_npz(data: bytes, limit: int) -> dict[str, np.ndarray[Any, Any]]:
+def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
     """The arrays of an npz file of at most ``limit`` bytes unpacked. Raises InvalidDocument naming the array."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with zipfile.ZipFile(file) as archive:
             members = archive.infolist()
             if len(members) > MAX_ARRAYS:
                 raise TooLarge("the number of arrays", len(members), MAX_ARRAYS)
@@ -33,32 +39,127 @@ def read_npz(data: bytes, limit: int) -> dict[str, np.ndarray[Any, Any]]:
         raise InvalidDocument.at("", "npz", f"not an npz file: {error}") from None
 
 
-def _array(name: str, data: bytes) -> np.ndarray[Any, Any]:
-    stream = io.BytesIO(data)
+def view_npz(data: NDArray[np.uint8]) -> dict[str, np.ndarray[Any, Any]]:
+    """The arrays of an uncompressed npz file in memory, where they lie; check sums are passed over."""
+    result = {}
+    with zipfile.ZipFile(io.BufferedReader(_Memory(data))) as archive:
+        for found in archive.infolist():
+            # the local header: 26 bytes, lengths of the name and of the extra field, both of these, the data
+            name, extra = struct.unpack_from("<HH", data.data, found.header_offset + 26)
+            start = found.header_offset + 30 + name + extra
+            array = _array(found.filename, data[start : start + found.file_size].data)
+            result[found.filename.removesuffix(".npy")] = array
+    return result
+
+
+class _Memory(io.RawIOBase):
+    """Bytes in memory as a file."""
+
+    def __init__(self, data: NDArray[np.uint8]) -> None:
+        self._data, self._position = data, 0
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        self._position = offset + (0, self._position, len(self._data))[whence]
+        return self._position
+
+    def readinto(self, buffer: Any) -> int:
+        part = self._data[self._position : self._position + len(buffer)]
+        buffer[: len(part)] = part.data
+        self._position += len(part)
+        return len(part)
+
+
+def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
+    stream = io.BytesIO(data[:MAX_HEADER])
     pointer = "/" + name.removesuffix(".npy").replace("~", "~0").replace("/", "~1")
     try:
         version = npy.read_magic(stream)
         read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, fortran, dtype = read_header(stream, max_header_size=10_000)
+        shape, fortran, dtype = read_header(stream, max_header_size=MAX_HEADER)
     except ValueError as error:
         raise InvalidDocument.at(pointer, "npy", f"not an npy array: {error}") from None
     if dtype.kind not in KINDS:
         raise InvalidDocument.at(pointer, "dtype", f"arrays of type {dtype} are not accepted")
-    body = data[stream.tell() :]
-    if math.prod(shape) * dtype.itemsize != len(body) or any(n < 0 for n in shape):
-        raise InvalidDocument.at(pointer, "npy", f"shape {shape} does not fit {len(body)} bytes")
-    return np.frombuffer(body, dtype).reshape(shape, order="F" if fortran else "C")
+    start = stream.tell()
+    if math.prod(shape) * dtype.itemsize != len(data) - start or any(n < 0 for n in shape):
+        raise InvalidDocument.at(pointer, "npy", f"shape {shape} does not fit {len(data) - start} bytes")
+    flat = np.frombuffer(data, dtype, math.prod(shape), start) if math.prod(shape) else np.zeros(0, dtype)
+    return np.require(flat.reshape(shape, order="F" if fortran else "C"), requirements="A")
 
 
-def write_npz(arrays: Mapping[str, Any]) -> bytes:
-    """An uncompressed npz file."""
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
-        for name, value in arrays.items():
-            member = io.BytesIO()
-            npy.write_array(member, np.ascontiguousarray(value), allow_pickle=False)
-            archive.writestr(f"{name}.npy", member.getvalue())
-    return stream.getvalue()
+@dataclass(frozen=True, slots=True)
+class Member:
+    """An array of an npz file whose rows come in ``parts``."""
+
+    name: str
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    parts: Iterable[np.ndarray[Any, Any]]
+
+
+def member(name: str, value: Any) -> Member:
+    """An array that is complete."""
+    array = np.asarray(value)
+    if array.dtype.kind not in KINDS:
+        raise TypeError(f"'{name}' is no array of numbers or texts")
+    return Member(name, array.shape, array.dtype, (array,))
+
+
+def npz_pieces(members: Iterable[Member]) -> Iterator[memoryview]:
+    """An uncompressed npz file, piece by piece; arrays are not copied. Sizes follow the data, as in any zip that is
+    written to a pipe.
+    """
+    sink = _Sink()
+    with zipfile.ZipFile(sink, "w", zipfile.ZIP_STORED) as archive:
+        for each in members:
+            is_large = math.prod(each.shape) * each.dtype.itemsize >= zipfile.ZIP64_LIMIT
+            with archive.open(f"{each.name}.npy", "w", force_zip64=is_large) as file:
+                file.write(_npy_header(each))
+                for part in each.parts:
+                    file.write(np.ascontiguousarray(part).reshape(-1).view(np.uint8).data)
+                    yield from sink.taken()
+    yield from sink.taken()
+
+
+def _npy_header(each: Member) -> bytes:
+    header = io.BytesIO()
+    fields = {"descr": npy.dtype_to_descr(each.dtype), "fortran_order": False, "shape": each.shape}
+    npy.write_array_header_1_0(header, fields)
+    return header.getvalue()
+
+
+class _Sink(io.RawIOBase):
+    """What is written, as it is; like a pipe it cannot go back."""
+
+    def __init__(self) -> None:
+        self._pieces: list[memoryview] = []
+        self._small = bytearray()
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        view = memoryview(data)
+        if view.nbytes < SMALL:
+            self._small += view
+        else:
+            self._pieces += [*self._gathered(), view]
+        return view.nbytes
+
+    def taken(self) -> list[memoryview]:
+        """What was written since the last time."""
+        pieces, self._pieces = [*self._pieces, *self._gathered()], []
+        return pieces
+
+    def _gathered(self) -> list[memoryview]:
+        small, self._small = self._small, bytearray()
+        return [memoryview(small)] if small else []
 
 
 def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -69,4 +170,16 @@ def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
             result.update(flat(item, f"{prefix}{name}."))
         elif item is not None:
             result[prefix + name] = item
+    return result
+
+
+def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """The inverse of :func:`flat`, for names with at most one dot."""
+    result: dict[str, Any] = {}
+    for name, item in columns.items():
+        group, _, key = name.partition(".")
+        if key:
+            result.setdefault(group, {})[key] = item
+        else:
+            result[name] = item
     return result

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.client import HTTPResponse
 from types import TracebackType
 from typing import Any, Self
 
 import httpx2
+import numpy as np
 
+from service import arrow
+from service.arrays import MEDIA_TYPE as NPZ
+from service.arrays import flat, member, nested, npz_pieces, view_npz
+from service.bulk import read_all, transfer
 from substructures.documents import write_json
 
 
@@ -24,8 +34,9 @@ class Client:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
-        headers = {} if key is None else {"Authorization": f"Bearer {key}"}
-        self._http = httpx2.Client(base_url=address, headers=headers, timeout=timeout)
+        self.address, self.timeout = address, timeout
+        self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}
+        self._http = httpx2.Client(base_url=address, headers=self._headers, timeout=timeout)
 
     def __enter__(self) -> Self:
         return self
@@ -44,8 +55,7 @@ class Client:
             options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
         answer = self._http.request(method, path, **options)
         if answer.is_error:
-            is_problem = answer.headers.get("content-type", "").startswith("application/problem+json")
-            raise ProblemError(answer.status_code, answer.json() if is_problem else {"detail": answer.reason_phrase})
+            raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
         return answer
 
     def submit(self, definition: Any) -> tuple[dict[str, Any], bool]:
@@ -71,5 +81,50 @@ class Client:
         return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
-        """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4)."""
-        return dict(self.request("POST", f"/v1/trees/{tree}/evaluations", request).json())
+        """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4).
+
+        When one of the values is a numpy array, all travel as npz, and arrays come back in place of lists.
+        """
+        path = f"/v1/trees/{tree}/evaluations"
+        given = flat(request)
+        if not any(isinstance(value, np.ndarray) for value in given.values()):
+            return dict(self.request("POST", path, request).json())
+        body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
+        with self._transfer(path, body, NPZ) as answer:
+            return _result(view_npz(read_all(answer)))
+
+    def evaluate_batches(
+        self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
+    ) -> Generator[dict[str, Any], None, None]:
+        """Numbers for any number of states, in bounded memory; needs pyarrow.
+
+        ``batches``: arrays by name (``q``, ``qd``, ``inputs``, ...) with one row for each state; ``constants``: what is
+        the same for all (``quantities``, ``parameters``, ...). Gives the answer in parts, in order, NaN where a state
+        has no result. Nothing is answered before all was sent.
+        """
+        tables = (arrow.Table(flat(batch)) for batch in batches)
+        content = (bytes(piece) for piece in arrow.write_tables(tables, constants))
+        with self._transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
+            for columns in arrow.read_tables(answer):
+                yield nested(columns)
+
+    @contextmanager
+    def _transfer(self, path: str, content: bytes | Iterable[bytes], media_type: str) -> Iterator[HTTPResponse]:
+        headers = {**self._headers, "Content-Type": media_type, "Accept": media_type}
+        with transfer(self.address, path, content, headers, self.timeout) as answer:
+            if answer.status >= 400:
+                raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
+            yield answer
+
+
+def _problem(status: int, media_type: str, body: bytes) -> ProblemError:
+    is_problem = media_type.startswith("application/problem+json")
+    return ProblemError(status, json.loads(body) if is_problem else {"detail": HTTPStatus(status).phrase})
+
+
+def _result(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
+    """The answer as JSON would have it, with arrays for the quantities."""
+    result = nested({name: a if a.dtype.kind == "f" else a.tolist() for name, a in arrays.items()})
+    failures = result["failures"]
+    rows = zip(*failures.values(), strict=True)
+    return {**result, "failures": [dict(zip(failures, row, strict=True)) for row in rows]}

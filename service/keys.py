@@ -7,6 +7,7 @@ import hmac
 import secrets
 from collections.abc import Sequence
 from datetime import timedelta
+from time import monotonic
 
 from service.database import Connection
 from service.problems import Refused
@@ -15,6 +16,7 @@ from service.queries.common import now
 
 SCOPES = ("read", "write", "jobs", "admin")
 PREFIX = "sub"
+REMEMBERED = 1000  # authorisations in memory
 OPEN = "local"  # the principal of a server without keys
 
 
@@ -28,6 +30,28 @@ def create(connection: Connection, label: str, scopes: Sequence[str], days: floa
     granted = " ".join(dict.fromkeys(scopes))
     keys.add_key(connection, keys.ApiKey(identifier, _hash(secret), label, granted, now(), expires, None))
     return f"{PREFIX}_{identifier}_{secret}"
+
+
+class Authorisations:
+    """Who was authorised a moment ago, so that most requests need no transaction for it.
+
+    A key that is revoked, expires or is the first one of a server takes effect at most ``seconds`` later.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self._known: dict[tuple[str, str], tuple[float, str]] = {}
+
+    def get(self, authorization: str | None, scope: str) -> str | None:
+        """The principal, or None when it has to be looked up."""
+        until, principal = self._known.get((_hash(authorization or ""), scope), (0.0, ""))
+        return principal if monotonic() < until else None
+
+    def put(self, authorization: str | None, scope: str, principal: str) -> None:
+        """Remember an authorisation that was given."""
+        if len(self._known) >= REMEMBERED:
+            self._known.clear()
+        self._known[_hash(authorization or ""), scope] = monotonic() + self.seconds, principal
 
 
 def authorise(connection: Connection, authorization: str | None, scope: str) -> str:

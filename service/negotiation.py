@@ -16,7 +16,7 @@ def choose_format(wanted: str | None, accept: str) -> str:
         if wanted not in MEDIA_TYPES:
             raise unprocessable("format", f"unknown format '{wanted[:40]}'; there are {_known()}", "/query/format")
         return wanted
-    for pattern in _by_preference(accept or "*/*"):
+    for pattern in by_preference(accept or "*/*"):
         for name, media in MEDIA_TYPES.items():
             if _matches(pattern, media.partition(";")[0]):
                 return name
@@ -34,7 +34,8 @@ def _known() -> str:
     return ", ".join(f"{name} ({media})" for name, media in MEDIA_TYPES.items())
 
 
-def _by_preference(accept: str) -> list[str]:
+def by_preference(accept: str) -> list[str]:
+    """The media types of an Accept header, the most wanted first; what is not acceptable is left out."""
     weighted = []
     for item in accept.split(","):
         pattern, *parameters = (field.strip().lower() for field in item.split(";"))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import hashlib
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from datetime import timedelta
 from functools import cached_property
 from time import perf_counter
@@ -22,12 +22,12 @@ from typing import Annotated
 import orjson
 from fastapi import Depends, Header, Request, Response
 
-from service.answers import Answer
+from service.answers import Answer, Stream
 from service.database import Connection
 from service.operations.trees import StaleError
 from service.problems import Refused
 from service.queries import idempotency
-from service.requests import RawBody, StoreOf
+from service.requests import RawBody, SpooledBody, StoreOf
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
@@ -37,8 +37,9 @@ ATTEMPTS = 8
 class Once:
     """Runs the work of one POST request at most once per idempotency key."""
 
-    def __init__(self, request: Request, raw: bytes, store: Store, key: str | None) -> None:
-        self.store, self.key, self._request, self._raw = store, key, request, raw
+    def __init__(self, request: Request, body: Callable[[], Iterable[bytes]], store: Store, key: str | None) -> None:
+        """``body``: gives the pieces of the request body."""
+        self.store, self.key, self._request, self._body = store, key, request, body
         self.principal: str = request.state.principal
         self._owner = secrets.token_hex(8)
         self._started = perf_counter()
@@ -48,7 +49,10 @@ class Once:
         request = self._request
         seen = [request.method, request.url.path, request.url.query]
         seen += [request.headers.get(name, "") for name in ("content-type", "accept")]
-        return hashlib.sha256("\n".join(seen).encode() + b"\n" + self._raw).hexdigest()
+        found = hashlib.sha256("\n".join(seen).encode() + b"\n")
+        for piece in self._body():
+            found.update(piece)
+        return found.hexdigest()
 
     def run(self, prepare: Callable[[], Commit]) -> Response:
         """Prepare without writing, then commit in one transaction. Raises Refused 409, 422 or 503 (took too long)."""
@@ -74,8 +78,11 @@ class Once:
                 continue
         raise Refused(409, "conflict", "others keep changing this resource; try again", headers={"Retry-After": "1"})
 
-    def compute(self, work: Callable[[], Answer]) -> Response:
-        """Work that stores nothing: the same request under the same key computes the same answer again."""
+    def compute(self, work: Callable[[], Answer | Stream]) -> Response:
+        """Work that stores nothing: the same request under the same key computes the same answer again.
+
+        The time limit of a stream is that of its beginning.
+        """
         known = self._claim() if self.key else None
         try:
             answer = work()
@@ -104,7 +111,7 @@ class Once:
             raise Refused(409, "idempotency-in-flight", detail, headers={"Retry-After": "1"})
         return entry
 
-    def _keep(self, connection: Connection, answer: Answer, body: bytes | None) -> None:
+    def _keep(self, connection: Connection, answer: Answer | Stream, body: bytes | None) -> None:
         if not self.key:
             return
         kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), body)
@@ -128,14 +135,20 @@ def _replayed(entry: idempotency.Entry) -> Response:
     return Response(entry.body, entry.status or 200, headers)
 
 
-async def once(
-    request: Request,
-    raw: RawBody,
-    store: StoreOf,
-    idempotency_key: Annotated[str | None, Header(min_length=1, max_length=255)] = None,
-) -> Once:
+IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
+
+
+async def once(request: Request, raw: RawBody, store: StoreOf, idempotency_key: IdempotencyKey = None) -> Once:
     """The Once of a request."""
-    return Once(request, raw, store, idempotency_key)
+    return Once(request, lambda: (raw,), store, idempotency_key)
+
+
+async def once_spooled(
+    request: Request, body: SpooledBody, store: StoreOf, idempotency_key: IdempotencyKey = None
+) -> Once:
+    """The Once of a request with a body of any size."""
+    return Once(request, body.pieces, store, idempotency_key)
 
 
 OnceOf = Annotated[Once, Depends(once)]
+OnceSpooled = Annotated[Once, Depends(once_spooled)]

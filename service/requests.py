@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import closing
 from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
+from fastapi.concurrency import run_in_threadpool
 
-from service import keys
+from service import arrays, arrow, keys
 from service.answers import FOR_EVER, REVALIDATE, Answer
 from service.problems import Refused
+from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
-
-NPZ = "application/x-npz"
 
 
 async def get_store(request: Request) -> Store:
@@ -28,28 +29,49 @@ StoreOf = Annotated[Store, Depends(get_store)]
 def needs(scope: str) -> Any:
     """The dependency of a route that only API keys with this scope may use."""
 
-    def authorise(request: Request, store: StoreOf) -> None:
-        with store.database.read() as connection:
-            principal = keys.authorise(connection, request.headers.get("authorization"), scope)
+    async def authorise(request: Request, store: StoreOf) -> None:
+        given = request.headers.get("authorization")
+        principal = store.authorisations.get(given, scope)
+        if principal is None:
+            principal = await run_in_threadpool(_authorised, store, given, scope)
         request.state.principal = principal
 
     return Depends(authorise)
 
 
+def _authorised(store: Store, given: str | None, scope: str) -> str:
+    with store.database.read() as connection:
+        principal = keys.authorise(connection, given, scope)
+    store.authorisations.put(given, scope, principal)
+    return principal
+
+
 async def raw_body(request: Request, store: StoreOf) -> bytes:
     """The request body, refused with 413 as soon as it exceeds its limit."""
+    return b"".join([chunk async for chunk in _limited(request, store.settings.limits.json_bytes)])
+
+
+async def spooled_body(request: Request, store: StoreOf) -> AsyncIterator[Spool]:
+    """The request body of any kind; the limit is that of its media type. 413 as soon as the body exceeds it."""
     limits = store.settings.limits
-    limit = limits.binary_bytes if media_type(request) == NPZ else limits.json_bytes
+    limit = {arrays.MEDIA_TYPE: limits.binary_bytes, arrow.MEDIA_TYPE: limits.stream_bytes}.get(
+        media_type(request), limits.json_bytes
+    )
+    with closing(Spool()) as body:
+        await body.fill(_limited(request, limit))
+        yield body
+
+
+async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
     declared = request.headers.get("content-length", "0")
     if declared.isdigit() and int(declared) > limit:
         raise _too_long(limit)
-    chunks, size = [], 0
+    size = 0
     async for chunk in request.stream():
         size += len(chunk)
         if size > limit:
             raise _too_long(limit)
-        chunks.append(chunk)
-    return b"".join(chunks)
+        yield chunk
 
 
 def _too_long(limit: int) -> Refused:
@@ -57,6 +79,7 @@ def _too_long(limit: int) -> Refused:
 
 
 RawBody = Annotated[bytes, Depends(raw_body)]
+SpooledBody = Annotated[Spool, Depends(spooled_body)]
 
 
 def media_type(request: Request) -> str:

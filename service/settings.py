@@ -26,7 +26,9 @@ class Limits(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     json_bytes: int = Field(2 * 2**20, gt=0, description="largest JSON request body, bytes")
-    binary_bytes: int = Field(64 * 2**20, gt=0, description="largest binary request or response body, bytes")
+    binary_bytes: int = Field(64 * 2**20, gt=0, description="largest npz body or Arrow record batch, bytes")
+    stream_bytes: int = Field(2**32, gt=0, description="largest Arrow request body, bytes; kept in a temporary file")
+    stream_states: int = Field(10**8, gt=0, description="most states of one Arrow request")
     program_nodes: int = Field(100_000, gt=0, description="most operations of a derived or coupled program")
     sync_seconds: float = Field(10.0, gt=0, description="longest time a request may compute, seconds")
     states: int = Field(1_000_000, gt=0, description="most states of one evaluation")
@@ -47,6 +49,7 @@ class Settings(BaseModel):
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
     cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
+    key_seconds: float = Field(1.0, ge=0, description="how long a checked API key is not checked again, seconds")
     limits: Limits = Limits()
 
     @property

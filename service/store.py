@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from service.cache import Cache
 from service.database import Connection, Database
 from service.kernels import Kernels
+from service.keys import Authorisations
 from service.metrics import Metrics
 from service.queries import content
 from service.queries.trees import Tree
@@ -29,6 +30,7 @@ class Store:
         self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
+        self.authorisations = Authorisations(settings.key_seconds)
 
     def part(self, connection: Connection, digest: str) -> Part | None:
         """The part with this digest, decoded; None when it is not stored."""

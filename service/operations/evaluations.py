@@ -1,4 +1,4 @@
-"""Numbers for many states: JSON or npz in and out."""
+"""Numbers for one state or many: limits, and JSON out."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import orjson
 
-from service.arrays import flat, read_npz, write_npz
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES, Engine, evaluate
+from substructures.evaluation import QUANTITIES
 from substructures.model import Model
 
 # dimensions of the answer for one state; what is not listed has one
@@ -22,31 +21,37 @@ _DIMENSIONS = {
     "kinetic_energy": 0,
     "potential_energy": 0,
 }
-_FLAT_INPUTS = ("inputs", "parameters")
 
 
-def compute(model: Model, request: Any, limits: Limits, engine: Engine) -> dict[str, Any]:
-    """Arrays by name, and ``failures``. Raises InvalidDocument, MissingValue, TooLarge."""
+def check_size(model: Model, request: Any, limits: Limits, streamed: bool = False) -> None:
+    """Refuse what would take too long or too much memory, before anything is computed.
+
+    ``streamed``: the answer leaves part by part and may have any size. Raises InvalidDocument, TooLarge.
+    """
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    check_size(model, request, limits)
-    return evaluate(model, request, limits.states, engine)
-
-
-def check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None:
-    """Refuse what would take too long or too much memory, before anything is computed."""
     states = _states(request.get("q")) or 1
-    given = request.get("quantities")
-    names = {name for name in given if isinstance(name, str)} & QUANTITIES.keys() if isinstance(given, list) else set()
-    needs = {output for name in names for output in QUANTITIES[name].needs}
+    needs = {output for name in _quantities(request) for output in QUANTITIES[name].needs}
     work = states * len(model.program.reachable(needs))
     if work > limits.evaluation_operations:
         raise TooLarge("the evaluation (states times operations)", work, limits.evaluation_operations)
+    size = states * bytes_per_state(model, request)
+    if size > limits.binary_bytes and not streamed:
+        raise TooLarge("the answer (in bytes)", size, limits.binary_bytes)
+
+
+def _quantities(request: Mapping[str, Any]) -> set[str]:
+    """Those that there are; unknown ones are refused later."""
+    given = request.get("quantities")
+    names = {name for name in given if isinstance(name, str)} if isinstance(given, list) else set()
+    return names & QUANTITIES.keys()
+
+
+def bytes_per_state(model: Model, request: Mapping[str, Any]) -> int:
+    """About the size of the results for one state."""
     n, frames = max(1, len(model.coordinates)), len(model.frames)
     sizes = {"kinematics": frames * (12 + 6 * n)} | {name: n**k for name, k in _DIMENSIONS.items()}
-    size = 8 * states * sum(sizes.get(name, n) for name in names)
-    if size > limits.binary_bytes:
-        raise TooLarge("the answer (in bytes)", size, limits.binary_bytes)
+    return max(1, 8 * sum(sizes.get(name, n) for name in _quantities(request)))
 
 
 def _states(q: Any) -> int | None:
@@ -57,27 +62,6 @@ def _states(q: Any) -> int | None:
         return max(map(len, lists)) if lists else None
     is_batch = bool(lists) and len(q) > 0 and isinstance(q[0], list | tuple | np.ndarray)
     return len(q) if is_batch else None
-
-
-def read_npz_request(data: bytes, limits: Limits) -> dict[str, Any]:
-    """A request from npz arrays: ``q, qd, qdd, t, quantities``, ``inputs.<name>`` and ``parameters.<name>``."""
-    request: dict[str, Any] = {}
-    for name, array in read_npz(data, limits.binary_bytes).items():
-        group, _, key = name.partition(".")
-        if array.dtype.kind == "U":
-            request[name] = array.tolist()
-        elif group in _FLAT_INPUTS and key:
-            request.setdefault(group, {})[key] = array
-        else:
-            request[name] = array
-    return request
-
-
-def as_npz(result: Mapping[str, Any]) -> bytes:
-    """The answer as npz; nested names are joined by dots, ``failures`` become parallel arrays."""
-    failures = result["failures"]
-    columns = {key: [str(f[key]) for f in failures] for key in ("quantity", "code", "message")}
-    return write_npz(flat({**result, "failures": {"state": [f["state"] for f in failures], **columns}}))
 
 
 def as_json(result: Mapping[str, Any], request: Mapping[str, Any]) -> bytes:

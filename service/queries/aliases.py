@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, bindparam, insert, select, update
 
 from service.queries.common import insert_missing, now
 from service.tables import alias_history, aliases
@@ -30,6 +30,14 @@ class Change:
     principal: str
 
 
+# built once: it is part of every answer that shows a version
+_ALIASES_OF = (
+    select(aliases.c.name, aliases.c.version, aliases.c.alias)
+    .where(aliases.c.name.in_(bindparam("names", expanding=True)))
+    .order_by(aliases.c.alias)
+)
+
+
 def get_alias(connection: Connection, name: str, alias: str) -> Alias | None:
     """One alias of a substructure."""
     rows = list_aliases(connection, name)
@@ -45,10 +53,9 @@ def list_aliases(connection: Connection, name: str) -> list[Alias]:
 
 def aliases_of(connection: Connection, *versions: tuple[str, int]) -> list[list[str]]:
     """For every (name, version) the aliases that point to it."""
-    columns = select(aliases.c.name, aliases.c.version, aliases.c.alias)
     names = {name for name, _ in versions}
     found: dict[tuple[str, int], list[str]] = {}
-    for name, version, alias in connection.execute(columns.where(aliases.c.name.in_(names)).order_by(aliases.c.alias)):
+    for name, version, alias in connection.execute(_ALIASES_OF, {"names": list(names)}):
         found.setdefault((name, version), []).append(alias)
     return [found.get(version, []) for version in versions]
 

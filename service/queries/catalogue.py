@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, and_, func, insert, or_, select, update
+from sqlalchemy import ColumnElement, Connection, Select, and_, bindparam, func, insert, or_, select, update
 
 from service.queries.common import insert_missing, now
 from service.references import Reference
@@ -93,17 +93,14 @@ def yank(connection: Connection, name: str, version: int, reason: str) -> None:
 
 def resolve(connection: Connection, ref: Reference) -> Version | None:
     """The version that a reference means; None when there is none (or, for a bare name, all are yanked)."""
-    query = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == ref.name)
     if ref.digest is not None:
-        query = query.where(versions.c.digest == ref.digest)
+        row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
     elif ref.number is not None:
-        query = query.where(versions.c.version == ref.number)
+        row = connection.execute(_BY_NUMBER, {"name": ref.name, "number": ref.number}).first()
     elif ref.alias is not None:
-        query = query.join(aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version))
-        query = query.where(aliases.c.alias == ref.alias)
+        row = connection.execute(_BY_ALIAS, {"name": ref.name, "alias": ref.alias}).first()
     else:
-        query = query.join(substructures, _is_latest())
-    row = connection.execute(query).first()
+        row = connection.execute(_LATEST, {"name": ref.name}).first()
     return None if row is None else Version(*row)
 
 
@@ -153,3 +150,13 @@ def _matching(query: Select[Any], search: Search, join_tags: bool = False) -> Se
     if search.joints is not None:
         query = query.where(parts.c.joints == search.joints)
     return query
+
+
+# Built once: to build a statement takes longer than to execute it.
+_NAMED = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == bindparam("name"))
+_BY_DIGEST = _NAMED.where(versions.c.digest == bindparam("digest"))
+_BY_NUMBER = _NAMED.where(versions.c.version == bindparam("number"))
+_BY_ALIAS = _NAMED.join(
+    aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version)
+).where(aliases.c.alias == bindparam("alias"))
+_LATEST = _NAMED.join(substructures, _is_latest())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, insert, select, update
 
 from service.queries.common import now
 from service.tables import api_keys
@@ -26,12 +26,12 @@ class ApiKey:
 
 def any_key(connection: Connection) -> bool:
     """Whether a key was ever created; expired and revoked ones count, so that a server never opens by itself."""
-    return connection.execute(select(api_keys.c.id).limit(1)).first() is not None
+    return connection.execute(_ANY).first() is not None
 
 
 def get_key(connection: Connection, identifier: str) -> ApiKey | None:
     """One key."""
-    row = connection.execute(_all().where(api_keys.c.id == identifier)).first()
+    row = connection.execute(_ONE, {"id": identifier}).first()
     return None if row is None else ApiKey(*row)
 
 
@@ -52,3 +52,7 @@ def revoke_key(connection: Connection, identifier: str) -> bool:
 
 def _all() -> Select[Any]:
     return select(*(api_keys.c[name] for name in ApiKey.__slots__))
+
+
+_ANY = select(api_keys.c.id).limit(1)
+_ONE = _all().where(api_keys.c.id == bindparam("id"))

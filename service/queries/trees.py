@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, and_, insert, select, update
+from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
 
 from service.queries.common import insert_missing, now
 from service.references import Reference
@@ -48,16 +48,14 @@ def add_revision(connection: Connection, row: Mapping[str, Any], parts: Mapping[
 
 def resolve(connection: Connection, ref: Reference) -> Tree | None:
     """The revision that a reference means, the latest for a bare name."""
-    query = _all().where(trees.c.name == ref.name)
     if ref.digest is not None:
-        query = query.where(trees.c.digest == ref.digest).order_by(trees.c.revision).limit(1)
+        row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
     elif ref.number is not None:
-        query = query.where(trees.c.revision == ref.number)
+        row = connection.execute(_BY_NUMBER, {"name": ref.name, "number": ref.number}).first()
     elif ref.alias is not None:
         return None
     else:
-        query = query.join(tree_names, _is_latest())
-    row = connection.execute(query).first()
+        row = connection.execute(_LATEST, {"name": ref.name}).first()
     return None if row is None else Tree(*row)
 
 
@@ -75,3 +73,10 @@ def _all() -> Select[Any]:
 
 def _is_latest() -> Any:
     return and_(tree_names.c.name == trees.c.name, tree_names.c.latest == trees.c.revision)
+
+
+# Built once: every request resolves a reference, and to build a statement takes longer than to execute it.
+_NAMED = _all().where(trees.c.name == bindparam("name"))
+_BY_DIGEST = _NAMED.where(trees.c.digest == bindparam("digest")).order_by(trees.c.revision).limit(1)
+_BY_NUMBER = _NAMED.where(trees.c.revision == bindparam("number"))
+_LATEST = _NAMED.join(tree_names, _is_latest())

@@ -6,56 +6,47 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
-from service.answers import Answer, etag, json_answer
+from service.answers import Answer, etag
+from service.arrays import MEDIA_TYPE as NPZ
+from service.arrow import MEDIA_TYPE as ARROW
 from service.negotiation import MEDIA_TYPES
-from service.once import OnceOf
-from service.operations import evaluations, models, trees
-from service.problems import Refused
-from service.requests import NPZ, RawBody, StoreOf, conditional, media_type, needs, require_json
+from service.once import OnceSpooled
+from service.operations import models, trees
+from service.operations.exchange import Evaluation, choose_media_type, read_requests
+from service.requests import SpooledBody, StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
 from service.schemas import EvaluationResult
-from substructures.documents import read_json
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
 READ = [needs("read")]
-BODY: dict[str, Any] = body_of("EvaluationRequest", others={NPZ: binary()})
-RESULT: dict[int | str, dict[str, Any]] = {200: {"content": {NPZ: binary()}}}
+BINARY = {NPZ: binary(), ARROW: binary()}
+BODY: dict[str, Any] = body_of("EvaluationRequest", others=BINARY)
+RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}}
 
 
 @router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
-def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: OnceOf) -> Response:
-    """Numbers for one state or many. JSON or npz by Content-Type; JSON or npz by Accept."""
-    limits = store.settings.limits
+def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once: OnceSpooled) -> Response:
+    """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
+
+    npz: arrays by the names of the JSON request, nested ones joined by dots (`inputs.tau.arm.q1`, `parameters.arm.m`).
+
+    Arrow: a row for each state; columns `q`, `qd`, `qdd` (lists of n doubles) or `q.<coordinate>`, `t`,
+    `inputs.<name>`, `parameters.<name>`; in the metadata of the schema, as JSON, `quantities` and what is the same for
+    all states. The stream may have any number of record batches (`stream_states`, `stream_bytes` in `/v1/limits`), each
+    at most `binary_bytes`, not compressed. The answer has fixed-size lists, row-major, with the `shape` in the metadata
+    of the field, null where a state has no result and the reason, as JSON, in the column `failures`; coordinates and
+    digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a
+    fault in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
+    """
+    sent = media_type(request)
+    wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
-
-    def work() -> Answer:
-        wanted = _request(request, raw, store)
-        result = {**evaluations.compute(model, wanted, limits, store.kernels), "digest": tree.digest}
-        if _wants_npz(request):
-            return Answer(200, evaluations.as_npz(result), {"Content-Type": NPZ})
-        return json_answer(evaluations.as_json(result, wanted))
-
-    return once.compute(work)
-
-
-def _request(request: Request, raw: bytes, store: StoreOf) -> Any:
-    if media_type(request) == NPZ:
-        return evaluations.read_npz_request(raw, store.settings.limits)
-    require_json(request)
-    return read_json(raw)
-
-
-def _wants_npz(request: Request) -> bool:
-    accept = request.headers.get("accept", "*/*")
-    if NPZ in accept:
-        return True
-    if "*" in accept or "json" in accept:
-        return "json" not in accept and media_type(request) == NPZ
-    raise Refused(406, "not-acceptable", f"answers are application/json or {NPZ}")
+    evaluation = Evaluation(model, tree.digest, store.settings.limits, store.kernels)
+    return once.compute(lambda: evaluation.answer(read_requests(body, sent, store.settings.limits), wanted))
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

@@ -76,7 +76,7 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    return Settings(database=f"sqlite:///{tmp_path / 'store.db'}", catalogue=False)
+    return Settings(database=f"sqlite:///{tmp_path / 'store.db'}", catalogue=False, key_seconds=0)
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from service import keys
+from service.keys import REMEMBERED, Authorisations
 from service.queries.common import now
 from service.queries.keys import list_keys, revoke_key
 from service.server import check_exposure
@@ -17,7 +18,7 @@ from service.settings import SettingsError
 from service.store import Store
 from service.tables import api_keys
 
-from .conftest import PENDULUM
+from .conftest import PENDULUM, make_client
 
 
 def new_key(store: Store, *scopes: str, days: float | None = None) -> dict[str, str]:
@@ -97,3 +98,27 @@ def test_refuses_to_be_open_to_others(store: Store, monkeypatch: pytest.MonkeyPa
         check_exposure(store)
     new_key(store, "read")
     check_exposure(store)
+
+
+def test_an_authorisation_is_remembered_for_its_time_only(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A revoked key works on for at most ``key_seconds``; refusals are never remembered."""
+    clock = [100.0]
+    monkeypatch.setattr("service.keys.monotonic", lambda: clock[0])
+    monkeypatch.setattr(store, "authorisations", Authorisations(seconds=1.0))
+    client = make_client(store)
+    key = new_key(store, "read")
+    assert client.get("/v1/trees", headers=key).status_code == 200
+    with store.database.write() as connection:
+        assert revoke_key(connection, list_keys(connection)[0].id)
+    assert client.get("/v1/trees", headers=key).status_code == 200
+    assert client.get("/metrics", headers={}).status_code == 401
+    assert client.post("/v1/trees", json={}, headers=key).status_code == 401  # another scope is another question
+    clock[0] += 1.0
+    assert client.get("/v1/trees", headers=key).status_code == 401
+
+
+def test_remembered_authorisations_are_few() -> None:
+    remembered = Authorisations(seconds=60.0)
+    for number in range(3 * REMEMBERED):
+        remembered.put(f"Bearer {number}", "read", "local")
+    assert len(remembered._known) <= REMEMBERED

@@ -1,0 +1,205 @@
+"""Large evaluations: requests from npz and Arrow, answered part by part as npz or Arrow, in bounded memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from typing import IO, Any
+
+import numpy as np
+import orjson
+from numpy.typing import NDArray
+
+from service import arrow
+from service.arrays import Member, flat, member, npz_pieces, read_npz
+from service.operations import evaluations
+from service.settings import Limits
+from substructures.documents import pointer_step, read_json
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.model import Model
+from substructures.states import Array, numeric, read_states
+
+PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
+#: fields whose columns may also be given one by one: ``q.<coordinate>``, ``parameters.<name>``, ...
+_GROUPS = ("q", "qd", "qdd", "inputs", "parameters")
+#: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
+_CONSTANTS = ("quantities", "parameters", "inputs", "t")
+_STATES = ("/q", "/qd", "/qdd", "/along/q", "/along/qd", "/along/qdd")
+
+Request = Mapping[str, Any]
+Evaluate = Callable[[Request], Mapping[str, Any]]
+
+
+def npz_request(file: IO[bytes], limits: Limits) -> dict[str, Any]:
+    """The request in an npz file: ``q, qd, qdd, t, quantities``, ``inputs.<name>``, ``parameters.<name>``, ..."""
+    arrays = read_npz(file, limits.binary_bytes)
+    return _request({}, {name: a.tolist() if a.dtype.kind == "U" else a for name, a in arrays.items()})
+
+
+def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
+    """One request for each record batch: arrays are columns, the rest JSON in the metadata of the schema."""
+    reader, states = arrow.Reader(file, limits.binary_bytes), 0
+    constants = {name: read_json(reader.metadata[name]) for name in _CONSTANTS if name in reader.metadata}
+    for columns in reader:
+        count = max((len(column) for column in columns.values()), default=0)
+        states += count
+        if states > limits.stream_states:
+            raise TooLarge("the number of states", states, limits.stream_states)
+        if count:
+            yield _request(constants, columns)
+    if not states:
+        raise InvalidDocument.at("/q", "missing", "the stream has no states")
+
+
+def _request(constants: Request, columns: Mapping[str, Any]) -> dict[str, Any]:
+    """The request with nested objects, from columns whose names are joined by dots."""
+    request = {name: dict(value) if isinstance(value, Mapping) else value for name, value in constants.items()}
+    for name, column in columns.items():
+        group, _, key = name.partition(".")
+        is_grouped = group in _GROUPS and key != ""
+        holder, place = (request.setdefault(group, {}), key) if is_grouped else (request, name)
+        if not isinstance(holder, dict) or place in holder:
+            raise InvalidDocument.at(pointer_step(name), "given-twice", f"'{name}' is given twice")
+        holder[place] = column
+    return request
+
+
+def joined(requests: Iterable[Request], limits: Limits) -> Request:
+    """One request of all record batches, for an answer in one piece. Raises TooLarge."""
+    kept, size = [], 0
+    for request in requests:
+        kept.append(request)
+        size += sum(column.nbytes for column in _arrays(request).values())
+        if size > limits.binary_bytes:
+            raise TooLarge("the request (in bytes; an answer as Arrow has no such limit)", size, limits.binary_bytes)
+    if len(kept) == 1:
+        return kept[0]
+    batches = [_arrays(request) for request in kept]
+    return _request({}, flat(kept[0]) | {name: np.concatenate([each[name] for each in batches]) for name in batches[0]})
+
+
+def _arrays(request: Any) -> dict[str, Array]:
+    columns = flat(request) if isinstance(request, Mapping) else {}
+    return {name: column for name, column in columns.items() if isinstance(column, np.ndarray)}
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """A request for ``count`` states, part by part; ``single``: for one state without a leading axis."""
+
+    count: int
+    single: bool
+    parts: Iterable[Request]
+
+
+def split(model: Model, request: Request, limits: Limits, rows: bool = False) -> Split:
+    """Check the numbers of a request, and cut it into parts whose results are of moderate size.
+
+    ``rows``: give a leading axis to a single state. Raises InvalidDocument.
+    """
+    states = read_states(model, request, limits.states)
+    if states.single:
+        return Split(1, not rows, [{**request, "q": states.q} if rows else request])
+    count, size = len(states.q), max(1, PART // evaluations.bytes_per_state(model, request))
+    fields = {name: _numbers(value, pointer_step(name)) for name, value in request.items() if name != "quantities"}
+    if not set(_lengths(fields, "")) <= {1, count}:  # the evaluation says which one is wrong
+        return Split(count, False, [request])
+    quantities = {"quantities": request.get("quantities")}
+    starts = range(0, max(1, count), size)
+    return Split(count, False, (_cut(fields, slice(i, i + size), count, "") | quantities for i in starts))
+
+
+def _numbers(value: Any, pointer: str) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _numbers(item, pointer + pointer_step(name)) for name, item in value.items()}
+    return numeric(value, pointer) if isinstance(value, list | tuple | np.ndarray) else value
+
+
+def _has_rows(value: Any, pointer: str) -> bool:
+    """Whether an array may have an entry for every state: (N, n) for states, (N,) for all others."""
+    return isinstance(value, np.ndarray) and value.ndim == (2 if pointer in _STATES else 1)
+
+
+def _lengths(fields: Mapping[str, Any], above: str) -> Iterator[int]:
+    for name, value in fields.items():
+        pointer = above + pointer_step(name)
+        if isinstance(value, Mapping):
+            yield from _lengths(value, pointer)
+        elif _has_rows(value, pointer):
+            yield len(value)
+
+
+def _cut(fields: Mapping[str, Any], some: slice, count: int, above: str) -> dict[str, Any]:
+    part = {}
+    for name, value in fields.items():
+        pointer = above + pointer_step(name)
+        if isinstance(value, Mapping):
+            part[name] = _cut(value, some, count, pointer)
+        else:
+            part[name] = value[some] if _has_rows(value, pointer) and len(value) == count else value
+    return part
+
+
+def as_npz(evaluate: Evaluate, cut: Split, quantities: Iterable[str]) -> Iterator[memoryview]:
+    """The answer as npz: arrays by quantity, nested names joined by dots, ``failures`` as parallel arrays.
+
+    The first array is sent while it is computed, the others are kept until then.
+    """
+    answers = map(evaluate, cut.parts)
+    first = next(answers)
+    names = list(dict.fromkeys(quantities))
+    found = flat({name: first[name] for name in names})
+    head, *others = found
+    kept: dict[str, list[Array]] = {name: [] for name in others}
+    failures: list[dict[str, Any]] = []
+
+    def rows() -> Iterator[Array]:
+        start = 0
+        for answer in chain([first], answers):
+            columns = flat({name: answer[name] for name in names})
+            for name in others:
+                kept[name].append(columns[name])
+            failures.extend({**failure, "state": start + failure["state"]} for failure in answer["failures"])
+            start += answer["count"]
+            yield columns[head]
+
+    def members() -> Iterator[Member]:
+        for name, value in flat(_without(first, names) | {"count": cut.count}).items():
+            yield member(name, value)
+        for name, some in {head: rows(), **kept}.items():
+            shape = found[name].shape
+            yield Member(name, shape if cut.single else (cut.count, *shape[1:]), np.dtype(np.float64), some)
+        yield member("failures.state", np.array([failure["state"] for failure in failures], np.int64))
+        for key in ("quantity", "code", "message"):
+            yield member(f"failures.{key}", np.array([failure[key] for failure in failures], np.str_))
+
+    return npz_pieces(members())
+
+
+def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """What an answer says beside the quantities and failures: coordinates, digest, ..."""
+    return {key: value for key, value in answer.items() if key not in {*names, "failures"}}
+
+
+def as_arrow(evaluate: Evaluate, cuts: Iterable[Split], quantities: Iterable[str]) -> Iterator[memoryview | bytes]:
+    """The answer as an Arrow stream: a record batch for every part, null where a state has no result."""
+    names = list(dict.fromkeys(quantities))
+    answers = (evaluate(part) for cut in cuts for part in cut.parts)
+    first = next(answers)
+    metadata = {**_without(first, [*names, "count"]), "quantities": names}
+    return arrow.write_tables((_table(answer, names) for answer in chain([first], answers)), metadata)
+
+
+def _table(answer: Mapping[str, Any], names: Iterable[str]) -> arrow.Table:
+    columns, count = flat({name: answer[name] for name in names}), answer["count"]
+    failures: dict[int, list[dict[str, Any]]] = {}
+    missing: dict[str, NDArray[np.bool_]] = {}
+    for failure in answer["failures"]:
+        state, quantity = failure["state"], failure["quantity"]
+        failures.setdefault(state, []).append({key: value for key, value in failure.items() if key != "state"})
+        for name in columns:
+            if name == quantity or name.startswith(f"{quantity}."):
+                missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
+    notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
+    return arrow.Table(columns, missing, notes)

@@ -1,0 +1,88 @@
+"""Evaluations in the format of the request and of the answer: JSON, npz, Arrow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+from service import arrays, arrow
+from service.answers import JSON, Answer, Stream, json_answer, streamed
+from service.negotiation import by_preference
+from service.operations import batches, evaluations
+from service.operations.batches import Request, Split
+from service.problems import Refused
+from service.settings import Limits
+from service.spool import Spool
+from substructures.documents import read_json
+from substructures.evaluation import Engine, evaluate
+from substructures.model import Model
+
+MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
+_KNOWN = ", ".join(MEDIA_TYPES)
+_EXTRA = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use application/x-npz"
+
+
+def choose_media_type(accept: str, sent: str) -> str:
+    """The media type of the answer; that of the request if all are welcome. Raises Refused 406."""
+    for pattern in by_preference(accept or "*/*"):
+        found = next((media for media in (sent, *MEDIA_TYPES) if _matches(pattern, media)), None)
+        if found == arrow.MEDIA_TYPE and not arrow.is_available():
+            raise Refused(406, "arrow-not-installed", _EXTRA)
+        if found is not None:
+            return found
+    raise Refused(406, "not-acceptable", f"answers are {_KNOWN}")
+
+
+def _matches(pattern: str, media: str) -> bool:
+    return media in MEDIA_TYPES and pattern in ("*/*", "application/*", media)
+
+
+def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
+    """The request, or the requests for one batch of states after the other. Raises InvalidDocument, Refused 415."""
+    body.seek(0)
+    if sent == arrays.MEDIA_TYPE:
+        return [batches.npz_request(body, limits)]
+    if sent == arrow.MEDIA_TYPE:
+        if not arrow.is_available():
+            raise Refused(415, "arrow-not-installed", _EXTRA)
+        return batches.arrow_requests(body, limits)
+    if sent == JSON:
+        return [read_json(body.read())]
+    raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """Evaluates a tree in the format wanted."""
+
+    model: Model
+    digest: str
+    limits: Limits
+    engine: Engine
+
+    def answer(self, requests: Iterable[Any], wanted: str) -> Answer | Stream:
+        """The answer to requests. Raises InvalidDocument, MissingValue, TooLarge, all before the first byte is sent
+        unless the requests come one by one.
+        """
+        if wanted == arrow.MEDIA_TYPE:
+            return streamed(self._arrow(iter(requests)), wanted)
+        request = batches.joined(requests, self.limits)
+        evaluations.check_size(self.model, request, self.limits)
+        if wanted == arrays.MEDIA_TYPE:
+            cut = batches.split(self.model, request, self.limits)
+            return streamed(batches.as_npz(self._evaluated, cut, request.get("quantities", ())), wanted)
+        return json_answer(evaluations.as_json(self._evaluated(request), request))
+
+    def _arrow(self, requests: Iterator[Any]) -> Iterator[memoryview | bytes]:
+        first = next(requests)
+        cuts = chain([self._cut(first)], map(self._cut, requests))
+        return batches.as_arrow(self._evaluated, cuts, first.get("quantities", ()))
+
+    def _cut(self, request: Any) -> Split:
+        evaluations.check_size(self.model, request, self.limits, streamed=True)
+        return batches.split(self.model, request, self.limits, rows=True)
+
+    def _evaluated(self, request: Request) -> dict[str, Any]:
+        return {**evaluate(self.model, request, self.limits.states, self.engine), "digest": self.digest}
