@@ -57,7 +57,8 @@ class _Reduction:
         self.p = [f.graph.symbol(f"p.{names[c]}") for c in self.cyclic]
         self.units = ["kg m^2/s" if f.model.joints[c] == "R" else "kg m/s" for c in self.cyclic]
         self.g = f.elements("metric")
-        block = {(i, j): self.g[a, b] for i, a in enumerate(cyclic) for j, b in enumerate(cyclic) if (a, b) in self.g}
+        pairs = [(i, j, (a, b)) for i, a in enumerate(cyclic) for j, b in enumerate(cyclic)]
+        block: Entries = {(i, j): self.g[ab] for i, j, ab in pairs if ab in self.g}
         factors = Factors(block, [names[c] for c in cyclic])
         # columns of P by coordinate of the model, and w
         self.P = [self._column(factors, r) for r in self.rest]
