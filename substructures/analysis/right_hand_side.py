@@ -7,15 +7,14 @@ algebra. W' is the power of the forces without potential; H - W is constant for 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.known import Known, program_kernel
 from substructures.analysis.signals import Curve
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
@@ -23,14 +22,6 @@ from substructures.model import Model
 
 Array = NDArray[np.float64]
 ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What a kernel is made from, recognised by its digest."""
-
-    digest: str
-    source: Any = field(compare=False)
 
 
 def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
@@ -49,23 +40,13 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
 
 
 @lru_cache(maxsize=64)
-def _forward_kernel(model: _Known, zero: frozenset[str], folder: Path | None) -> Kernel:
+def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
     return compile_program(forward_dynamics(model.source, zero), (ACCELERATION, PIVOTS, POWER), folder)
-
-
-@lru_cache(maxsize=256)
-def _kernel(known: _Known, folder: Path | None) -> Kernel:
-    return compile_program(known.source, tuple(known.source.outputs), folder)
 
 
 def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None) -> Kernel:
     """The compiled forward_dynamics(model, zero); the same object for the same model. Raises as forward_dynamics."""
-    return _forward_kernel(_Known(model.program.digest, model), frozenset(zero), folder)
-
-
-def program_kernel(source: Program, folder: Path | None = None) -> Kernel:
-    """A compiled program with all its outputs; the same object for the same program."""
-    return _kernel(_Known(source.digest, source), folder)
+    return _forward_kernel(Known(model.program.digest, model), frozenset(zero), folder)
 
 
 class RightHandSide:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from substructures.analysis.expressions import Given, read_expressions
 from substructures.analysis.requests import SimulationRequest, Table
 from substructures.definition import escape
 from substructures.errors import InvalidDocument
-from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, Program, Symbol, program
+from substructures.expr.program import Program
 from substructures.model import Model
-from substructures.scope import Scope
 
 
 class Curve:
@@ -70,32 +69,12 @@ def expressions(model: Model, request: SimulationRequest) -> Program:
 
     Raises InvalidDocument with a pointer to every fault.
     """
-    scope = Scope(Graph())
-    lookup = _names(model, scope)
-    groups = {
-        "inputs": [scope.read(request.inputs[x], f"/inputs/{escape(x)}", lookup) for x in formulas_of(request)],
-        "events": [scope.read(e.quantity, f"/events/{i}/quantity", lookup) for i, e in enumerate(request.events)],
-        "series": [scope.read(x, f"/series/{escape(name)}", lookup) for name, x in request.series.items()],
+    groups: dict[str, Given] = {
+        "inputs": [(request.inputs[name], f"/inputs/{escape(name)}") for name in formulas_of(request)],
+        "events": [(e.quantity, f"/events/{i}/quantity") for i, e in enumerate(request.events)],
+        "series": [(x, f"/series/{escape(name)}") for name, x in request.series.items()],
     }
-    scope.finish()
-    outputs = {name: Formulas((len(x),), {(i,): e for i, e in enumerate(x)}) for name, x in groups.items()}
-    return program(scope.graph, outputs, scope.symbols)
-
-
-def _names(model: Model, scope: Scope) -> Callable[[str], Expr | None]:
-    """Coordinates, velocities, parameters and t; a symbol is declared when it is first used."""
-    kinds: dict[str, Symbol] = {"t": Symbol("t", "time", "s")}
-    kinds |= {name: Symbol(name, "coordinate") for name in model.coordinates}
-    kinds |= {f"{name}'": Symbol(f"{name}'", "velocity") for name in model.coordinates}
-    kinds |= {name: Symbol(name, "parameter", str(p.get("unit", ""))) for name, p in model.parameters.items()}
-
-    def lookup(name: str) -> Expr | None:
-        if name not in kinds:
-            return None
-        symbol = kinds[name]
-        return scope.declare(name, symbol.kind, symbol.unit)
-
-    return lookup
+    return read_expressions(model, groups)
 
 
 def constants(request: SimulationRequest) -> dict[str, float]:

@@ -15,8 +15,9 @@ from substructures.analysis.first_integrals import FirstIntegrals, first_integra
 from substructures.analysis.fixed_step import march
 from substructures.analysis.integrate import Motion, Progress, Settings, Watch, integrate
 from substructures.analysis.judges import States, integral_series, judge
+from substructures.analysis.known import program_kernel
 from substructures.analysis.requests import SimulationRequest
-from substructures.analysis.right_hand_side import RightHandSide, is_definite, program_kernel
+from substructures.analysis.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.signals import Curve, break_times, constants, expressions, formulas_of, read_curves
 from substructures.analysis.trajectory import Crossing, Trajectory
 from substructures.definition import escape
