@@ -72,7 +72,7 @@ def simulate(
     their names, and what the request asks for. What goes wrong on the way is a trajectory with status ``failed``,
     advice, and the motion up to there. Raises InvalidDocument (pointers into the request) and MissingValue.
     """
-    setup = _read(model, SimulationRequest.read(request))
+    setup = read_setup(model, SimulationRequest.read(request))
     try:
         formulas = (setup.source, formulas_of(setup.request))
         f = RightHandSide(model, setup.values, setup.zero, formulas, setup.curves, folder)
@@ -90,7 +90,8 @@ def simulate(
     return _judged(setup, f, *_moved(setup, f, x, progress, folder))
 
 
-def _read(model: Model, request: SimulationRequest) -> Setup:
+def read_setup(model: Model, request: SimulationRequest) -> Setup:
+    """Check a request against a model. Raises InvalidDocument and MissingValue."""
     states = read_states(model, {"q": request.q, "qd": request.qd}, 1)
     curves, source = read_curves(model, request), expressions(model, request)
     fixed = constants(request)

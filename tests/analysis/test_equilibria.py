@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from models import catalogue_model, random_model
+from analysis_models import catalogue_model, random_model
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from models import catalogue_model, random_model, values_at
+from analysis_models import catalogue_model, random_model, values_at
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
 from substructures import InvalidDocument, Model

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from models import catalogue_model, random_model, values_at
+from analysis_models import catalogue_model, random_model, values_at
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument, Model, Program

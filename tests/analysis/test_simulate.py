@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from models import catalogue_model, defaults, random_model
+from analysis_models import catalogue_model, defaults, random_model
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument, MissingValue
