@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.known import Known
 from substructures.errors import InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
@@ -56,9 +58,14 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
     Raises InvalidDocument for a coordinate without inertia.
     """
-    given = frozenset(inputs)
+    return _first_integrals(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
+
+
+@lru_cache(maxsize=256)
+def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) -> FirstIntegrals:
+    model: Model = known.source
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
-    f = ModelFormulas(model, unused | set(zero))
+    f = ModelFormulas(model, unused | zero)
     search = _Search(f)
     search.energy(given)
     search.momenta()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -28,12 +29,15 @@ PATIENCE, TINY = 200, 1e-12
 
 @dataclass(frozen=True)
 class Settings:
-    """Of the integrator."""
+    """``stepper``: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver."""
 
-    method: str
-    rtol: float
-    atol: float
+    stepper: Callable[[Function, float, Array, float], Any]
     max_steps: int
+
+
+def scipy_stepper(method: str, rtol: float, atol: float) -> Callable[[Function, float, Array, float], Any]:
+    """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
+    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol)
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,7 @@ class _Run:
         """Integrate from start to end; the last state."""
         s, motion = self.settings, self.motion
         try:
-            solver = METHODS[s.method](self.f, start, x, end, rtol=max(s.rtol, 1e-13), atol=s.atol)
+            solver = s.stepper(self.f, start, x, end)
             while solver.status == "running" and motion.status == "finished":
                 message = solver.step()
                 if solver.status == "failed":

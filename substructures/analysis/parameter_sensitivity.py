@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
-from substructures.analysis.integrate import Settings, integrate
+from substructures.analysis.integrate import Settings, integrate, scipy_stepper
 from substructures.analysis.known import Known, program_kernel
 from substructures.analysis.perturbation import require_smooth
-from substructures.analysis.requests import SimulationRequest
+from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.signals import break_times, formulas_of
 from substructures.analysis.simulate import Report, Setup, read_setup
 from substructures.analysis.trajectory import Trajectory
@@ -113,7 +113,7 @@ def sensitivities(
     _require_plain(setup)
     f = _Variation(setup, parameters, of_start, folder)
     settings = setup.request
-    tolerances = (settings.relative_tolerance, settings.absolute_tolerance, settings.max_steps)
+    stepper = scipy_stepper(settings.method, settings.relative_tolerance, settings.absolute_tolerance)
     start, end = settings.span
 
     def told(t: float) -> bool | None:
@@ -124,7 +124,7 @@ def sensitivities(
         f.start(),
         settings.span,
         settings.outputs(),
-        Settings(settings.method, *tolerances),
+        Settings(stepper, settings.max_steps),
         breaks=break_times(setup.curves, settings.span),
         progress=told,
     )
@@ -147,6 +147,8 @@ def _require_plain(setup: Setup) -> None:
         for name in ("events", "fixed_step", "series")
         if getattr(request, name)
     ]
+    if request.method == TAYLOR:
+        faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
     named = {s.name for s in setup.source.symbols if s.kind != "time"}
     if named:
         culprits = ", ".join(f"'{name}'" for name in sorted(named))

@@ -33,7 +33,8 @@ def _real(value: Any) -> Any:
 
 Real = Annotated[float, BeforeValidator(_real), WithJsonSchema({"type": "number"})]
 Positive = Annotated[Real, Field(gt=0)]
-Method = Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"]
+TAYLOR = "Taylor"
+Method = Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"]
 
 
 class Table(Model):

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.fixed_step import march
-from substructures.analysis.integrate import Motion, Progress, Settings, Watch, integrate
+from substructures.analysis.integrate import Motion, Progress, Settings, Watch, integrate, scipy_stepper
 from substructures.analysis.judges import States, integral_series, judge
 from substructures.analysis.known import program_kernel
-from substructures.analysis.requests import SimulationRequest
+from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.signals import Curve, break_times, constants, expressions, formulas_of, read_curves
+from substructures.analysis.taylor import require_taylor, taylor_stepper
 from substructures.analysis.trajectory import Crossing, Trajectory
 from substructures.definition import escape
 from substructures.errors import Fault, InvalidDocument
@@ -95,6 +96,8 @@ def read_setup(model: Model, request: SimulationRequest) -> Setup:
     states = read_states(model, {"q": request.q, "qd": request.qd}, 1)
     curves, source = read_curves(model, request), expressions(model, request)
     fixed = constants(request)
+    if request.method == TAYLOR and request.fixed_step is None:
+        require_taylor(list(curves))
     faults = [
         Fault(f"/parameters/{escape(name)}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
         for name in request.parameters
@@ -131,12 +134,18 @@ def _moved(
         motion, pace = march(f, f.n, x, request.span, outputs, request.fixed_step, request.max_steps, told)
         figures |= {"real_time_factor": pace.factor, "longest_step": pace.longest}
     else:
-        tolerances = (request.relative_tolerance, request.absolute_tolerance, request.max_steps)
-        settings = Settings(request.method, *tolerances)
+        settings = Settings(_stepper(setup, f), request.max_steps)
         breaks = break_times(setup.curves, request.span)
         watches = _watches(setup, folder)
         motion = integrate(f, x, request.span, outputs, settings, watches, breaks, told)
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
+
+
+def _stepper(setup: Setup, f: RightHandSide) -> Callable[..., Any]:
+    request, formulas = setup.request, (setup.source, formulas_of(setup.request))
+    if request.method == TAYLOR:
+        return taylor_stepper(setup.model, setup.values, setup.zero, formulas, request.relative_tolerance, f.has_power)
+    return scipy_stepper(request.method, request.relative_tolerance, request.absolute_tolerance)
 
 
 def _watches(setup: Setup, folder: Path | None) -> list[Watch]:
