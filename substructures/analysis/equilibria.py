@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import least_squares
 
+from substructures.analysis.formulas import require_motion
 from substructures.analysis.known import program_kernel
 from substructures.analysis.linearise import Linearisation, linearise
 from substructures.analysis.perturbation import perturbation
@@ -71,6 +72,7 @@ def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equili
 
     Raises InvalidDocument (pointers; ``not-smooth``) and MissingValue.
     """
+    require_motion(model)
     read = read_model(EquilibriaRequest, request or {})
     search = _Search(model, read)
     starts = search.starts()

@@ -17,6 +17,12 @@ LENGTH = {"R": "rad", "P": "m"}
 Entries = dict[tuple[int, ...], Expr]
 
 
+def require_motion(model: Model) -> None:
+    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves."""
+    if not model.dof:
+        raise InvalidDocument.at("", "no-coordinates", "the tree has no joint: there is nothing that moves")
+
+
 class ModelFormulas:
     """Outputs of a model with all dependent elements; the symbols ``zero`` are put to 0.
 

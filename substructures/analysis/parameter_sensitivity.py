@@ -21,8 +21,8 @@ from substructures.analysis.integrate import Settings, integrate, scipy_stepper
 from substructures.analysis.known import Known, program_kernel
 from substructures.analysis.perturbation import require_smooth
 from substructures.analysis.requests import TAYLOR, SimulationRequest
-from substructures.analysis.signals import break_times, formulas_of
 from substructures.analysis.simulate import Report, Setup, read_setup
+from substructures.analysis.time_inputs import break_times, formulas_of
 from substructures.analysis.trajectory import Trajectory
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
 from substructures.analysis.known import Known, program_kernel
-from substructures.analysis.signals import Curve
+from substructures.analysis.time_inputs import Curve
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
 from substructures.model import Model

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.fixed_step import march
+from substructures.analysis.formulas import require_motion
 from substructures.analysis.integrate import Motion, Progress, Settings, Watch, integrate, scipy_stepper
 from substructures.analysis.judges import States, integral_series, judge
 from substructures.analysis.known import program_kernel
 from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.right_hand_side import RightHandSide, is_definite
-from substructures.analysis.signals import Curve, break_times, constants, expressions, formulas_of, read_curves
 from substructures.analysis.taylor import require_taylor, taylor_stepper
+from substructures.analysis.time_inputs import Curve, break_times, constants, expressions, formulas_of, read_curves
 from substructures.analysis.trajectory import Crossing, Trajectory
 from substructures.definition import escape
 from substructures.errors import Fault, InvalidDocument
@@ -93,6 +94,7 @@ def simulate(
 
 def read_setup(model: Model, request: SimulationRequest) -> Setup:
     """Check a request against a model. Raises InvalidDocument and MissingValue."""
+    require_motion(model)
     states = read_states(model, {"q": request.q, "qd": request.qd}, 1)
     curves, source = read_curves(model, request), expressions(model, request)
     fixed = constants(request)

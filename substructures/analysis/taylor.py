@@ -75,7 +75,8 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     model = system.model
     dynamics = forward_dynamics(model, system.zero)
     states = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-    x = dict(zip(states, heyoka.make_vars(*(f"x{i}" for i in range(len(states)))), strict=True))
+    *variables, work = heyoka.make_vars(*(f"x{i}" for i in range(len(states) + 1)))
+    x = dict(zip(states, variables, strict=True))
     used = dict.fromkeys(s.name for program in (dynamics, system.source) for s in program.symbols)
     names = tuple(n for n in used if n not in x and n != "t" and n not in system.inputs)
     known = x | {"t": heyoka.time} | {name: heyoka.par[i] for i, name in enumerate(names)}
@@ -91,7 +92,6 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     equations = [(x[c], x[f"{c}'"]) for c in model.coordinates]
     equations += [(x[f"{c}'"], row) for c, row in zip(model.coordinates, rows, strict=True)]
     if system.has_power:
-        (work,) = heyoka.make_vars("w")
         equations.append((work, nodes[dynamics.outputs[POWER].entries[0]]))
     start = [0.0] * len(equations)
     pars = [0.0] * len(names)

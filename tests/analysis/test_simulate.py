@@ -12,6 +12,8 @@ from analysis_models import catalogue_model, defaults, random_model
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument, MissingValue
+from substructures.analysis.equilibria import equilibria
+from substructures.analysis.linearise import linearise
 from substructures.analysis.right_hand_side import RightHandSide, forward_kernel
 from substructures.analysis.simulate import simulate
 from substructures.analysis.trajectory import Trajectory
@@ -283,6 +285,14 @@ def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
     with pytest.raises(InvalidDocument) as error:
         simulate(catalogue_model("double-pendulum"), {"q": [0, 0], "span": [0, 1]} | changes)
     assert error.value.faults[0].pointer == pointer
+
+
+def test_nothing_that_moves() -> None:
+    """A camera on the wall can neither be simulated nor linearised."""
+    model = catalogue_model("camera")
+    for call in (simulate, linearise, lambda m, _: equilibria(m)):
+        with pytest.raises(InvalidDocument, match="nothing that moves"):
+            call(model, {"q": [], "span": [0, 1]})
 
 
 def test_a_parameter_without_value_is_missing() -> None:
