@@ -66,6 +66,11 @@ class Equilibria:
     held: tuple[str, ...]
     message: str = ""
 
+    def summary(self) -> dict[str, Any]:
+        """As plain data and arrays."""
+        found = [{"q": e.q, "free": e.free, "at": e.at.summary()} for e in self.found]
+        return {"found": found, "held": list(self.held), "message": self.message}
+
 
 def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equilibria:
     """Equilibria of a model; ``request``: see EquilibriaRequest.

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 from substructures.analysis.formulas import ModelFormulas
 from substructures.analysis.known import Known
-from substructures.errors import InvalidDocument
+from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
@@ -51,13 +51,27 @@ class FirstIntegrals:
     integrals: tuple[Integral, ...]
     cyclic: tuple[str, ...]
 
+    def summary(self) -> dict[str, Any]:
+        """Names, units and reasons as plain data; the formulas are in the program."""
+        return {"integrals": [vars(i) for i in self.integrals], "cyclic": list(self.cyclic)}
+
 
 def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = ()) -> FirstIntegrals:
     """Everything constant that follows from symmetry, with the energy (also where it is not constant).
 
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
-    Raises InvalidDocument for a coordinate without inertia.
+    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
+    known = {s.name for s in model.program.symbols if s.kind == "input"}
+    inputs, zero = list(inputs), list(zero)
+    faults = [
+        Fault(f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
+        for field, names, some in (("inputs", inputs, known), ("parameters", zero, model.parameters))
+        for name in names
+        if name not in some
+    ]
+    if faults:
+        raise InvalidDocument(faults)
     return _first_integrals(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
 
 

@@ -87,8 +87,12 @@ def integrate(
     watches: Sequence[Watch] = (),
     breaks: Sequence[float] = (),
     progress: Progress | None = None,
+    enter: Callable[[float, float], None] | None = None,
 ) -> Motion:
-    """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``."""
+    """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``.
+
+    ``enter``: told the times between which f is called next, from break to break.
+    """
     run = _Run(f, span, outputs, settings, watches, progress)
     motion = run.motion
     motion.step_t.append(span[0])
@@ -99,6 +103,8 @@ def integrate(
     start = span[0]
     with np.errstate(all="ignore"):
         for end in ends:
+            if enter is not None:
+                enter(start, end)
             x = run.segment(start, x, end)
             if motion.status != "finished":
                 break

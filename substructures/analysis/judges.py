@@ -39,7 +39,7 @@ def integral_series(model: Model, integrals: FirstIntegrals, states: States) -> 
     source = integrals.program
     found = interpret_in_blocks(source, states.symbols(model), list(source.outputs), len(states.t))
     series = {name: np.broadcast_to(x, states.t.shape).copy() for name, x in found.items()}
-    if not source.outputs["power"].entries:
+    if not source.outputs["power"].entries or "energy" not in series:
         del series["power"]
     return series
 
@@ -59,7 +59,7 @@ def judge(model: Model, integrals: FirstIntegrals, states: States, limit: float)
         entry = replace(integral, name="energy-balance", reason=reason)
         scale = max(scale, float(np.abs(states.work).max(initial=0)))
         checks.append(_check(entry, "constant", balanced - balanced[:1], states.t, scale, limit))
-        power = series.get("power", np.zeros(1))
+        power = series["power"]
         if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
             rise = value - np.minimum.accumulate(value)
             entry = replace(integral, reason="the power of all forces without potential is nowhere positive")

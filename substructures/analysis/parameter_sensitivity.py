@@ -127,6 +127,7 @@ def sensitivities(
         Settings(stepper, settings.max_steps),
         breaks=break_times(setup.curves, settings.span),
         progress=told,
+        enter=f.enter,
     )
     n, k = model.dof, len(parameters)
     x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
@@ -190,6 +191,11 @@ class _Variation:
         if self.of_start:
             rows[-2 * self.n :] = np.eye(2 * self.n)
         return rows.ravel()
+
+    def enter(self, start: float, end: float) -> None:
+        """Times are between two breaks of the curves until the next call."""
+        for curve in self.setup.curves.values():
+            curve.enter(start, end)
 
     def __call__(self, t: float, flat: Array) -> Array:
         rows = flat.reshape(self.columns + 1, 2 * self.n)

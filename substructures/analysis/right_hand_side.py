@@ -90,6 +90,16 @@ class RightHandSide:
         """Length of x: 2 n, and one for W where there is any power."""
         return 2 * self.n + self.has_power
 
+    def enter(self, start: float, end: float) -> None:
+        """Times are between two breaks of the curves until the next call."""
+        for curve in self.curves.values():
+            curve.enter(start, end)
+
+    def leave(self) -> None:
+        """Any time again."""
+        for curve in self.curves.values():
+            curve.leave()
+
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""
         self._t[0] = t

@@ -46,6 +46,11 @@ class RootLocus:
     status: str = "finished"
     message: str = ""
 
+    def summary(self) -> dict[str, Any]:
+        """As plain data and arrays; eigenvalues as pairs, (N, 2n, 2)."""
+        pairs = np.stack([self.eigenvalues.real, self.eigenvalues.imag], axis=-1)
+        return {**vars(self), "eigenvalues": pairs, "stability": list(self.stability)}
+
 
 def root_locus(model: Model, request: Mapping[str, Any]) -> RootLocus:
     """Eigenvalues of x' = A x over the values of a parameter, in branches that change least from value to value.

@@ -139,7 +139,8 @@ def _moved(
         settings = Settings(_stepper(setup, f), request.max_steps)
         breaks = break_times(setup.curves, request.span)
         watches = _watches(setup, folder)
-        motion = integrate(f, x, request.span, outputs, settings, watches, breaks, told)
+        motion = integrate(f, x, request.span, outputs, settings, watches, breaks, told, f.enter)
+        f.leave()
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
 
 
@@ -210,7 +211,7 @@ def _states(setup: Setup, f: RightHandSide, times: list[float], rows: list[Array
 def _series(setup: Setup, f: RightHandSide, integrals: FirstIntegrals, states: States) -> dict[str, Array]:
     request = setup.request
     series = integral_series(setup.model, integrals, states)
-    if f.has_power:
+    if f.has_power and "energy" in series:
         series["work"] = states.work
     series |= {name: np.asarray(states.values[name]) for name in setup.varying}
     if request.series:

@@ -24,10 +24,22 @@ class Curve:
         self.pieces = _pieces(table)
         #: where the curve, or its slope, jumps
         self.breaks = [] if table.interpolation == "cubic" else self.times[1:-1]
+        self._piece: int | None = None
+
+    def enter(self, start: float, end: float) -> None:
+        """Until the next call times lie between two breaks: at both the value is the limit from inside."""
+        self._piece = self._at((start + end) / 2) if self.breaks else None
+
+    def leave(self) -> None:
+        """Any time again."""
+        self._piece = None
+
+    def _at(self, t: float) -> int:
+        return min(max(bisect_right(self.times, t) - 1, 0), len(self.pieces) - 1)
 
     def __call__(self, t: float) -> float:
         """The value at t, in the table's range."""
-        k = min(max(bisect_right(self.times, t) - 1, 0), len(self.pieces) - 1)
+        k = self._at(t) if self._piece is None else self._piece
         x, value = t - self.times[k], 0.0
         for c in self.pieces[k]:
             value = value * x + c

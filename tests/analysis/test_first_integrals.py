@@ -66,6 +66,7 @@ def test_known_machines(name: str, gravity: Any, expected: set[str]) -> None:
 def test_every_integral_has_unit_and_reason() -> None:
     found = first_integrals(catalogue_model("satellite"))
     assert {i.unit for i in found.integrals} == {"J", "N s", "N m s"}
+    assert found.summary()["integrals"][0]["name"] == "energy"
     assert all(len(i.reason) > 20 for i in found.integrals)
     assert set(found.program.outputs) == {i.name for i in found.integrals} | {"power"}
 
@@ -190,6 +191,24 @@ def test_a_coordinate_that_is_not_cyclic_is_refused() -> None:
     assert error.value.faults[0].pointer == "/coordinates/0"
     with pytest.raises(InvalidDocument, match="no cyclic coordinate"):
         routh(catalogue_model("simple-pendulum"))
+
+
+def test_unknown_names_are_refused() -> None:
+    model = catalogue_model("simple-pendulum")
+    for given, pointer in (({"inputs": ["tau.y"]}, "/inputs"), ({"zero": ["x.nothing"]}, "/parameters")):
+        with pytest.raises(InvalidDocument) as error:
+            first_integrals(model, **given)
+        assert error.value.faults[0].pointer == pointer
+
+
+def test_parameters_that_are_zero_give_more() -> None:
+    """Without its spring the damper's slide alone is left; a moving input takes the momentum away."""
+    joint = {"type": "prismatic", "coordinate": "s", "stiffness": "k"}
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": joint}
+    model = model_of({"name": "a", "bodies": [body], "parameters": {"k": {"value": 0}}}, NONE)
+    assert constant(first_integrals(model)) == {"energy"}
+    assert constant(first_integrals(model, zero=["k"])) == {"energy", "linear_momentum.z"}
+    assert constant(first_integrals(model, ["tau.x.s"], ["k"])) == set()
 
 
 def test_a_coordinate_without_inertia_is_named() -> None:

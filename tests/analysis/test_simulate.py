@@ -148,6 +148,18 @@ def test_constant_force_and_tables() -> None:
         assert motion.is_right
 
 
+def test_jumps_of_tables_cost_no_accuracy_and_few_steps() -> None:
+    """The integrator begins anew at a jump, with the value from the side it is on."""
+    held = {"times": [0, 0.3, 0.7, 1], "values": [2, -3, 5, 0], "interpolation": "hold"}
+    base: Plain = {"q": [0], "span": [0, 1], "inputs": {"tau.x.s": held}, "count": 2, **FINE}
+    motion = simulate(model_of(oscillator(), (0, 0, 0)), base)
+    # v = 0.6, -0.6, 0.9 at the ends of the pieces
+    exact = 0.5 * 2 * 0.09 + (0.6 * 0.4 - 1.5 * 0.16) + (-0.6 * 0.3 + 2.5 * 0.09)
+    assert motion.q[-1, 0] == pytest.approx(exact, abs=1e-14)
+    assert motion.qd[-1, 0] == pytest.approx(0.9, abs=1e-14)
+    assert motion.steps < 40
+
+
 def test_feedback_as_an_expression() -> None:
     """A spring and a damper by an input; energy changes by their work."""
     law = {"tau.x.s": "-4*x.s - x.s'/2"}
