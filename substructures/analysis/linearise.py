@@ -208,7 +208,7 @@ def _at_equilibrium(model: Model, read: LinearisationRequest, states: States, re
     if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):
         return result
     found = modes(result.M, result.D, result.K)
-    return replace(result, modes=found, stability=stability(found, result.K, has_potential(model, read)))
+    return replace(result, modes=found, stability=stability(found, result.D, result.K, has_potential(model, read)))
 
 
 def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
@@ -218,8 +218,11 @@ def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
 
 
 def has_potential(model: Model, read: LinearisationRequest) -> bool:
-    """Whether the forces have a potential, but for dampers that are linear in the velocities."""
-    driven = [name for name, value in read.inputs.items() if value != 0]
+    """Whether the forces have a potential, but for dampers that are linear in the velocities.
+
+    A constant actuator force tau_a has one, too: -tau_a q^a.
+    """
+    driven = [name for name, value in read.inputs.items() if value != 0 and not name.startswith("tau.")]
     zero = [name for name, value in read.parameters.items() if value == 0]
     found = first_integrals(model, driven, zero)
     return any(i.kind == "energy" and i.rule in ("constant", "falling") for i in found.integrals)

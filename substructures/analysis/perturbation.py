@@ -78,7 +78,7 @@ def _perturbation(known: Known) -> Program:
         "input": array((f.n, len(names)), lambda a, i: -by_input[a][i]),
         "residual": found[ID],
     }
-    return program(f.graph, outputs, f.symbols | {s.name: s for s in source.symbols})
+    return program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
 
 
 def _rows(formulas: Formulas, n: int, zero: Expr) -> list[Expr]:
@@ -107,7 +107,7 @@ def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[s
     results = {name: array(shapes[name], lambda i, j, m=m: m[i][j]) for name, m in matrices.items()}
     results["derivative"] = array((2 * f.n,), lambda i: x[i])
     results["output"] = array((len(y),), lambda i: y[i])
-    return program(f.graph, results, f.symbols | {s.name: s for s in read.symbols})
+    return program(f.graph, results, {s.name: s for s in read.symbols} | f.symbols)
 
 
 def require_inputs(model: Model, names: Sequence[str]) -> None:

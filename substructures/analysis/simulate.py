@@ -34,6 +34,8 @@ Array = NDArray[np.float64]
 Report = Callable[[float], bool | None]
 DIRECTION = {"rising": 1, "falling": -1, "both": 0}
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
+#: names of series and arrays that every trajectory may have
+RESERVED = frozenset(("t", "q", "qd", "coordinates", "energy", "power", "work"))
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
     "(spherical and free joints: pitch = +-pi/2); change masses, inertias or the start"
@@ -100,11 +102,7 @@ def read_setup(model: Model, request: SimulationRequest) -> Setup:
     fixed = constants(request)
     if request.method == TAYLOR and request.fixed_step is None:
         require_taylor(list(curves))
-    faults = [
-        Fault(f"/parameters/{escape(name)}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
-        for name in request.parameters
-        if name not in model.parameters
-    ]
+    faults = _faults(model, request)
     if faults:
         raise InvalidDocument(faults)
     given = {"parameters": request.parameters, "inputs": fixed}
@@ -115,6 +113,23 @@ def read_setup(model: Model, request: SimulationRequest) -> Setup:
     inputs = {s.name for s in model.program.symbols if s.kind == "input"} | set(model.parameters)
     zero = frozenset(name for name, x in values.items() if x == 0 and name in inputs)
     return Setup(model, request, np.concatenate([states.q[0], states.qd[0]]), values, zero, curves, source)
+
+
+def _faults(model: Model, request: SimulationRequest) -> list[Fault]:
+    faults = [
+        Fault(f"/parameters/{escape(name)}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        for name in request.parameters
+        if name not in model.parameters
+    ]
+    faults += [
+        Fault(f"/series/{name}", "reserved-name", f"'{name}' is a series of every trajectory: take another name")
+        for name in request.series
+        if name in RESERVED
+    ]
+    if request.fixed_step is not None and request.events:
+        message = "steps of a fixed size do not stop for events: leave 'events' or 'fixed_step' out"
+        faults.append(Fault("/events", "not-supported", message))
+    return faults
 
 
 def _moved(

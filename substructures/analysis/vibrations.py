@@ -118,11 +118,11 @@ def normed(shape: Any) -> ComplexArray:
     return z / z[k] if len(z) and z[k] != 0 else z
 
 
-def stability(found: tuple[Mode, ...], K: Array, has_potential: bool) -> Stability:
+def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool) -> Stability:
     """What the eigenvalues of an equilibrium say about the motion near it.
 
-    ``has_potential``: forces without potential only damp, or there are none: then a positive definite K decides where
-    the linearisation does not (Lagrange and Dirichlet).
+    ``has_potential``: forces without potential are linear in the velocities, or there are none: then a positive
+    definite K decides where the linearisation does not, if D nowhere feeds energy in (Lagrange and Dirichlet).
     """
     if not found:
         return Stability("stable", "there is nothing that moves")
@@ -132,10 +132,16 @@ def stability(found: tuple[Mode, ...], K: Array, has_potential: bool) -> Stabili
         return Stability("unstable", f"the eigenvalue {_text(worst.eigenvalue)} 1/s has a positive real part")
     if worst.eigenvalue.real < -NEUTRAL * scale:
         return Stability("asymptotically stable", "all eigenvalues have negative real parts")
-    if has_potential and is_symmetric(K) and np.linalg.eigvalsh((K + K.T) / 2).min() > NEUTRAL * np.abs(K).max():
+    if has_potential and is_symmetric(K) and _least(K) > NEUTRAL and _least(D) >= -SYMMETRIC:
         return Stability("stable", "the potential energy has a strict minimum (Lagrange, Dirichlet)")
     where = "0" if abs(worst.eigenvalue) <= NEUTRAL * scale else f"{_text(worst.eigenvalue)} 1/s on the imaginary axis"
     return Stability("undecided", f"the eigenvalue {where} leaves the decision to terms of higher order")
+
+
+def _least(x: Array) -> float:
+    """The least eigenvalue of the symmetric part, over the largest element."""
+    size = np.abs(x).max()
+    return float(np.linalg.eigvalsh((x + x.T) / 2).min() / size) if size else 0.0
 
 
 def _text(z: complex) -> str:

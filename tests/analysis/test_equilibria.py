@@ -58,6 +58,7 @@ def test_inputs_move_the_equilibrium() -> None:
     request = {"inputs": {"tau.x.q1": 9.81 / 2}}
     found = equilibria(catalogue_model("simple-pendulum"), request)
     np.testing.assert_allclose([e.q[0] for e in found.found], [np.pi / 6, 5 * np.pi / 6], atol=1e-12)
+    assert [e["at"]["stability"]["verdict"] for e in found.summary()["found"]] == ["stable", "unstable"]
 
 
 def test_faults_have_pointers() -> None:

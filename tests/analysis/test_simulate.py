@@ -290,6 +290,8 @@ def test_steps_are_limited() -> None:
         ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1"),
         ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity"),
         ({"series": {"a": "nothing"}}, "/series/a"),
+        ({"series": {"energy": "x.q1"}}, "/series/energy"),
+        ({"fixed_step": {"step": 0.1}, "events": [{"name": "e", "quantity": "x.q1"}]}, "/events"),
         ({"stepp": 1}, "/stepp"),
     ],
 )
