@@ -75,7 +75,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     return _first_integrals(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=32)
 def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) -> FirstIntegrals:
     model: Model = known.source
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}

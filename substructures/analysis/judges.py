@@ -14,6 +14,8 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.model import Model
 
 Array = NDArray[np.float64]
+#: of a sum, relative to its value
+ROUNDING = 1e-14
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
@@ -51,25 +53,28 @@ def judge(model: Model, integrals: FirstIntegrals, states: States, limit: float)
     checks = []
     for integral in integrals.integrals:
         value, scale = series[integral.name], scales.of(integral)
+        noise = ROUNDING * float(np.abs(value).max(initial=0))
         if integral.rule == "constant":
-            checks.append(_check(integral, "constant", value - value[:1], states.t, scale, limit))
+            checks.append(_check(integral, "constant", value - value[:1], states.t, scale, limit, noise))
             continue
         balanced = value - states.work
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
         scale = max(scale, float(np.abs(states.work).max(initial=0)))
-        checks.append(_check(entry, "constant", balanced - balanced[:1], states.t, scale, limit))
+        checks.append(_check(entry, "constant", balanced - balanced[:1], states.t, scale, limit, noise))
         power = series["power"]
         if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
             rise = value - np.minimum.accumulate(value)
             entry = replace(integral, reason="the power of all forces without potential is nowhere positive")
-            checks.append(_check(entry, "falling", rise, states.t, scale, limit))
+            checks.append(_check(entry, "falling", rise, states.t, scale, limit, noise))
     return tuple(checks)
 
 
-def _check(integral: Integral, rule: Rule, violation: Array, t: Array, scale: float, limit: float) -> Check:
+def _check(
+    integral: Integral, rule: Rule, violation: Array, t: Array, scale: float, limit: float, noise: float
+) -> Check:
     size = np.abs(violation)
-    bad = np.flatnonzero(~(size <= limit * scale)) if scale else np.flatnonzero(size > 0)
+    bad = np.flatnonzero(~(size <= limit * scale + noise))
     first = float(t[bad[0]]) if len(bad) else None
     worst = float(np.nanmax(size, initial=0.0))
     return Check(integral.name, rule, integral.reason, integral.unit, worst, scale, limit, first)

@@ -19,7 +19,7 @@ class Known:
     source: Any = field(compare=False)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def _kernel(known: Known, folder: Path | None) -> Kernel:
     return compile_program(known.source, tuple(known.source.outputs), folder)
 

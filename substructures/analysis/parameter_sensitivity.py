@@ -79,7 +79,7 @@ def variational(model: Model, parameters: Sequence[str]) -> Program:
     return _variational(Known(model.program.digest, model), tuple(parameters))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
     f = ModelFormulas(known.source)
     names = [*(str(x.value) for x in (*f.q, *f.rates)), *parameters]

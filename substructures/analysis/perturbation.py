@@ -61,7 +61,7 @@ def perturbation(model: Model) -> Program:
     return _perturbation(Known(model.program.digest, model))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def _perturbation(known: Known) -> Program:
     model: Model = known.source
     require_smooth(model)

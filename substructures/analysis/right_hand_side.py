@@ -39,7 +39,7 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
     return program(f.graph, outputs, f.symbols)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
     return compile_program(forward_dynamics(model.source, zero), (ACCELERATION, PIVOTS, POWER), folder)
 

@@ -69,7 +69,7 @@ def taylor_stepper(
     return _Factory(integrator, [values[name] for name in names])
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=16)
 def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     """The integrator, and the names of its parameters in order."""
     model = system.model

@@ -130,6 +130,13 @@ def test_a_coarse_motion_is_marked_wrong() -> None:
     assert energy.relative > 1e-6
 
 
+def test_rounding_is_no_violation() -> None:
+    """The upright pendulum falls by the error of pi alone: its energy is noise."""
+    motion = simulate(catalogue_model("simple-pendulum"), {"q": [np.pi], "span": [0, 1]})
+    assert 0 < np.abs(motion.qd).max() < 1e-13
+    assert motion.is_right
+
+
 def test_constant_force_and_tables() -> None:
     """s'' = u: a number, an expression, a held, a linear and a cubic table against their integrals."""
     model = model_of(oscillator(), (0, 0, 0))
