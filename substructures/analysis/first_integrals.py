@@ -8,19 +8,19 @@ What is zero is decided by the graph, where equal formulas are one node, and by 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.formulas import Entries, ModelFormulas
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.vanish import Vanishing
-from substructures.expr.walk import reachable
+from substructures.expr.walk import reachable, transfer
 from substructures.model import Model
 
 Kind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
@@ -140,13 +140,15 @@ class _Search:
         """Of the whole system along, and about, the axes of the world and the direction of a constant force."""
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self.f.rate([*linear, *angular])
-        pull = [x if self._is_uniform(x) else self.zero for x in rates[:3]]
+        pull = [self._constant(x) or self.zero for x in rates[:3]]
         kinds: list[Kind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
         for kind, axis, value, rate in zip(kinds, AXES + AXES, [*linear, *angular], rates, strict=True):
             if self.vanishes(rate):
                 self._momentum_found(kind, axis, value)
         self._across(linear, pull)
         self._about(angular, pull)
+        if not all(self.vanishes(rate) for rate in rates):
+            self._along_axes(linear, angular)
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
@@ -163,9 +165,46 @@ class _Search:
         reason = f"gravity, loads and the world exert no resultant {word} {label}{where}"
         self._note(Integral(f"{kind}.{label}", kind, "constant", UNITS[kind], reason), value)
 
-    def _is_uniform(self, rate: Expr) -> bool:
-        """A resultant force that depends on parameters only."""
-        return not depends_on([rate], {s.name for s in self.f.symbols.values() if s.kind != "parameter"})
+    def _constant(self, expr: Expr) -> Expr | None:
+        """The value of a formula that depends on parameters only, else None."""
+        states = {s.name for s in self.f.symbols.values() if s.kind != "parameter"}
+        if not depends_on([expr], states):
+            return expr
+        seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}
+        if not self.vanishes(directional([expr], seeds)[0]):
+            return None
+        try:
+            return transfer([expr], self.f.graph, dict.fromkeys(states, self.zero))[0]
+        except ZeroDivisionError:
+            return None
+
+    def _axes(self) -> Iterator[tuple[str, list[Expr]]]:
+        """Axes of joints that keep a direction other than x, y, z in the world: coordinate and direction."""
+        f = self.f
+        rotation = f.elements("rotation")
+        for a, name in enumerate(f.model.coordinates):
+            columns = f.elements("Omega" if f.model.joints[a] == "R" else "U")
+            frame = min((k for k, b, _ in columns if b == a), default=None)
+            if frame is None:
+                continue
+            world = [self._turned(rotation, columns, frame, a, j) for j in range(3)]
+            axis = [x for x in map(self._constant, world) if x is not None]
+            if len(axis) == 3 and sum(not self.vanishes(x) for x in axis) > 1:
+                yield name, axis
+
+    def _turned(self, rotation: Entries, columns: Entries, k: int, a: int, j: int) -> Expr:
+        """Component j in the world of column a of frame k."""
+        pairs = [((k, j, i), (k, a, i)) for i in range(3)]
+        return self.f.graph.sum(rotation[r] * columns[c] for r, c in pairs if r in rotation and c in columns)
+
+    def _along_axes(self, linear: Sequence[Expr], angular: Sequence[Expr]) -> None:
+        """Along and about the axes of joints that keep their direction, through the origin."""
+        for name, axis in self._axes():
+            momenta: list[tuple[Kind, Sequence[Expr]]] = [("linear_momentum", linear), ("angular_momentum", angular)]
+            for kind, some in momenta:
+                value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))
+                if self.vanishes(self.f.rate([value])[0]):
+                    self._momentum_found(kind, f"axis-of-{name}", value)
 
     def _across(self, linear: Sequence[Expr], pull: Sequence[Expr]) -> None:
         """Directions in the planes of two axes that are normal to a constant force: p_i - p_j F_i/F_j."""

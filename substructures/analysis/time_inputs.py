@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping
+from decimal import Decimal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -89,9 +90,9 @@ def expressions(model: Model, request: SimulationRequest) -> Program:
     return read_expressions(model, groups)
 
 
-def constants(request: SimulationRequest) -> dict[str, float]:
+def constants(request: SimulationRequest) -> dict[str, int | Decimal]:
     """The inputs that are numbers."""
-    return {name: float(x) for name, x in request.inputs.items() if not isinstance(x, (Table, str))}
+    return {name: x for name, x in request.inputs.items() if not isinstance(x, (Table, str))}
 
 
 def formulas_of(request: SimulationRequest) -> tuple[str, ...]:

@@ -63,6 +63,23 @@ def test_known_machines(name: str, gravity: Any, expected: set[str]) -> None:
     assert all(slopes[name] < 1e-4 for name in expected), slopes
 
 
+def test_a_base_that_moves_in_a_slanted_plane() -> None:
+    """With an arm that swings out of the plane: momenta along the slides, and about the normal of the plane."""
+    tensor = {"xx": 0.1, "yy": 0.2, "zz": 0.3}
+    slide = {"type": "planar", "coordinate": ["x", "y", "turn"], "placement": {"rpy": [0.4, 0.7, 0.3]}}
+    swing = {"type": "revolute", "coordinate": "swing", "theta": "pi/2", "d": 0.3}
+    bodies: list[Plain] = [
+        {"name": "base_body", "parent": "base", "joint": slide, "mass": 2, "com": [0.1, 0, 0.2], "inertia": tensor},
+        {"name": "arm", "parent": "base_body", "joint": swing, "mass": 1, "com": [0.5, 0, 0.1], "inertia": tensor},
+    ]
+    model = model_of({"name": "slope", "bodies": bodies}, NONE)
+    found = first_integrals(model)
+    slides = {f"linear_momentum.axis-of-x.{c}" for c in "xy"}
+    assert constant(found) == {"energy", "angular_momentum.axis-of-x.turn", *slides}
+    assert found.cyclic == ("x.x", "x.y")
+    assert max(v for k, v in drift(model, found).items() if k in constant(found)) < 1e-6
+
+
 def test_every_integral_has_unit_and_reason() -> None:
     found = first_integrals(catalogue_model("satellite"))
     assert {i.unit for i in found.integrals} == {"J", "N s", "N m s"}

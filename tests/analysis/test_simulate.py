@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -291,6 +292,9 @@ def test_steps_are_limited() -> None:
         ({"method": "euler"}, "/method"),
         ({"parameters": {"x.mass": 1}}, "/parameters/x.mass"),
         ({"parameters": {"x.m1": "heavy"}}, "/parameters/x.m1"),
+        ({"inputs": {"tau.x.q1": 10**400}}, "/inputs/tau.x.q1"),
+        ({"inputs": {"tau.x.q1": Decimal("1e400")}}, "/inputs/tau.x.q1"),
+        ({"span": [0, 10**400]}, "/span/1"),
         ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9"),
         ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1"),
         ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times"),
