@@ -14,7 +14,6 @@ from substructures.analysis.expressions import read_expressions
 from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.formulas import require_motion
 from substructures.analysis.perturbation import inputs_of, perturbation, require_inputs
-from substructures.analysis.requests import Real
 from substructures.analysis.vibrations import Mode, Stability, first_order, modes, stability
 from substructures.definition import Model as Document
 from substructures.definition import Number, read_model
@@ -42,8 +41,8 @@ class LinearisationRequest(Document):
     qd: Any = None
     qdd: Any = None
     t: Any = 0
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="values about which is linearised; 0 by default")
+    parameters: dict[str, Any] = Field({}, description="in place of their defaults; numbers, or one for each state")
+    inputs: dict[str, Any] = Field({}, description="about which is linearised, 0 by default; or one for each state")
     outputs: dict[str, Number] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
     of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
 
@@ -222,7 +221,7 @@ def has_potential(model: Model, read: LinearisationRequest) -> bool:
 
     A constant actuator force tau_a has one, too: -tau_a q^a.
     """
-    driven = [name for name, value in read.inputs.items() if value != 0 and not name.startswith("tau.")]
-    zero = [name for name, value in read.parameters.items() if value == 0]
+    driven = [name for name, value in read.inputs.items() if np.any(value) and not name.startswith("tau.")]
+    zero = [name for name, value in read.parameters.items() if not np.any(value)]
     found = first_integrals(model, driven, zero)
     return any(i.kind == "energy" and i.rule in ("constant", "falling") for i in found.integrals)

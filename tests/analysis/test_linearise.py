@@ -13,6 +13,7 @@ from random_trees import Plain, model_of, random_states
 from substructures import InvalidDocument, Model, Program
 from substructures.analysis.linearise import linearise
 from substructures.analysis.perturbation import inputs_of, perturbation, state_space
+from substructures.analysis.simulate import simulate
 from substructures.analysis.vibrations import modes
 from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
@@ -74,6 +75,19 @@ def test_along_a_trajectory() -> None:
     assert not one.is_equilibrium
     source = perturbation(model)
     assert Program.from_bytes(source.to_bytes()) == source
+
+
+def test_along_a_driven_trajectory() -> None:
+    """Inputs and times of a simulation, one for each state; the residual of a motion is zero."""
+    model = catalogue_model("furuta-pendulum")
+    name = f"tau.{model.coordinates[0]}"
+    motion = simulate(model, {"q": [0, 0.3], "span": [0, 1], "count": 5, "inputs": {name: "sin(5*t)/50"}})
+    request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
+    found = linearise(model, request)
+    assert found.A.shape == (5, 4, 4)
+    one = linearise(model, {"q": motion.q[3], "qd": motion.qd[3], "inputs": {name: motion.series[name][3]}})
+    np.testing.assert_allclose(found.A[3], one.A, atol=1e-12)
+    np.testing.assert_allclose(found.residual, 0, atol=1e-12)
 
 
 def test_damping_is_twice_coriolis_less_dampers() -> None:
