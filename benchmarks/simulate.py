@@ -117,7 +117,9 @@ def ours(model: Model, system: Chain, method: str) -> list[Run]:
         request = base | {"relative_tolerance": 10.0**-k, "absolute_tolerance": 10.0 ** -(k + 1)}
         return simulate(model, request).q[-1]
 
-    once(6)  # compiles
+    start = perf_counter()
+    once(6)
+    print(f"{method}: {perf_counter() - start:.2f} s for the first run, which compiles")
     return [timed(f"1e-{k}", lambda k=k: once(k)) for k in range(4, 14)]
 
 
