@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,21 @@ class Check:
         """Whether the condition holds everywhere."""
         return self.time is None
 
+    @property
+    def relative(self) -> float:
+        """The largest violation over its scale."""
+        return self.worst / self.scale if self.scale else self.worst
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """An event: ``name``, when [s], and the state."""
+
+    name: str
+    t: float
+    q: Array
+    qd: Array
+
 
 @dataclass(frozen=True)
 class Trajectory:
@@ -43,7 +58,8 @@ class Trajectory:
 
     ``series``: further quantities by name, (K, ...): energies, momenta, residuals, reactions. ``status`` is a value:
     ``finished``; ``stopped`` by an event; ``failed``, and ``message`` says why and what to change, with the motion up
-    to there. ``steps``: accepted steps of the integrator.
+    to there. ``steps``: accepted steps of the integrator. ``figures``: numbers about the computation (evaluations of
+    the right-hand side, seconds, real-time factor).
     """
 
     coordinates: tuple[str, ...]
@@ -55,8 +71,30 @@ class Trajectory:
     status: Literal["finished", "stopped", "failed"] = "finished"
     message: str = ""
     steps: int = 0
+    events: tuple[Crossing, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def is_right(self) -> bool:
         """False when a necessary condition is violated: the numbers are wrong, whatever the integrator says."""
         return all(check.holds for check in self.checks)
+
+    def arrays(self) -> dict[str, Array]:
+        """t, q, qd and all series by name."""
+        return {"t": self.t, "q": self.q, "qd": self.qd, **self.series}
+
+    def summary(self) -> dict[str, Any]:
+        """What was found beside the arrays, as plain data."""
+        checks = [{**vars(c), "relative": c.relative, "holds": c.holds} for c in self.checks]
+        events = [{"name": e.name, "t": e.t, "q": e.q.tolist(), "qd": e.qd.tolist()} for e in self.events]
+        return {
+            "coordinates": list(self.coordinates),
+            "count": len(self.t),
+            "status": self.status,
+            "message": self.message,
+            "is_right": self.is_right,
+            "checks": checks,
+            "events": events,
+            "steps": self.steps,
+            "figures": dict(self.figures),
+        }

@@ -11,7 +11,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin, tan
@@ -109,12 +109,20 @@ def _shares(node: Expr, w: Expr) -> tuple[Expr, ...]:
 
 
 def _derivatives(roots: Sequence[Expr], name: str) -> list[Expr]:
-    # nodes that do not depend on the symbol have no entry
+    return directional(roots, {name: roots[0].graph.one}) if roots else []
+
+
+def directional(roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
+    """Directional derivatives: sum over symbols of the partial derivative times ``seeds[symbol]``, in one walk.
+
+    Raises ZeroDivisionError where a derivative is infinite for every value of the symbols.
+    """
+    # nodes that do not depend on the symbols have no entry
     d: dict[Expr, Expr] = {}
     for node in reachable(roots):
         if node.op == "sym":
-            if node.value == name:
-                d[node] = node.graph.one
+            if str(node.value) in seeds:
+                d[node] = seeds[str(node.value)]
         elif any(a in d for a in node.args):
             value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
             if not value.is_zero:

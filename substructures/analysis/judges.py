@@ -1,0 +1,106 @@
+"""Necessary conditions along a computed motion: first integrals are constant, energy falls where forces damp."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.first_integrals import FirstIntegrals, Integral
+from substructures.analysis.trajectory import Check, Rule
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.model import Model
+
+Array = NDArray[np.float64]
+#: of a sum, relative to its value
+ROUNDING = 1e-14
+SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
+
+
+@dataclass(frozen=True)
+class States:
+    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,)."""
+
+    t: Array
+    q: Array
+    qd: Array
+    values: Mapping[str, float | Array]
+    work: Array
+
+    def symbols(self, model: Model) -> dict[str, float | Array]:
+        """Values of all symbols, (K,) each where they vary."""
+        values = dict(self.values) | {"t": self.t}
+        values |= {name: self.q[:, a] for a, name in enumerate(model.coordinates)}
+        return values | {f"{name}'": self.qd[:, a] for a, name in enumerate(model.coordinates)}
+
+
+def integral_series(model: Model, integrals: FirstIntegrals, states: States) -> dict[str, Array]:
+    """All integrals, and the power where there is any, (K,)."""
+    source = integrals.program
+    found = interpret_in_blocks(source, states.symbols(model), list(source.outputs), len(states.t))
+    series = {name: np.broadcast_to(x, states.t.shape).copy() for name, x in found.items()}
+    if not source.outputs["power"].entries or "energy" not in series:
+        del series["power"]
+    return series
+
+
+def judge(model: Model, integrals: FirstIntegrals, states: States, limit: float) -> tuple[Check, ...]:
+    """Checks of all integrals; ``limit``: of the violation over the scale of the quantity."""
+    series = integral_series(model, integrals, states)
+    scales = _Scales(model, states)
+    checks = []
+    for integral in integrals.integrals:
+        value, scale = series[integral.name], scales.of(integral)
+        noise = ROUNDING * float(np.abs(value).max(initial=0))
+        if integral.rule == "constant":
+            checks.append(_check(integral, "constant", value - value[:1], states.t, scale, limit, noise))
+            continue
+        balanced = value - states.work
+        reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
+        entry = replace(integral, name="energy-balance", reason=reason)
+        scale = max(scale, float(np.abs(states.work).max(initial=0)))
+        checks.append(_check(entry, "constant", balanced - balanced[:1], states.t, scale, limit, noise))
+        power = series["power"]
+        if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
+            rise = value - np.minimum.accumulate(value)
+            entry = replace(integral, reason="the power of all forces without potential is nowhere positive")
+            checks.append(_check(entry, "falling", rise, states.t, scale, limit, noise))
+    return tuple(checks)
+
+
+def _check(
+    integral: Integral, rule: Rule, violation: Array, t: Array, scale: float, limit: float, noise: float
+) -> Check:
+    size = np.abs(violation)
+    bad = np.flatnonzero(~(size <= limit * scale + noise))
+    first = float(t[bad[0]]) if len(bad) else None
+    worst = float(np.nanmax(size, initial=0.0))
+    return Check(integral.name, rule, integral.reason, integral.unit, worst, scale, limit, first)
+
+
+class _Scales:
+    """Sizes that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
+
+    def __init__(self, model: Model, states: States) -> None:
+        found = interpret_in_blocks(model.program, states.symbols(model), list(SCALES), len(states.t))
+        self.model, speed = model, np.abs(states.qd)
+        self.momenta = np.einsum("kab,kb->ka", np.abs(found["metric"]), speed).max(axis=0, initial=0)
+        kinetic = 0.5 * np.einsum("kab,ka,kb->k", found["metric"], states.qd, states.qd)
+        potential = found["potential_energy"]
+        change = float(np.ptp(potential)) if len(potential) else 0.0
+        self.whole = {
+            "energy": max(float(kinetic.max(initial=0)), change),
+            **{k: self._whole(found[k], speed) for k in ("linear_momentum", "angular_momentum")},
+        }
+
+    @staticmethod
+    def _whole(columns: Array, speed: Array) -> float:
+        return float(np.einsum("kai,ka->k", np.abs(columns), speed).max(initial=0))
+
+    def of(self, integral: Integral) -> float:
+        """The size of one integral."""
+        if integral.kind == "cyclic":
+            return float(self.momenta[self.model.coordinates.index(integral.name.removeprefix("momentum."))])
+        return self.whole[integral.kind]

@@ -1,0 +1,128 @@
+"""The equations of motion as one compiled function x' = f(t, x), x = (q, q', W), a few microseconds a call.
+
+q'' = g^-1 (Q - Gamma q' q') is a formula: g = L^T D L is factored in the graph, so that the kernel needs no linear
+algebra. W' is the power of the forces without potential; H - W is constant for every model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.known import Known, program_kernel
+from substructures.analysis.time_inputs import Curve
+from substructures.compile import Kernel, compile_program
+from substructures.expr.program import Program, array, program
+from substructures.model import Model
+
+Array = NDArray[np.float64]
+ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
+
+
+def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
+    """Accelerations as formulas: outputs ``forward_dynamics`` (n,), ``pivots`` (n,): D of g = L^T D L, and ``power``.
+
+    ``zero``: symbols that are 0. Raises InvalidDocument for a coordinate without inertia and for a division by zero.
+    """
+    f = ModelFormulas(model, zero)
+    acceleration, power = f.acceleration, f.power
+    outputs = {
+        ACCELERATION: array((f.n,), lambda a: acceleration[a]),
+        PIVOTS: array((f.n,), lambda a: f.factors.D[a]),
+        POWER: array((), lambda: power),
+    }
+    return program(f.graph, outputs, f.symbols)
+
+
+@lru_cache(maxsize=32)
+def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
+    return compile_program(forward_dynamics(model.source, zero), (ACCELERATION, PIVOTS, POWER), folder)
+
+
+def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None) -> Kernel:
+    """The compiled forward_dynamics(model, zero); the same object for the same model. Raises as forward_dynamics."""
+    return _forward_kernel(Known(model.program.digest, model), frozenset(zero), folder)
+
+
+class RightHandSide:
+    """x' = f(t, x). ``values``: numbers of parameters and constant inputs; ``zero``: symbols that are 0.
+
+    ``formulas``: a program with the output ``inputs`` for the names ``given``, in state and time; ``curves``: inputs by
+    tables. Not for several threads at a time. Raises InvalidDocument as forward_dynamics, and MissingValue.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        values: Mapping[str, float],
+        zero: Iterable[str] = (),
+        formulas: tuple[Program, tuple[str, ...]] | None = None,
+        curves: Mapping[str, Curve] | None = None,
+        folder: Path | None = None,
+    ) -> None:
+        self.n = n = model.dof
+        self.curves = dict(curves or {})
+        self.kernel = forward_kernel(model, zero, folder)
+        self.has_power = bool(self.kernel.outputs[POWER].entries)
+        self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
+        self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
+        self._table = np.zeros((1, len(self.curves)))
+        names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+        state = [(names, self._x)]
+        numbers = {name: x for name, x in values.items() if name not in self.curves}
+        columns = [*state, (list(self.curves), self._table)]
+        self._inputs: Callable[[], None] | None = None
+        if formulas is not None and formulas[1]:
+            found = np.zeros((1, len(formulas[1])))
+            columns.append((list(formulas[1]), found))
+            kernel = program_kernel(formulas[0], folder)
+            self._inputs = kernel.bind({"inputs": found}, numbers | {"t": self._t}, columns=state)
+        outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
+        self._run = self.kernel.bind(outputs, numbers | {"t": self._t}, columns=columns)
+
+    @property
+    def size(self) -> int:
+        """Length of x: 2 n, and one for W where there is any power."""
+        return 2 * self.n + self.has_power
+
+    def enter(self, start: float, end: float) -> None:
+        """Times are between two breaks of the curves until the next call."""
+        for curve in self.curves.values():
+            curve.enter(start, end)
+
+    def leave(self) -> None:
+        """Any time again."""
+        for curve in self.curves.values():
+            curve.leave()
+
+    def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
+        """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""
+        self._t[0] = t
+        self._x[0] = x[: 2 * self.n]
+        for k, curve in enumerate(self.curves.values()):
+            self._table[0, k] = curve(t)
+        if self._inputs is not None:
+            self._inputs()
+        self._run()
+        return self._out[0][0], self._out[1][0], float(self._out[2][0])
+
+    def __call__(self, t: float, x: Array) -> Array:
+        acceleration, _, power = self.evaluate(t, x)
+        n = self.n
+        result = np.empty(len(x))
+        result[:n] = x[n : 2 * n]
+        result[n : 2 * n] = acceleration
+        if self.has_power:
+            result[2 * n] = power
+        return result
+
+
+def is_definite(pivots: Sequence[float] | Array) -> bool:
+    """Whether g is positive definite, by the pivots D of g = L^T D L."""
+    d = np.asarray(pivots)
+    return bool(np.isfinite(d).all() and (d > 1e-14 * np.abs(d).max(initial=0)).all())

@@ -1,0 +1,101 @@
+"""Equilibria and root loci of textbook systems."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from analysis_models import catalogue_model, random_model
+from random_trees import Plain, model_of
+
+from substructures import InvalidDocument
+from substructures.analysis.equilibria import equilibria
+from substructures.analysis.root_locus import root_locus
+from substructures.evaluation import evaluate
+
+SLIDE: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": {"type": "prismatic", "coordinate": "s"}}
+
+
+def slide(**changes: object) -> Plain:
+    return {"name": "slide", "bodies": [SLIDE], **changes}
+
+
+def test_all_four_of_the_double_pendulum() -> None:
+    """Hanging, and three with at least one rod upright."""
+    found = equilibria(catalogue_model("double-pendulum"))
+    angles = {tuple(np.round(np.abs(e.q) / np.pi, 9)) for e in found.found}
+    assert angles == {(0, 0), (0, 1), (1, 0), (1, 1)}
+    verdicts = {tuple(np.round(np.abs(e.q) / np.pi)): e.at.stability.verdict for e in found.found if e.at.stability}
+    assert verdicts[0, 0] == "stable"
+    assert list(verdicts.values()).count("unstable") == 3
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_forces_vanish_on_random_trees(number: int) -> None:
+    """What is found is an equilibrium by the independent way over evaluate."""
+    model = random_model(number, loads=0)
+    for e in equilibria(model, {"count": 4}).found:
+        forces = evaluate(model, {"quantities": ["forces"], "q": e.q})["forces"]
+        assert np.abs(forces).max() < 1e-8
+        assert e.at.is_equilibrium
+
+
+def test_a_coordinate_without_force_is_held() -> None:
+    """The cart stays where it started; K is singular along it."""
+    found = equilibria(catalogue_model("cart-pendulum"))
+    assert found.held == ("x.q0",)
+    assert len(found.found) == 2
+    np.testing.assert_allclose(np.abs(found.found[0].free), [[1, 0]], atol=1e-12)
+
+
+def test_a_force_that_nothing_balances_is_named() -> None:
+    found = equilibria(model_of(slide(), (0, 0, -9.81)))
+    assert found.found == ()
+    assert "'x.s'" in found.message
+
+
+def test_inputs_move_the_equilibrium() -> None:
+    """sin q = tau/(m g l)."""
+    request = {"inputs": {"tau.x.q1": 9.81 / 2}}
+    found = equilibria(catalogue_model("simple-pendulum"), request)
+    np.testing.assert_allclose([e.q[0] for e in found.found], [np.pi / 6, 5 * np.pi / 6], atol=1e-12)
+    assert [e["at"]["stability"]["verdict"] for e in found.summary()["found"]] == ["stable", "unstable"]
+
+
+def test_faults_have_pointers() -> None:
+    model = catalogue_model("double-pendulum")
+    for request, pointer in (({"starts": [[1]]}, "/starts"), ({"count": -1}, "/count")):
+        with pytest.raises(InvalidDocument) as error:
+            equilibria(model, request)
+        assert error.value.faults[0].pointer == pointer
+
+
+def oscillator() -> Plain:
+    joint = SLIDE["joint"] | {"stiffness": 8, "damping": "c"}
+    return slide(bodies=[SLIDE | {"joint": joint}], parameters={"c": {"value": 1}})
+
+
+def test_root_locus_of_a_damped_oscillator() -> None:
+    """2 s'' + c s' + 8 s = 0: (-c +- sqrt(c^2 - 64))/4, on a circle of radius 2 up to c = 8, then on the axis."""
+    values = np.linspace(0, 12, 49)
+    found = root_locus(model_of(oscillator(), (0, 0, 0)), {"parameter": "c", "values": values.tolist(), "q": [0]})
+    assert found.status == "finished"
+    root = np.sqrt(values.astype(complex) ** 2 - 64)
+    exact = np.stack([(-values + root) / 4, (-values - root) / 4], axis=1)
+    np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(exact), atol=1e-6)
+    assert found.stability[0] == "stable"
+    assert set(found.stability[1:]) == {"asymptotically stable"}
+    steps = np.abs(np.diff(found.eigenvalues, axis=0)).max()
+    assert steps < 1.5
+
+
+def test_a_lost_equilibrium_ends_the_locus() -> None:
+    definition = oscillator()
+    definition["parameters"]["k"] = {"value": 8}
+    definition["bodies"][0]["joint"] = definition["bodies"][0]["joint"] | {"stiffness": "k"}
+    model = model_of(definition, (0, 0, -1))
+    found = root_locus(model, {"parameter": "k", "values": [8, 4, 0], "q": [0]})
+    assert found.status == "failed"
+    assert len(found.values) == 2
+    assert "k = 0" in found.message
+    with pytest.raises(InvalidDocument):
+        root_locus(model, {"parameter": "nothing", "values": [1], "q": [0]})

@@ -1,0 +1,45 @@
+"""What the analysis derives can be stored, printed in every language, and read in textbooks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from analysis_models import catalogue_model
+
+from substructures import Model, Program
+from substructures.analysis.first_integrals import first_integrals
+from substructures.analysis.parameter_sensitivity import sensitivity_formulas
+from substructures.analysis.perturbation import perturbation, state_space
+from substructures.analysis.right_hand_side import forward_dynamics
+from substructures.analysis.routh import routh
+from substructures.printers import FORMATS, render
+
+PROGRAMS: dict[str, Callable[[Model], Program]] = {
+    "first integrals": lambda m: first_integrals(m).program,
+    "Routh": lambda m: routh(m).program,
+    "perturbation": perturbation,
+    "state space": lambda m: state_space(m, ["x.q0 + x.q1'", "tau.x.q0"]),
+    "sensitivities": lambda m: sensitivity_formulas(m, list(m.parameters)),
+    "forward dynamics": forward_dynamics,
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_stored_and_printed(name: str) -> None:
+    program = PROGRAMS[name](catalogue_model("cart-pendulum"))
+    assert Program.from_bytes(program.to_bytes()) == program
+    assert all(s.unit for s in program.symbols)
+    for language in FORMATS:
+        assert render(program, language)
+    assert render(program, "text", form="expanded")
+
+
+def test_cart_and_pendulum_reads_as_in_textbooks() -> None:
+    """Momentum of the cart, and Routh's amended potential p^2/(2 (m0 + m1)) + m1 g l cos q."""
+    model = catalogue_model("cart-pendulum")
+    text = render(first_integrals(model).program, "text", form="expanded")
+    assert "linear_momentum.x = x.m0*x.q0' + x.m1*x.q0' - x.l0*x.m1*x.q1'*cos(x.q1)" in text
+    text = render(routh(model).program, "text", form="expanded")
+    assert "cyclic_velocities[1] = (p.x.q0 + x.l0*x.m1*x.q1'*cos(x.q1))/(x.m0 + x.m1)" in text
+    assert "forces[1] = 9.81*x.l0*x.m1*sin(x.q1)" in text

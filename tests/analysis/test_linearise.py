@@ -1,0 +1,200 @@
+"""Perturbation equations, state space, vibrations, stability: closed forms, and differences on random trees."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+from analysis_models import catalogue_model, random_model, values_at
+from random_trees import Plain, model_of, random_states
+
+from substructures import InvalidDocument, Model, Program
+from substructures.analysis.linearise import linearise
+from substructures.analysis.perturbation import inputs_of, perturbation, state_space
+from substructures.analysis.simulate import simulate
+from substructures.analysis.vibrations import modes
+from substructures.evaluation import evaluate
+from substructures.expr.interpret import interpret
+
+G = 9.81
+STEP = 1e-4
+
+
+def acceleration(model: Model, state: Plain) -> Any:
+    return evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]
+
+
+def slope(model: Model, state: Plain, key: str, name: Any) -> Any:
+    """Central difference of the accelerations by a coordinate, a velocity or an input."""
+    ends = []
+    for h in (2 * STEP, STEP, -STEP, -2 * STEP):
+        moved = dict(state)
+        if key == "inputs":
+            moved["inputs"] = state["inputs"] | {name: state["inputs"][name] + h}
+        else:
+            moved[key] = state[key] + h * np.eye(model.dof)[name]
+        ends.append(acceleration(model, moved))
+    return (8 * (ends[1] - ends[2]) - (ends[0] - ends[3])) / (12 * STEP)
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_state_space_against_differences(number: int) -> None:
+    """A and B of random trees with loads and inputs, at states of motion; as formulas and by M, D, K."""
+    model = random_model(number)
+    rng = np.random.default_rng(number)
+    x = random_states(rng, 1, model.dof)
+    inputs = {name: float(rng.uniform(-1, 1)) for name in inputs_of(model)}
+    state = {"q": x["q"][0], "qd": x["qd"][0], "inputs": inputs, "t": 0.3}
+    found = linearise(model, state)
+    n = model.dof
+    lower = [[slope(model, state, key, a) for a in range(n)] for key in ("q", "qd")]
+    expected = np.hstack([np.array(columns).T for columns in lower])
+    scale = 1 + np.abs(expected).max()
+    np.testing.assert_allclose(found.A[:n], np.eye(n, 2 * n, n))
+    np.testing.assert_allclose(found.A[n:], expected, rtol=0, atol=1e-6 * scale)
+    by_input = np.array([slope(model, state, "inputs", name) for name in inputs]).T
+    np.testing.assert_allclose(found.B[n:], by_input, rtol=0, atol=1e-6 * (1 + np.abs(by_input).max()))
+    formulas = state_space(model)
+    values = values_at(model, x["q"], x["qd"], t=0.3) | inputs
+    numbers = interpret(formulas, values)
+    np.testing.assert_allclose(numbers["A"][0], found.A, rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(numbers["B"][0], found.B, rtol=0, atol=1e-9 * (1 + np.abs(by_input).max()))
+
+
+def test_along_a_trajectory() -> None:
+    """Arrays with a leading axis, equal to the single states; the formulas survive storage."""
+    model = catalogue_model("planar-3r")
+    x = random_states(np.random.default_rng(1), 4, 3)
+    many = linearise(model, {"q": x["q"], "qd": x["qd"], "outputs": {"y": "x.q1 + x.q2'"}})
+    one = linearise(model, {"q": x["q"][2], "qd": x["qd"][2], "outputs": {"y": "x.q1 + x.q2'"}})
+    for name in ("M", "D", "K", "F", "A", "B", "C", "Dy"):
+        np.testing.assert_allclose(getattr(many, name)[2], getattr(one, name), atol=1e-12)
+    assert one.C.tolist() == [[1, 0, 0, 0, 1, 0]]
+    assert not one.is_equilibrium
+    source = perturbation(model)
+    assert Program.from_bytes(source.to_bytes()) == source
+
+
+def test_along_a_driven_trajectory() -> None:
+    """Inputs and times of a simulation, one for each state; the residual of a motion is zero."""
+    model = catalogue_model("furuta-pendulum")
+    name = f"tau.{model.coordinates[0]}"
+    motion = simulate(model, {"q": [0, 0.3], "span": [0, 1], "count": 5, "inputs": {name: "sin(5*t)/50"}})
+    request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
+    found = linearise(model, request)
+    assert found.A.shape == (5, 4, 4)
+    one = linearise(model, {"q": motion.q[3], "qd": motion.qd[3], "inputs": {name: motion.series[name][3]}})
+    np.testing.assert_allclose(found.A[3], one.A, atol=1e-12)
+    np.testing.assert_allclose(found.residual, 0, atol=1e-12)
+
+
+def test_damping_is_twice_coriolis_less_dampers() -> None:
+    model = catalogue_model("ur5")
+    x = random_states(np.random.default_rng(2), 1, 6)
+    found = linearise(model, {"q": x["q"][0], "qd": x["qd"][0]})
+    coriolis = evaluate(model, {"quantities": ["coriolis"], "q": x["q"][0], "qd": x["qd"][0]})["coriolis"]
+    np.testing.assert_allclose(found.D, 2 * coriolis, atol=1e-12)
+
+
+def test_double_pendulum() -> None:
+    """w^2 = g/l (2 -+ sqrt 2) for equal masses and rods (Landau and Lifshitz, section 23, problem 2)."""
+    found = linearise(catalogue_model("double-pendulum"), {"q": [0, 0]})
+    assert found.stability is not None
+    assert found.stability.verdict == "stable"
+    squares = [mode.frequency**2 for mode in found.modes]
+    np.testing.assert_allclose(squares, [G * (2 - np.sqrt(2)), G * (2 + np.sqrt(2))], rtol=1e-12)
+    # absolute angles of the slow mode: 1 and sqrt 2
+    shape = found.modes[0].shape.real
+    np.testing.assert_allclose((shape[0] + shape[1]) / shape[0], np.sqrt(2), rtol=1e-12)
+
+
+@pytest.mark.parametrize("damping", [0, 0.5])
+def test_chain_of_five_masses(damping: float) -> None:
+    """w_j = 2 sqrt(k/m) sin((2 j - 1) pi/22), damping ratio w_j b/(2 k) (one end fixed, one free)."""
+    found = linearise(catalogue_model("mass-spring-chain", (0, 0, 0), b=damping), {"q": [0] * 5})
+    exact = 2 * np.sqrt(100) * np.sin((2 * np.arange(1, 6) - 1) * np.pi / 22)
+    np.testing.assert_allclose([mode.frequency for mode in found.modes], exact, rtol=1e-11)
+    np.testing.assert_allclose([mode.damping_ratio for mode in found.modes], exact * damping / 200, atol=1e-12)
+    assert found.stability is not None
+    assert found.stability.verdict == ("asymptotically stable" if damping else "stable")
+
+
+def test_upright_is_unstable() -> None:
+    """Exponent sqrt(g/l)."""
+    found = linearise(catalogue_model("simple-pendulum"), {"q": [np.pi]})
+    assert found.stability is not None
+    assert found.stability.verdict == "unstable"
+    assert max(mode.eigenvalue.real for mode in found.modes) == pytest.approx(np.sqrt(G))
+
+
+def test_where_the_linearisation_does_not_decide() -> None:
+    """A free slide: eigenvalue 0; and s'' = -s^3, whose linear part is nothing."""
+    slide = {"name": "a", "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic"}}]}
+    slide["bodies"][0]["joint"]["coordinate"] = "s"
+    for loads in ([], [{"type": "joint", "coordinate": "s", "force": "-s^3"}]):
+        found = linearise(model_of(slide | {"loads": loads}, (0, 0, 0)), {"q": [0]})
+        assert found.stability is not None
+        assert found.stability.verdict == "undecided"
+
+
+def test_modes_solve_the_eigenproblem() -> None:
+    """(M z^2 + D z + K) shape = 0 for full random matrices."""
+    rng = np.random.default_rng(5)
+    mass, stiffness = (x @ x.T + np.eye(4) for x in rng.normal(size=(2, 4, 4)))
+    for damping in (rng.normal(size=(4, 4)), np.zeros((4, 4))):
+        for mode in modes(mass, damping, stiffness):
+            z = mode.eigenvalue
+            residual = (mass * z * z + damping * z + stiffness) @ mode.shape
+            assert np.abs(residual).max() < 1e-10 * np.abs(stiffness).max()
+
+
+def test_a_load_that_jumps_is_refused() -> None:
+    """The message names the coordinate and says what to write instead."""
+    model = catalogue_model("double-pendulum")
+    program = model.program
+    forces = program.outputs["forces"]
+    operations = (*program.operations, ("sign", forces.entries[1]))
+    outputs = dict(program.outputs) | {
+        "forces": dataclasses.replace(forces, entries=(forces.entries[0], len(operations) - 1))
+    }
+    rough = dataclasses.replace(model, program=Program(program.symbols, operations, outputs))
+    with pytest.raises(InvalidDocument, match=r"'x\.q2' has no derivative.*sqrt") as error:
+        linearise(rough, {"q": [0, 0]})
+    assert error.value.faults[0].code == "not-smooth"
+
+
+def test_a_root_at_zero_is_a_failure_with_advice() -> None:
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "s"}}
+    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
+    model = model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
+    found = linearise(model, {"q": [0], "qd": [0]})
+    assert found.status == "failed"
+    assert "root" in found.message
+    moving = linearise(model, {"q": [0], "qd": [2]})
+    assert moving.status == "finished"
+    np.testing.assert_allclose(moving.D, [[4]])
+
+
+@pytest.mark.parametrize(
+    ("changes", "pointer"),
+    [
+        ({"q": [1]}, "/q"),
+        ({"outputs": {"y": "x.q9"}}, "/outputs/y"),
+        ({"of_inputs": ["tau.x.q1", "nothing"]}, "/of_inputs/1"),
+        ({"parameters": {"x.nothing": 1}}, "/parameters/x.nothing"),
+        ({"unknown": 1}, "/unknown"),
+    ],
+)
+def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
+    with pytest.raises(InvalidDocument) as error:
+        linearise(catalogue_model("double-pendulum"), {"q": [0, 0]} | changes)
+    assert error.value.faults[0].pointer == pointer
+
+
+def test_summary_is_plain() -> None:
+    summary = linearise(catalogue_model("double-pendulum"), {"q": [0, 0]}).summary()
+    assert summary["stability"]["verdict"] == "stable"
+    assert len(summary["modes"]) == 2
+    assert set(summary["modes"][0]) == {"eigenvalue", "frequency", "hertz", "damping_ratio", "shape"}

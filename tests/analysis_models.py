@@ -1,0 +1,44 @@
+"""Models that the tests of the analysis share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from random_trees import Kind, model_of, random_definition, with_parameters
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.states import default_number
+
+KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
+
+
+def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81), **parameters: Any) -> Model:
+    """A catalogue entry alone at the world, as instance x."""
+    part = derive(Definition.read(catalogue.load(name)))
+    one = {"name": "x", "substructure": name, "parameters": parameters}
+    return couple(TreeSpec.read({"name": "t", "gravity": list(gravity), "instances": [one]}), {"x": part})
+
+
+def random_model(number: int, **changes: Any) -> Model:
+    """A seeded random tree with positive definite metric, a part of its numbers as parameters."""
+    rng = np.random.default_rng(900 + number)
+    kind = KINDS[number % len(KINDS)]
+    kind = Kind(**{**kind.__dict__, **changes})
+    definition = random_definition(rng, kind)
+    while not any("coordinate" in b["joint"] for b in definition["bodies"]):
+        definition = random_definition(rng, kind)
+    return model_of(with_parameters(rng, definition, 0.2 * (number % 3)))
+
+
+def defaults(model: Model) -> dict[str, float]:
+    """Default values of all parameters."""
+    return {name: default_number(p["value"]) for name, p in model.parameters.items() if p["value"] is not None}
+
+
+def values_at(model: Model, q: Any, qd: Any, **more: Any) -> dict[str, Any]:
+    """Values of all symbols at states (N, n); inputs are 0."""
+    values: dict[str, Any] = {s.name: 0.0 for s in model.program.symbols if s.kind == "input"}
+    values |= defaults(model) | {"t": 0.0} | more
+    values |= {name: q[:, a] for a, name in enumerate(model.coordinates)}
+    return values | {f"{name}'": qd[:, a] for a, name in enumerate(model.coordinates)}

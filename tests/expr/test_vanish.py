@@ -1,0 +1,59 @@
+"""The test for the zero function beyond fingerprints, and directional derivatives."""
+
+from __future__ import annotations
+
+import pytest
+
+from substructures.expr.differentiate import derivative, directional
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.parse import parse
+from substructures.expr.vanish import Vanishing
+
+
+def read(graph: Graph, text: str) -> Expr:
+    return parse(graph, text, graph.symbol)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sqrt(11)*sqrt(11) - 11",
+        "sqrt(x^2 + 2*x + 1) - x - 1",
+        "sin(sqrt(7*x^2)) - sin(x*sqrt(7))",
+        "cos(2*q) - cos(q)^2 + sin(q)^2",
+        "x/sqrt(x) - sqrt(x)",
+        "0",
+    ],
+)
+def test_zero(text: str) -> None:
+    graph = Graph()
+    assert Vanishing(graph)(read(graph, text))
+
+
+@pytest.mark.parametrize(
+    "text", ["sqrt(11)*sqrt(13) - 12", "x - sqrt(x^2 + 1e-30)", "sin(q) - q", "x", "sqrt(-1 - x^2)", "1/10^30"]
+)
+def test_not_zero(text: str) -> None:
+    """Small numbers are not zero; neither is what has no value."""
+    graph = Graph()
+    assert not Vanishing(graph)(read(graph, text))
+
+
+def test_functions_beyond_the_grammar() -> None:
+    graph = Graph()
+    x = graph.symbol("x")
+    vanishes = Vanishing(graph)
+    assert vanishes(graph.function("abs", x) - x)
+    assert vanishes(graph.function("exp", graph.function("log", x)) - x)
+    assert vanishes(graph.function("atan2", x, graph.one) - graph.function("atan", x))
+    assert not vanishes(graph.function("sign", x))
+
+
+def test_directional_derivative_is_linear_in_the_seeds() -> None:
+    graph = Graph()
+    f = read(graph, "x^2*sin(q)/(1 + y)")
+    a, b = graph.symbol("a"), graph.symbol("b")
+    (found,) = directional([f], {"x": a, "q": b})
+    assert found is a * derivative(f, "x") + b * derivative(f, "q")
+    assert directional([graph.one], {"x": a})[0].is_zero
+    assert directional([], {}) == []
