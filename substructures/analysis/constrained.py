@@ -1,0 +1,228 @@
+"""A model with closures and prescribed coordinates in numbers: everything a state needs in one compiled call.
+
+With rows of closures and rows q_a - s(t) of prescribed coordinates:
+
+    g q'' + Gamma q'q' = Q + G^T lambda        phi(q, t) = 0        G q' + phi_t = 0        G q'' + c = 0
+
+where c = G' q' for closures and -s'' for prescribed coordinates, whose multipliers are the forces of their actuators.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack, qr, svdvals
+
+from substructures.analysis.signals import Signals
+from substructures.analysis.work import POWER, with_power
+from substructures.compile import compile_program
+from substructures.definition import escape
+from substructures.errors import Fault, InvalidDocument
+from substructures.expr.interpret import interpret
+from substructures.model import Model
+from substructures.states import States, read_states, symbol_values
+
+Array = NDArray[np.float64]
+NEEDS = ("metric", "bias", "forces", "potential_energy")
+CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
+#: singular values of the Jacobian below this part of the largest one count as zero
+RANK = 1e-8
+
+
+class Singular(ArithmeticError):
+    """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """Coordinates whose motion is given: their indices and the motions."""
+
+    index: tuple[int, ...] = ()
+    motions: Signals | None = None
+
+
+class Constrained:
+    """A state at a time and what follows from it, in arrays that the next :meth:`move` overwrites.
+
+    ``g`` (n, n), ``f`` = Q - Gamma q'q' (n,), ``phi`` (m,), ``G`` (m, n), ``c`` (m,), ``phi_t`` (m,);
+    ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
+    """
+
+    def __init__(self, model: Model, request: Mapping[str, Any]) -> None:
+        """``request``: ``parameters``, ``inputs`` (numbers, expressions in t, tables) and ``prescribed``.
+
+        Raises InvalidDocument with pointers into the request, and MissingValue.
+        """
+        self.model, self.n = model, model.dof
+        names, given, pointers = _inputs(model, request)
+        self._inputs = Signals(given, pointers, smooth=False)
+        self.prescribed = _prescribed(model, request)
+        self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
+        self.closed = len(self.labels)
+        self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
+        self._arrays()
+        self._bind(request, names)
+
+    def _arrays(self) -> None:
+        n, m = self.n, len(self.labels)
+        self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
+        self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
+        self.G = np.zeros((m, n))
+        for k, a in enumerate(self.prescribed.index):
+            self.G[self.closed + k, a] = 1
+
+    def _bind(self, request: Mapping[str, Any], inputs: Sequence[str]) -> None:
+        model, n, m = self.model, self.n, self.closed
+        states = States(np.zeros((1, n)), np.zeros((1, n)), None, True)
+        outputs = [*NEEDS, *(CLOSURES if m else ())]
+        plain = {"parameters": request.get("parameters")}
+        found = symbol_values(model, plain, states, outputs)
+        source = with_power(model, outputs, inputs)
+        self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
+        rates = [f"{name}'" for name in model.coordinates]
+        columns = [*model.coordinates, *rates, "t", *inputs]
+        self._x = np.zeros((1, len(columns)))
+        self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
+        self.values = {k: float(np.reshape(v, -1)[0]) for k, v in found.items() if k not in columns}
+        kernel = compile_program(source, list(self._out))
+        self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
+        self.g = self._out["metric"][0]
+
+    def move(self, t: float, q: Array, qd: Array) -> None:
+        """Evaluate everything at a state."""
+        n, x, out = self.n, self._x[0], self._out
+        self.t, self.q, self.qd = t, q, qd
+        x[:n], x[n : 2 * n], x[2 * n] = q, qd, t
+        x[2 * n + 1 :] = self._inputs.at(t)[:, 0]
+        self._run()
+        np.subtract(out["forces"][0], out["bias"][0], out=self.f)
+        m = self.closed
+        if m:
+            self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
+            self.G[:m] = out["closure.jacobian"][0]
+        if self.prescribed.motions is not None:
+            motion = self.prescribed.motions.at(t)
+            self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
+            self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
+
+    @property
+    def velocity_residual(self) -> Array:
+        """G q' + phi_t."""
+        return self.G @ self.qd + self.phi_t
+
+    @property
+    def energies(self) -> tuple[float, float]:
+        """T and V [J]."""
+        return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
+
+    @property
+    def lost_power(self) -> float:
+        """(Q + dV/dq) q': power of the applied forces that have no potential [W]."""
+        return float(self._out[POWER][0])
+
+    def directions(self) -> Array:
+        """Force or moment on ``to`` of unit multipliers of the closures, in the axes of ``from`` (m, 3)."""
+        if not self.closed:
+            return np.zeros((0, 3))
+        rates = [f"{name}'" for name in self.model.coordinates]
+        values = self.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
+        values |= dict(zip(self.model.coordinates, self.q, strict=True))
+        return interpret(self.model.program, values, ["closure.direction"])["closure.direction"]
+
+    def factor(self, rows: NDArray[np.int64]) -> Factor:
+        """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
+        n, r = self.n, len(rows)
+        A = np.zeros((n + r, n + r), order="F")
+        A[:n, :n] = self.g
+        if r:
+            G = self.G[rows]
+            A[n:, :n], A[:n, n:] = G, G.T
+        lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
+        if info:
+            raise Singular("the metric is singular along the motions that the closures leave free")
+        return Factor(n, lu, pivots)
+
+    def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
+        """q'' (n,) and the multipliers of the given rows. Raises Singular."""
+        q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
+        if not np.isfinite(q2).all():
+            raise Singular("the accelerations are not finite")
+        return q2, -minus
+
+    def rank(self) -> int:
+        """Number of independent rows here."""
+        return rank_of(self.G)
+
+    def independent_rows(self) -> NDArray[np.int64]:
+        """Indices of as many independent rows as there are, chosen by QR with pivoting of G^T; in order."""
+        rank = self.rank()
+        if not rank:
+            return np.zeros(0, dtype=np.int64)
+        pivots = qr(self.G.T, mode="r", pivoting=True)[1]
+        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Factors of [g G^T; G 0]."""
+
+    n: int
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    def solve(self, a: Array, b: Array) -> tuple[Array, Array]:
+        """x, y with g x + G^T y = a and G x = b."""
+        x, _ = lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
+        return x[: self.n], x[self.n :]
+
+
+def rank_of(G: Array) -> int:
+    """Number of singular values above RANK times the largest."""
+    if not G.size:
+        return 0
+    values = svdvals(G)
+    return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
+
+
+def _inputs(model: Model, request: Mapping[str, Any]) -> tuple[list[str], list[Any], list[str]]:
+    """Names of the inputs that are given, and what is given for them."""
+    given = request.get("inputs") or {}
+    if not isinstance(given, Mapping):
+        raise InvalidDocument.at("/inputs", "object-expected", "an object of numbers, expressions or tables by name")
+    known = {s.name for s in model.program.symbols if s.kind == "input"}
+    known |= {f"tau.{name}" for name in model.coordinates}
+    for name in given:
+        if name not in known:
+            pointer = f"/inputs/{escape(name)}"
+            raise InvalidDocument.at(pointer, "unknown-input", f"unknown input '{str(name)[:80]}'")
+    return list(given), list(given.values()), [f"/inputs/{escape(name)}" for name in given]
+
+
+def _prescribed(model: Model, request: Mapping[str, Any]) -> Prescribed:
+    """``prescribed``: {coordinate: motion}."""
+    given = request.get("prescribed") or {}
+    if not isinstance(given, Mapping):
+        raise InvalidDocument.at("/prescribed", "object-expected", "an object of motions by coordinate is needed")
+    faults = [
+        Fault(f"/prescribed/{escape(name)}", "unknown-coordinate", f"unknown coordinate '{str(name)[:80]}'")
+        for name in given
+        if name not in model.coordinates
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    if not given:
+        return Prescribed()
+    signals = Signals(list(given.values()), [f"/prescribed/{escape(name)}" for name in given], smooth=True)
+    return Prescribed(tuple(model.coordinates.index(name) for name in given), signals)
+
+
+def read_state(model: Model, request: Mapping[str, Any]) -> tuple[Array, Array]:
+    """One state q, qd (n,) of a request. Raises InvalidDocument."""
+    states = read_states(model, {k: request[k] for k in ("q", "qd") if k in request}, None)
+    if len(states.q) != 1:
+        raise InvalidDocument.at("/q", "wrong-length", f"one state is needed, found {len(states.q)}")
+    return states.q[0].copy(), states.qd[0].copy()

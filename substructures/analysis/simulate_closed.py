@@ -1,0 +1,247 @@
+"""Motion of a tree with closures and prescribed coordinates, judged by its residuals and its energy balance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from substructures.analysis.closed_record import Record, Status, judged
+from substructures.analysis.constrained import Array, Constrained, Singular, read_state
+from substructures.analysis.events import Events, Occurrence, first_stop
+from substructures.analysis.loops import (
+    SINGULAR,
+    check_fields,
+    fixed_names,
+    mobility,
+)
+from substructures.analysis.project import Consistent, consistent_state
+from substructures.analysis.reductions import METHODS, Reduction
+from substructures.analysis.trajectory import Trajectory
+from substructures.errors import InvalidDocument
+from substructures.model import Model
+from substructures.states import numeric
+
+FIELDS = {
+    *("q", "qd", "parameters", "inputs", "prescribed", "fixed", "start", "end", "times", "outputs", "method"),
+    *("rtol", "atol", "max_step", "max_steps", "events"),
+}
+#: how often a step that ran into a singular position is begun again, each time a quarter as long
+RETRIES = 10
+#: told the share of the time span that is done; False cancels
+Progress = Callable[[float], bool]
+
+
+@dataclass(frozen=True)
+class Span:
+    """Times of a request and how finely they are integrated."""
+
+    times: Array
+    rtol: float
+    atol: float
+    max_step: float
+    max_steps: int
+
+
+def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Trajectory:
+    """Integrate the equations of motion with closures from the closed state nearest to the given one.
+
+    ``request`` (plain JSON data, or arrays): ``q``, ``qd`` (n,) or by name; ``fixed``: coordinates that keep their
+    start values while the loops are closed; ``end`` (and ``start``, 0) [s]; ``outputs``: number of equidistant times
+    (201), or ``times``; ``parameters``; ``inputs``: {name: number, expression in t, or {"times", "values"}};
+    ``prescribed``: {coordinate: expression in t, or table}; ``method``: ``projection`` (default) or ``partitioning``;
+    ``rtol`` (1e-10), ``atol`` (1e-12), ``max_step`` [s], ``max_steps`` (1,000,000); ``events``: [{name, expression,
+    direction, terminal}].
+
+    The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
+    ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
+    of the prescribed coordinates), ``event_times``. Checks: both residuals are zero, and T + V - work is constant; work
+    is that of forces without potential and of prescribed coordinates. Loops that cannot be closed, a singular
+    position and a span that cannot be finished are ``failed``, with advice and the motion up to there. Raises
+    InvalidDocument and MissingValue.
+    """
+    check_fields(request, FIELDS)
+    span, method = _span(request), request.get("method", "projection")
+    if method not in METHODS:
+        known = ", ".join(METHODS)
+        raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
+    s, (q, qd) = Constrained(model, request), read_state(model, request)
+    events = Events(model, request, s.values)
+    start = float(span.times[0])
+    state = consistent_state(s, start, q, qd, fixed_names(model, request))
+    place = mobility(s, start, state.q)
+    message = state.message or (f"the start is singular: {SINGULAR}" if place.singular else "")
+    if message:
+        return _nothing(model, state, start, message)
+    s.move(start, state.q, state.qd)
+    run = _Run(METHODS[method](s, place.rank), span, events, progress)
+    status, message = run.go(state.q, state.qd)
+    return judged(s, run.record, status, message)
+
+
+class _Run:
+    """One integration."""
+
+    def __init__(self, reduction: Reduction, span: Span, events: Events, progress: Progress | None) -> None:
+        self.reduction, self.span, self.events, self.progress = reduction, span, events, progress
+        self.s, self.record = reduction.s, Record()
+        self.pending: Iterator[float] = iter(span.times)
+        self.next = next(self.pending, np.inf)
+
+    def go(self, q: Array, qd: Array) -> tuple[Status, str]:
+        """Status and message at the end; the states are in the record."""
+        start = float(self.span.times[0])
+        try:
+            self.landed = start, q, qd, 0.0
+            y = self.reduction.pack(q, qd, 0.0)
+            self._output(start, lambda _: y)
+            return self._steps(self._solver(start, y, None))
+        except Singular as error:
+            return "failed", f"stopped at t = {self.s.t:.9g} s: {error}; {SINGULAR}"
+
+    def _solver(self, t: float, y: Array, first: float | None) -> DOP853:
+        span, last = self.span, float(self.span.times[-1])
+        options: dict[str, Any] = {"rtol": span.rtol, "atol": span.atol, "max_step": span.max_step}
+        if first is not None:
+            options["first_step"] = min(first, last - t)
+        return DOP853(self.reduction.rates, t, y, last, **options)
+
+    def _steps(self, solver: DOP853) -> tuple[Status, str]:
+        before = solver.t, self.events.at(solver.t, self.s.q, self.s.qd)
+        while solver.status == "running":
+            solver, advice = self._advance(solver)
+            if advice:
+                return "failed", advice
+            stop = None
+            if solver.t >= self.next or self.events.events:
+                dense = solver.dense_output()
+                after = solver.t, self._events(solver.t, dense)
+                stop = self._watch(before, after, dense)
+                self._output(solver.t if stop is None else stop.time, dense)
+                before = after
+                if stop is not None:
+                    return self._stopped(stop, dense)
+            solver = self._landed(solver)
+            if self.progress is not None and not self.progress(self._share(solver.t)):
+                return "stopped", f"cancelled at t = {solver.t:.9g} s"
+        return "finished", ""
+
+    def _events(self, t: float, dense: Callable[[float], Array]) -> Array:
+        """Values of the event expressions at a time within the last step."""
+        return self.events.at(t, *self.reduction.land(t, dense(t))) if self.events.events else np.zeros(0)
+
+    def _watch(
+        self, before: tuple[float, Array], after: tuple[float, Array], dense: Callable[[float], Array]
+    ) -> Occurrence | None:
+        """Record the events of the last step, up to the one that stops the motion."""
+        found = self.events.between(before, after, lambda t: self._events(t, dense))
+        stop = first_stop(found)
+        self.record.occurrences += [one for one in found if stop is None or one.time <= stop.time]
+        return stop
+
+    def _advance(self, solver: DOP853) -> tuple[DOP853, str]:
+        """The solver after one step; what to change when there is none."""
+        if self.record.steps >= self.span.max_steps:
+            many = f"t = {solver.t:.9g} s after {self.record.steps:,} steps"
+            return solver, f"{many}: raise 'max_steps', or shorten the time span"
+        for _ in range(RETRIES):
+            try:
+                complaint = solver.step()
+                break
+            except Singular:
+                solver = self._again(solver)
+        else:
+            complaint = solver.step()
+        if solver.status == "failed":
+            return solver, (
+                f"no step from t = {solver.t:.9g} s on: {complaint} Look for very stiff springs, for masses or lengths "
+                "near zero and for jumps in loads; else loosen 'rtol', or end before"
+            )
+        self.record.steps += 1
+        return solver, ""
+
+    def _again(self, solver: DOP853) -> DOP853:
+        """From the last state with another choice of independent rows and coordinates and a shorter step."""
+        t, q, qd, work = self.landed
+        self.s.move(t, q, qd)
+        self.reduction.choose(anew=True)
+        return self._solver(t, self.reduction.pack(q, qd, work), solver.h_abs / 4)
+
+    def _landed(self, solver: DOP853) -> DOP853:
+        """The solver with its state moved onto the closures; a new one when the state has got another meaning."""
+        t, work = solver.t, float(solver.y[-1])
+        q, qd = self.reduction.land(t, solver.y)
+        self.record.residuals(self.s)
+        self.landed = t, q, qd, work
+        changed = self.reduction.choose()
+        y = self.reduction.pack(q, qd, work)
+        if changed and solver.status == "running":
+            return self._solver(t, y, solver.h_abs)
+        if solver.status == "running":
+            solver.y, solver.f = y, self.reduction.rates(t, y)
+        return solver
+
+    def _output(self, until: float, dense: Callable[[float], Array]) -> None:
+        """Record all output times up to this one."""
+        while self.next <= until:
+            self._keep(self.next, dense(self.next))
+            self.next = next(self.pending, np.inf)
+
+    def _keep(self, t: float, y: Array) -> None:
+        self.reduction.land(t, y)
+        self.record.keep(self.s, self.reduction.rows, float(y[-1]))
+
+    def _stopped(self, stop: Occurrence, dense: Callable[[float], Array]) -> tuple[Status, str]:
+        if not self.record.rows or self.record.rows[-1]["t"] < stop.time:
+            self._keep(stop.time, dense(stop.time))
+        return "stopped", f"event '{stop.event.name}' at t = {stop.time:.12g} s"
+
+    def _share(self, t: float) -> float:
+        first, last = self.span.times[[0, -1]]
+        return float((t - first) / (last - first))
+
+
+def _nothing(model: Model, state: Consistent, t: float, message: str) -> Trajectory:
+    """A motion that did not begin."""
+    residuals = {"position_residual": state.residual, "velocity_residual": state.velocity_residual}
+    series = {name: np.array([value]) for name, value in residuals.items()}
+    return Trajectory(model.coordinates, np.array([t]), state.q[None], state.qd[None], series, (), "failed", message)
+
+
+def _span(request: Mapping[str, Any]) -> Span:
+    start = _positive(request, "start", 0.0, zero=True)
+    if request.get("times") is not None:
+        times = numeric(request["times"], "/times")
+        if times.ndim != 1 or len(times) < 2 or (np.diff(times) <= 0).any():
+            raise InvalidDocument.at("/times", "not-rising", "two or more rising times are needed")
+    else:
+        end = _positive(request, "end", None)
+        count = request.get("outputs", 201)
+        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 1_000_000:
+            raise InvalidDocument.at("/outputs", "bad-number", "a whole number from 2 to 1,000,000 is needed")
+        if end <= start:
+            raise InvalidDocument.at("/end", "bad-number", "the end must be later than the start")
+        times = np.linspace(start, end, count)
+    most = _positive(request, "max_steps", 1_000_000.0)
+    return Span(
+        times,
+        _positive(request, "rtol", 1e-10),
+        _positive(request, "atol", 1e-12),
+        _positive(request, "max_step", np.inf),
+        int(most),
+    )
+
+
+def _positive(request: Mapping[str, Any], name: str, default: float | None, zero: bool = False) -> float:
+    given = request.get(name)
+    if given is None:
+        if default is None:
+            raise InvalidDocument.at(f"/{name}", "missing", f"'{name}' is needed")
+        return default
+    value = numeric(given, f"/{name}")
+    if value.ndim or not (zero or value > 0):
+        raise InvalidDocument.at(f"/{name}", "bad-number", f"'{name}' must be a positive number")
+    return float(value)
