@@ -69,6 +69,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
         known = ", ".join(METHODS)
         raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
     s, (q, qd) = Constrained(model, request), read_state(model, request)
+    _check_tables(s, span)
     events = Events(model, request, s.values)
     start = float(span.times[0])
     state = consistent_state(s, start, q, qd, fixed_names(model, request))
@@ -202,6 +203,16 @@ class _Run:
     def _share(self, t: float) -> float:
         first, last = self.span.times[[0, -1]]
         return float((t - first) / (last - first))
+
+
+def _check_tables(s: Constrained, span: Span) -> None:
+    """Tables of prescribed motions hold within their times only."""
+    if s.prescribed.motions is None:
+        return
+    first, last = s.prescribed.motions.span
+    if span.times[0] < first or span.times[-1] > last:
+        message = f"the tables hold from {first:.9g} s to {last:.9g} s only; end within, or continue them"
+        raise InvalidDocument.at("/prescribed", "outside-table", message)
 
 
 def _nothing(model: Model, state: Consistent, t: float, message: str) -> Trajectory:
