@@ -62,7 +62,7 @@ def judged(s: Constrained, record: Record, status: Status, message: str) -> Traj
     checks = [
         _residual_check("position", "m, 1", "the closures (and prescribed motions) are met", record),
         _residual_check("velocity", "m/s, 1/s", "G q' + phi_t = 0", record),
-        _energy_check(s, t, columns),
+        energy_check(t, columns, s.conservative),
     ]
     events = np.array([one.time for one in record.occurrences])
     series = columns | {"event_times": events}
@@ -74,7 +74,7 @@ def _residual_check(name: str, unit: str, reason: str, record: Record) -> Check:
     return Check(f"{name} residual", "zero", reason, unit, worst, 1.0, RESIDUAL, time)
 
 
-def _energy_check(s: Constrained, t: Array, columns: Mapping[str, Array]) -> Check:
+def energy_check(t: Array, columns: Mapping[str, Array], conservative: bool) -> Check:
     """T + V - work is constant; relative to the largest of T, the change of V and the work."""
     V = columns["potential_energy"]
     total = columns["kinetic_energy"] + V - columns["work"]
@@ -82,8 +82,8 @@ def _energy_check(s: Constrained, t: Array, columns: Mapping[str, Array]) -> Che
     scale = max(float(np.abs(x).max()) for x in sizes) or 1.0
     drift = np.abs(total - total[0])
     bad = np.flatnonzero(~(drift <= ENERGY * scale))
-    reason = "T + V is constant: the forces have a potential, closures do no work"
-    if not s.conservative:
+    reason = "T + V is constant: the forces have a potential, constraints do no work"
+    if not conservative:
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
     return Check(
         "energy", "constant", reason, "J", float(drift.max()), scale, ENERGY, float(t[bad[0]]) if len(bad) else None

@@ -58,7 +58,7 @@ class Constrained:
         Raises InvalidDocument with pointers into the request, and MissingValue.
         """
         self.model, self.n = model, model.dof
-        names, given, pointers = _inputs(model, request)
+        names, given, pointers = given_inputs(model, request)
         self._inputs = Signals(given, pointers, smooth=False)
         self.prescribed = _prescribed(model, request)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
@@ -188,8 +188,8 @@ def rank_of(G: Array) -> int:
     return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
 
 
-def _inputs(model: Model, request: Mapping[str, Any]) -> tuple[list[str], list[Any], list[str]]:
-    """Names of the inputs that are given, and what is given for them."""
+def given_inputs(model: Model, request: Mapping[str, Any]) -> tuple[list[str], list[Any], list[str]]:
+    """Names of the inputs that are given, what is given for them, and where. Raises InvalidDocument."""
     given = request.get("inputs") or {}
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("/inputs", "object-expected", "an object of numbers, expressions or tables by name")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,10 +19,10 @@ from substructures.analysis.loops import (
 )
 from substructures.analysis.project import Consistent, consistent_state
 from substructures.analysis.reductions import METHODS, Reduction
+from substructures.analysis.span import Progress, Span, read_span
 from substructures.analysis.trajectory import Trajectory
 from substructures.errors import InvalidDocument
 from substructures.model import Model
-from substructures.states import numeric
 
 FIELDS = {
     *("q", "qd", "parameters", "inputs", "prescribed", "fixed", "start", "end", "times", "outputs", "method"),
@@ -31,19 +30,6 @@ FIELDS = {
 }
 #: how often a step that ran into a singular position is begun again, each time a quarter as long
 RETRIES = 10
-#: told the share of the time span that is done; False cancels
-Progress = Callable[[float], bool]
-
-
-@dataclass(frozen=True)
-class Span:
-    """Times of a request and how finely they are integrated."""
-
-    times: Array
-    rtol: float
-    atol: float
-    max_step: float
-    max_steps: int
 
 
 def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Trajectory:
@@ -64,7 +50,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
     InvalidDocument and MissingValue.
     """
     check_fields(request, FIELDS)
-    span, method = _span(request), request.get("method", "projection")
+    span, method = read_span(request), request.get("method", "projection")
     if method not in METHODS:
         known = ", ".join(METHODS)
         raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
@@ -220,39 +206,3 @@ def _nothing(model: Model, state: Consistent, t: float, message: str) -> Traject
     residuals = {"position_residual": state.residual, "velocity_residual": state.velocity_residual}
     series = {name: np.array([value]) for name, value in residuals.items()}
     return Trajectory(model.coordinates, np.array([t]), state.q[None], state.qd[None], series, (), "failed", message)
-
-
-def _span(request: Mapping[str, Any]) -> Span:
-    start = _positive(request, "start", 0.0, zero=True)
-    if request.get("times") is not None:
-        times = numeric(request["times"], "/times")
-        if times.ndim != 1 or len(times) < 2 or (np.diff(times) <= 0).any():
-            raise InvalidDocument.at("/times", "not-rising", "two or more rising times are needed")
-    else:
-        end = _positive(request, "end", None)
-        count = request.get("outputs", 201)
-        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 1_000_000:
-            raise InvalidDocument.at("/outputs", "bad-number", "a whole number from 2 to 1,000,000 is needed")
-        if end <= start:
-            raise InvalidDocument.at("/end", "bad-number", "the end must be later than the start")
-        times = np.linspace(start, end, count)
-    most = _positive(request, "max_steps", 1_000_000.0)
-    return Span(
-        times,
-        _positive(request, "rtol", 1e-10),
-        _positive(request, "atol", 1e-12),
-        _positive(request, "max_step", np.inf),
-        int(most),
-    )
-
-
-def _positive(request: Mapping[str, Any], name: str, default: float | None, zero: bool = False) -> float:
-    given = request.get(name)
-    if given is None:
-        if default is None:
-            raise InvalidDocument.at(f"/{name}", "missing", f"'{name}' is needed")
-        return default
-    value = numeric(given, f"/{name}")
-    if value.ndim or not (zero or value > 0):
-        raise InvalidDocument.at(f"/{name}", "bad-number", f"'{name}' must be a positive number")
-    return float(value)
