@@ -27,6 +27,8 @@ closure.residual          m      phi
 closure.jacobian          m n    G
 closure.acceleration      m      G' q'
 closure.direction         m 3    force or moment on B of a unit multiplier, in the axes of A
+closure.alignment         m      m_j . e_j of the axes that a row makes parallel: 1 when closed, -1 when upside down;
+                                 0 for all other rows
 ========================  =====  ====================================================================
 """
 
@@ -73,6 +75,8 @@ ROWS: dict[str, tuple[str, ...]] = {
 }
 #: rows of directions: (axis j of B, axis i of A, sign) with residual sign * m_j . e_i
 TURNS = {"rx": (2, 1, -1), "ry": (2, 0, 1), "rz": (0, 1, 1), "cross": (1, 2, 1)}
+#: the axis that such a row makes parallel
+ALIGNED = {"rx": 2, "ry": 2, "rz": 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +149,7 @@ def closure_formulas(
     motions = body_motions(mounted, states, rates)
     entries: dict[str, dict[tuple[int, ...], Any]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
     directions: dict[tuple[int, ...], Any] = {}
+    alignment: dict[tuple[int, ...], Any] = {}
     k = 0
     for cut in cuts:
         frames = [_frame(mounted, states, motions, end) for end in (cut.start, cut.end)]
@@ -155,10 +160,11 @@ def closure_formulas(
             entries["jacobian"] |= {(k, a): x for a, x in columns.items()}
             entries["acceleration"][(k,)] = acceleration
             directions |= {(k, i): direction[i] for i in range(3)}
+            alignment[(k,)] = relative.axes[ALIGNED[name]][ALIGNED[name]] if name in ALIGNED else 0
             k += 1
     shapes = {"residual": (k,), "jacobian": (k, len(rates)), "acceleration": (k,)}
     outputs = {f"closure.{name}": Formulas(shapes[name], some) for name, some in entries.items()}
-    return outputs | {"closure.direction": Formulas((k, 3), directions)}
+    return outputs | {"closure.direction": Formulas((k, 3), directions), "closure.alignment": Formulas((k,), alignment)}
 
 
 def _frame(

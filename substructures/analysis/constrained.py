@@ -126,12 +126,27 @@ class Constrained:
 
     def directions(self) -> Array:
         """Force or moment on ``to`` of unit multipliers of the closures, in the axes of ``from`` (m, 3)."""
+        return self._closure_output("closure.direction", (0, 3))
+
+    def upside_down(self) -> str:
+        """The name of a closure that holds all three directions but is closed with axes turned round; else ''."""
+        aligned = self._closure_output("closure.alignment", (0,))
+        k = 0
+        for rows in self.model.closures:
+            end = k + len(rows.rows)
+            if "rz" in rows.rows and aligned[k:end].min() < 0:
+                return rows.name
+            k = end
+        return ""
+
+    def _closure_output(self, name: str, empty: tuple[int, ...]) -> Array:
+        """An output that is seldom needed, at the present state."""
         if not self.closed:
-            return np.zeros((0, 3))
+            return np.zeros(empty)
         rates = [f"{name}'" for name in self.model.coordinates]
         values = self.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
         values |= dict(zip(self.model.coordinates, self.q, strict=True))
-        return interpret(self.model.program, values, ["closure.direction"])["closure.direction"]
+        return interpret(self.model.program, values, [name])[name]
 
     def factor(self, rows: NDArray[np.int64]) -> Factor:
         """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""

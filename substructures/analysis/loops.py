@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -69,6 +69,14 @@ class LoopState:
     reactions: tuple[Reaction, ...]
     actuation: Mapping[str, float]
     message: str = ""
+
+    def plain(self) -> dict[str, Any]:
+        """As plain data with arrays, for an answer in JSON."""
+        state = {k: getattr(self.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
+        reactions = [asdict(reaction) for reaction in self.reactions]
+        mobility = asdict(self.mobility) | {"redundant": self.mobility.redundant}
+        forces = {"qdd": self.qdd, "multipliers": self.multipliers, "actuation": dict(self.actuation)}
+        return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
 
 
 def analyse_loops(model: Model, request: Mapping[str, Any]) -> LoopState:

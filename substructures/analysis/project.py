@@ -56,8 +56,10 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
         qd[free] += _least(s, free, s.velocity_residual)
     s.move(t, q, qd)
     left = _largest(s.velocity_residual)
-    tolerance = CLOSED * max(1.0, _largest(qd))
-    return Consistent(q, qd, residual, left, iterations, "" if left <= tolerance else _rate_message(s, fixed))
+    message = _turned_message(s)
+    if not message and not left <= CLOSED * max(1.0, _largest(qd)):
+        message = _rate_message(s, fixed)
+    return Consistent(q, qd, residual, left, iterations, message)
 
 
 def _close(s: Constrained, t: float, q: Array, free: NDArray[np.int64]) -> tuple[Array, int]:
@@ -110,6 +112,12 @@ def _open_message(s: Constrained, fixed: Collection[str]) -> str:
         f"the closures cannot be met: the nearest position found leaves {s.labels[k]} open by {abs(s.phi[k]):.3g}; "
         f"{advice}begin closer to a closed position, or change the lengths"
     )
+
+
+def _turned_message(s: Constrained) -> str:
+    name = s.upside_down()
+    advice = "begin closer to the wanted position, or turn one of its frames"
+    return f"'{name}' is closed with axes in opposite directions, which it cannot hold: {advice}" if name else ""
 
 
 def _rate_message(s: Constrained, fixed: Collection[str]) -> str:

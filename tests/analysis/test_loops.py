@@ -193,6 +193,26 @@ def test_loops_that_cannot_close_say_why() -> None:
     assert "velocities cannot be met" in stuck.message
 
 
+def test_a_weld_must_not_close_upside_down() -> None:
+    """Two bars that face each other: their dot products vanish, too, but a weld holds directions."""
+    body = {"name": "b", "parent": "base", "joint": {"type": "revolute"}, "mass": 1, "inertia": {"xx": 1, "zz": 1}}
+    part = {"name": "p", "bodies": [body]}
+    closure = {"name": "seam", "type": "weld", "from": "x.b", "to": "world"}
+    document = {"instances": [{"name": "x", "substructure": "p"}], "closures": [closure]}
+    model = tree_model(document, {"p": part})
+    assert analyse_loops(model, {"q": [0.2]}).message == ""
+    turned = analyse_loops(model, {"q": [3.0]})
+    assert "'seam' is closed with axes in opposite directions" in turned.message
+
+
+def test_plain_answer() -> None:
+    """What a service sends: names, lists and numbers."""
+    answer = analyse_loops(SLIDER, {"q": at(SLIDER, crank=0.4, piston=0.17)}).plain()
+    assert {"q", "qd", "qdd", "multipliers", "actuation", "mobility", "reactions", "message"} <= answer.keys()
+    assert answer["mobility"]["degrees_of_freedom"] == 1
+    assert [r["closure"] for r in answer["reactions"]] == ["wrist"]
+
+
 def test_a_dead_centre_is_singular() -> None:
     """A parallelogram stretched out may go on as parallelogram or antiparallelogram."""
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
