@@ -12,10 +12,10 @@ from scipy.linalg import lstsq, null_space, qr, svd
 
 from substructures.analysis.constrained import RANK, Array, Constrained, Singular, rank_of, read_state
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
+from substructures.analysis.signals import scalar
 from substructures.definition import escape
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model
-from substructures.states import numeric
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
 NEARBY = 1e-3
@@ -88,7 +88,7 @@ def analyse_loops(model: Model, request: Mapping[str, Any]) -> LoopState:
     """
     check_fields(request, {"q", "qd", "fixed", "t", "parameters", "inputs", "prescribed"})
     s, (q, qd) = Constrained(model, request), read_state(model, request)
-    t = float(numeric(request.get("t") or 0, "/t"))
+    t = scalar(request.get("t", 0), "/t")
     state = consistent_state(s, t, q, qd, fixed_names(model, request))
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)

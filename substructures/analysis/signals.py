@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import PPoly, make_interp_spline
 
 from substructures.compile import compile_program
 from substructures.errors import Fault, InvalidDocument
@@ -20,15 +20,15 @@ from substructures.states import numeric
 Array = NDArray[np.float64]
 TIME = Symbol("t", "time", "s")
 #: value, rate and acceleration at a time
-Motion = Callable[[float], tuple[float, float, float]]
+Motion = Callable[[float], Any]
 
 
 class Signals:
     """Several functions of time, evaluated together. ``values[k]``: value, first and second derivative of the k-th."""
 
     def __init__(self, given: Sequence[Any], pointers: Sequence[str], smooth: bool) -> None:
-        """``smooth``: tables are interpolated by cubic splines with continuous second derivatives, and hold within
-        their times only; otherwise linearly, with the first and last value before and after.
+        """``smooth``: tables are interpolated by splines of degree five and hold within their times only; otherwise
+        linearly, with the first and last value before and after.
 
         Raises InvalidDocument.
         """
@@ -44,7 +44,7 @@ class Signals:
             elif isinstance(one, Mapping):
                 self._add_table(k, one, pointer, smooth)
             else:
-                self.values[k, 0] = _number(one, pointer)
+                self.values[k, 0] = scalar(one, pointer)
         self._time = np.zeros((1, 1))
         self._places = list(formulas)
         self._found = np.zeros((1, len(formulas), 3))
@@ -83,10 +83,11 @@ def _expression(graph: Graph, text: str, pointer: str) -> Expr:
         raise InvalidDocument.at(pointer, "bad-expression", f"{error}; expressions in 't' are allowed") from None
 
 
-def _number(given: Any, pointer: str) -> float:
+def scalar(given: Any, pointer: str) -> float:
+    """One finite number. Raises InvalidDocument."""
     value = numeric(given, pointer)
     if value.ndim:
-        raise InvalidDocument.at(pointer, "number-expected", "a number, an expression in t or a table is needed")
+        raise InvalidDocument.at(pointer, "number-expected", "one number is needed")
     return float(value)
 
 
@@ -106,9 +107,13 @@ def _columns(given: Mapping[str, Any], pointer: str) -> tuple[Array, Array]:
 
 
 def _spline(times: Array, values: Array) -> Motion:
-    spline = CubicSpline(times, values)
-    first, second = spline.derivative(1), spline.derivative(2)
-    return lambda t: (float(spline(t)), float(first(t)), float(second(t)))
+    """A spline of degree five (less for few points) and its derivatives as one piecewise polynomial."""
+    spline = PPoly.from_spline(make_interp_spline(times, values, k=min(5, len(times) - 1)))
+    terms = [spline, spline.derivative(1), spline.derivative(2)]
+    stacked = np.zeros((*spline.c.shape, 3))
+    for i, term in enumerate(terms):
+        stacked[len(spline.c) - len(term.c) :, :, i] = term.c
+    return PPoly(stacked, spline.x)
 
 
 def _polygon(times: Array, values: Array) -> Motion:

@@ -51,7 +51,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
     """
     check_fields(request, FIELDS)
     span, method = read_span(request), request.get("method", "projection")
-    if method not in METHODS:
+    if not isinstance(method, str) or method not in METHODS:
         known = ", ".join(METHODS)
         raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
     s, (q, qd) = Constrained(model, request), read_state(model, request)

@@ -158,7 +158,7 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
 
 def _form(request: Mapping[str, Any]) -> str:
     form = request.get("form", "voronets")
-    if form not in FORMS:
+    if not isinstance(form, str) or form not in FORMS:
         raise InvalidDocument.at("/form", "unknown-form", f"unknown form; there are {', '.join(FORMS)}")
     return FORMS[form]
 

@@ -49,7 +49,7 @@ def read_span(request: Mapping[str, Any]) -> Span:
     most = _positive(request, "max_steps", 1_000_000.0)
     return Span(
         times,
-        _positive(request, "rtol", 1e-10),
+        max(_positive(request, "rtol", 1e-10), 1e-13),
         _positive(request, "atol", 1e-12),
         _positive(request, "max_step", np.inf),
         int(most),

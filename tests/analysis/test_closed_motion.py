@@ -149,11 +149,11 @@ def test_slider_crank(method: str) -> None:
 @pytest.mark.parametrize("kind", ["expression", "table"])
 def test_prescribed_crank(kind: str) -> None:
     """The torque that a given motion of the crank needs."""
-    model, t = slider_crank(), np.linspace(0, 0.2, 401)
+    model, t = slider_crank(), np.linspace(0, 0.1, 101)
     given: Any = "30*t + 0.2*sin(25*t)"
     if kind == "table":
         given = {"times": t, "values": 30 * t + 0.2 * np.sin(25 * t)}
-    request = {"q": at(model, piston=0.18), "prescribed": {"x.crank": given}, "end": 0.2, "outputs": 51}
+    request = {"q": at(model, piston=0.18), "prescribed": {"x.crank": given}, "end": 0.1, "outputs": 51}
     motion = simulate_closed(model, request)
     right(motion)
     a = 30 * motion.t + 0.2 * np.sin(25 * motion.t)
@@ -161,7 +161,7 @@ def test_prescribed_crank(kind: str) -> None:
     size = 1e-9 if kind == "expression" else 1e-7
     np.testing.assert_allclose(motion.q[:, 0], a, atol=size)
     torque = crank_inertia(a) * dw + 0.5 * slope(crank_inertia, a) * w**2
-    np.testing.assert_allclose(motion.series["actuation"][:, 0], torque, atol=1e-8 if kind == "expression" else 0.01)
+    np.testing.assert_allclose(motion.series["actuation"][:, 0], torque, atol=1e-8 if kind == "expression" else 1e-4)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -279,6 +279,8 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
 
 BAD: list[tuple[Plain, str, str]] = [
     ({"method": "magic"}, "/method", "unknown-method"),
+    ({"method": ["projection"]}, "/method", "unknown-method"),
+    ({"start": [0, 1]}, "/start", "bad-number"),
     ({"end": 0}, "/end", "bad-number"),
     ({"end": None}, "/end", "missing"),
     ({"outputs": 1}, "/outputs", "bad-number"),

@@ -250,6 +250,9 @@ BAD: list[tuple[Plain, str, str]] = [
     ({"prescribed": {"x.crank": "sin(x)"}}, "/prescribed/x.crank", "bad-expression"),
     ({"q": [0, 1]}, "/q", "wrong-length"),
     ({"speed": 1}, "/speed", "unknown-field"),
+    ({"t": [1, 2]}, "/t", "number-expected"),
+    ({"prescribed": {"x.crank": [1, 2]}}, "/prescribed/x.crank", "number-expected"),
+    ({"prescribed": ["x.crank"]}, "/prescribed", "object-expected"),
     ({"parameters": {"m": 1}}, "/parameters/m", "unknown-parameter"),
 ]
 
