@@ -69,3 +69,30 @@ def bricard(gravity: Any = (0, -9.81, 0)) -> Model:
 def at(model: Model, **values: float) -> np.ndarray:
     """A state by coordinate names without the instance."""
     return np.array([values.get(name.partition(".")[2], 0.0) for name in model.coordinates])
+
+
+#: where the legs of the Stewart platform stand, and where they carry it (angles in rad, radii in m)
+STEWART = [(1.0, 0.2 + k * np.pi / 3 + 0.25 * (-1) ** k, 0.6, 0.2 + k * np.pi / 3 - 0.25 * (-1) ** k) for k in range(6)]
+
+
+def stewart_points() -> tuple[np.ndarray, np.ndarray]:
+    """Feet in the world and joints in the platform, (6, 3) each, in millimetres exactly."""
+    feet = [[r * np.cos(a), r * np.sin(a), 0] for r, a, _, _ in STEWART]
+    joints = [[r * np.cos(a), r * np.sin(a), 0] for _, _, r, a in STEWART]
+    return np.round(feet, 3), np.round(joints, 3)
+
+
+def stewart() -> Model:
+    """Six legs of the catalogue and a platform that is free, tied by six balls."""
+    feet, joints = stewart_points()
+    free = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+    body = {"name": "plate", "parent": "base", "joint": free, "mass": 80, "inertia": {"xx": 8, "yy": 8, "zz": 15}}
+    ports = [{"name": f"p{k}", "body": "plate", "position": [float(x) for x in p]} for k, p in enumerate(joints)]
+    plate = {"name": "plate", "bodies": [body], "ports": ports}
+    instances: list[Plain] = [{"name": "top", "substructure": "plate"}]
+    for k, foot in enumerate(feet):
+        place = {"position": [float(x) for x in foot]}
+        instances.append({"name": f"leg{k}", "substructure": "stewart-leg", "placement": place})
+    closures = [{"name": f"ball{k}", "type": "ball", "from": f"leg{k}.joint", "to": f"top.p{k}"} for k in range(6)]
+    document = {"gravity": [0, 0, -9.81], "instances": instances, "closures": closures}
+    return tree_model(document, {"plate": plate, "stewart-leg": catalogue.load("stewart-leg")})

@@ -6,13 +6,25 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_trees import SQUEEZER, at, bricard, closed_entry, four_bar, governor, slider_crank, tree_model
+from closed_trees import (
+    SQUEEZER,
+    at,
+    bricard,
+    closed_entry,
+    four_bar,
+    governor,
+    slider_crank,
+    stewart,
+    stewart_points,
+    tree_model,
+)
 from random_trees import Plain
 
 from substructures import InvalidDocument, Model, catalogue
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.simulate_closed import simulate_closed
 from substructures.analysis.trajectory import Trajectory
+from substructures.evaluation import evaluate
 
 METHODS = ["projection", "partitioning"]
 
@@ -223,6 +235,30 @@ def test_governor_keeps_its_speed_and_its_angular_momentum() -> None:
     momentum = (0.011 + 2 * (0.03 + 0.3 * np.sin(arms)) ** 2) * motion.qd[:, 0]
     assert np.ptp(arms) > 0.05
     np.testing.assert_allclose(momentum, momentum[0], rtol=1e-9)
+
+
+def test_stewart_platform() -> None:
+    """Six legs of the catalogue under a plate: 24 coordinates, 6 degrees of freedom; the legs are as long as the
+    distance of their ends, at the start and while it sinks.
+    """
+    model = stewart()
+    pose = {"x": 0.05, "y": -0.03, "z": 1.1, "yaw": 0.1, "pitch": 0.05, "roll": -0.04}
+    lift = {f"tau.leg{k}.extension": 200 for k in range(6)}
+    request: Plain = {"q": at(model, **pose), "fixed": [f"top.{name}" for name in pose], "inputs": lift}
+    found = analyse_loops(model, request)
+    assert (found.mobility.degrees_of_freedom, found.mobility.redundant) == (6, False)
+    np.testing.assert_allclose(found.consistent.q[:6], list(pose.values()))
+    motion = simulate_closed(model, request | {"end": 0.3, "outputs": 4})
+    right(motion)
+    assert abs(motion.q[-1, 2] - 1.1) > 0.1
+    feet, joints = stewart_points()
+    for q in motion.q:
+        where = evaluate(model, {"quantities": ["kinematics"], "q": q})["kinematics"]
+        plate = model.frames.index("top.plate")
+        ends = where["position"][plate] + joints @ where["rotation"][plate].T
+        lengths = np.linalg.norm(ends - feet, axis=1)
+        extensions = [x for x, name in zip(q, model.coordinates, strict=True) if name.endswith("extension")]
+        np.testing.assert_allclose(extensions, lengths - 1.2, atol=1e-11)
 
 
 def test_both_methods_agree() -> None:
