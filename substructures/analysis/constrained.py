@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,12 @@ CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
 RANK = 1e-8
 
 
+SINGULAR = (
+    "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
+    "(another start, a shorter time span), or change the lengths"
+)
+
+
 class Singular(ArithmeticError):
     """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
 
@@ -52,8 +59,9 @@ class Constrained:
     ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
     """
 
-    def __init__(self, model: Model, request: Mapping[str, Any]) -> None:
-        """``request``: ``parameters``, ``inputs`` (numbers, expressions in t, tables) and ``prescribed``.
+    def __init__(self, model: Model, request: Mapping[str, Any], folder: Path | None = None) -> None:
+        """``request``: ``parameters``, ``inputs`` (numbers, expressions in t, tables) and ``prescribed``; ``folder``: a
+        cache of compiled kernels.
 
         Raises InvalidDocument with pointers into the request, and MissingValue.
         """
@@ -65,7 +73,7 @@ class Constrained:
         self.closed = len(self.labels)
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
-        self._bind(request, names)
+        self._bind(request, names, folder)
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
@@ -75,7 +83,7 @@ class Constrained:
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
-    def _bind(self, request: Mapping[str, Any], inputs: Sequence[str]) -> None:
+    def _bind(self, request: Mapping[str, Any], inputs: Sequence[str], folder: Path | None) -> None:
         model, n, m = self.model, self.n, self.closed
         states = States(np.zeros((1, n)), np.zeros((1, n)), None, True)
         outputs = [*NEEDS, *(CLOSURES if m else ())]
@@ -88,7 +96,7 @@ class Constrained:
         self._x = np.zeros((1, len(columns)))
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
         self.values = {k: float(np.reshape(v, -1)[0]) for k, v in found.items() if k not in columns}
-        kernel = compile_program(source, list(self._out))
+        kernel = compile_program(source, list(self._out), folder)
         self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
         self.g = self._out["metric"][0]
 
@@ -158,14 +166,14 @@ class Constrained:
             A[n:, :n], A[:n, n:] = G, G.T
         lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
         if info:
-            raise Singular("the metric is singular along the motions that the closures leave free")
+            raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
         return Factor(n, lu, pivots)
 
     def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
         """q'' (n,) and the multipliers of the given rows. Raises Singular."""
         q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
         if not np.isfinite(q2).all():
-            raise Singular("the accelerations are not finite")
+            raise Singular("the accelerations are not finite: check masses, inertias and loads")
         return q2, -minus
 
     def rank(self) -> int:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.constrained import RANK, Array, Constrained, Singular, rank_of, read_state
+from substructures.analysis.constrained import RANK, SINGULAR, Array, Constrained, Singular, rank_of, read_state
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
 from substructures.analysis.signals import scalar
 from substructures.definition import escape
@@ -79,21 +80,22 @@ class LoopState:
         return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
 
 
-def analyse_loops(model: Model, request: Mapping[str, Any]) -> LoopState:
+def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None = None) -> LoopState:
     """Close the loops at a state and say what moves and what holds.
 
     ``request``: ``q`` and ``qd`` (n,), near a closed position; ``fixed``: coordinates that keep their values; ``t``,
-    ``parameters``, ``inputs`` and ``prescribed`` as for a simulation. Raises InvalidDocument and MissingValue; loops
-    that cannot be closed, and singular positions, are messages in the result.
+    ``parameters``, ``inputs`` and ``prescribed`` as for a simulation. ``folder``: a cache of compiled kernels.
+    Raises InvalidDocument and MissingValue; loops that cannot be closed, and singular positions, are messages in the
+    result.
     """
     check_fields(request, {"q", "qd", "fixed", "t", "parameters", "inputs", "prescribed"})
-    s, (q, qd) = Constrained(model, request), read_state(model, request)
+    s, (q, qd) = Constrained(model, request, folder), read_state(model, request)
     t = scalar(request.get("t", 0), "/t")
     state = consistent_state(s, t, q, qd, fixed_names(model, request))
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
-    message = state.message or ("the position is singular; " + SINGULAR if place.singular else "")
+    message = state.message or ("the position is singular: " + SINGULAR if place.singular else "")
     try:
         qdd, _ = s.accelerations(s.independent_rows())
         multipliers = least_multipliers(s, qdd)
@@ -102,12 +104,6 @@ def analyse_loops(model: Model, request: Mapping[str, Any]) -> LoopState:
     actuation = zip(s.labels[s.closed :], multipliers[s.closed :], strict=True)
     forces = {label.removeprefix("motion."): float(x) for label, x in actuation}
     return LoopState(state, place, qdd, multipliers, reactions(s, multipliers, place), forces, message)
-
-
-SINGULAR = (
-    "the closures lose rank there, so that the motion is not determined: keep away from this dead centre or branching "
-    "(another start, a shorter time span), or change the lengths"
-)
 
 
 def mobility(s: Constrained, t: float, q: Array) -> Mobility:

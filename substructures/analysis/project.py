@@ -48,7 +48,7 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
     q, iterations = _close(s, t, q, free)
     s.move(t, q, qd)
     residual = _largest(s.phi)
-    if not residual <= CLOSED:
+    if not residual <= CLOSED * max(1.0, _largest(q)):
         return Consistent(q, qd, residual, _largest(s.velocity_residual), iterations, _open_message(s, fixed))
     qd = qd.copy()
     for _ in range(2):
@@ -137,9 +137,10 @@ def project(s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int6
     """
     s.move(t, q, qd)
     factor = s.factor(rows)
-    nothing = np.zeros(s.n)
+    nothing, size = np.zeros(s.n), np.inf
     for _ in range(8):
-        if _largest(s.phi[rows]) <= CLOSED / 100:
+        before, size = size, _largest(s.phi[rows])
+        if size <= CLOSED / 100 or before / 2 < size:
             break
         q = q + factor.solve(nothing, -s.phi[rows])[0]
         s.move(t, q, qd)

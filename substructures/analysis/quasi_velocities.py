@@ -24,7 +24,7 @@ multipliers           m      lambda in g q'' + Gamma q'q' = Q + B^T lambda; need
 kinetic_energy               T* = v^T g* v / 2 [J]
 potential_energy             of gravity and springs [J]
 lost_power                   power of the forces without potential [W]
-gaps                  k      distances of rolling bodies from their planes: constant along motions [m]
+gaps                  k      constant [m, 1]: distances of rolling bodies from planes, residuals of closures
 ====================  =====  ==============================================================================
 """
 

@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.constrained import RANK, Array, Constrained, Singular
+from substructures.analysis.constrained import RANK, SINGULAR, Array, Constrained, Singular
 from substructures.analysis.project import CLOSED, project
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
 WORN = 0.3
+#: residuals that are as small as rounding lets them be, where lengths are large [m, 1]
+ROUNDING = 1e-10
 
 
 class Reduction(ABC):
@@ -71,7 +73,7 @@ class Reduction(ABC):
             return
         values = svdvals(self.s.G)
         if len(values) < self.rank or not values[self.rank - 1] > 100 * RANK * values[0]:
-            raise Singular("the closures lose rank")
+            raise Singular(SINGULAR)
         if anew or svdvals(self.s.G[self.rows])[-1] < WORN * values[self.rank - 1]:
             pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
             self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
@@ -130,14 +132,16 @@ class Partitioned(Reduction):
         s, k = self.s, len(self.independent)
         q, qd = self.near.copy(), np.zeros(self.n)
         q[self.independent], qd[self.independent] = y[:k], y[k:-1]
+        size = np.inf
         for _ in range(20):
             s.move(t, q, qd)
-            residual = s.phi[self.rows]
-            if np.abs(residual).max(initial=0) <= CLOSED / 10:
+            residual, before = s.phi[self.rows], size
+            size = float(np.abs(residual).max(initial=0))
+            if size <= CLOSED / 10 or before / 2 < size <= ROUNDING:
                 break
             q[self.dependent] -= self._solve(residual)
         else:
-            raise Singular("the dependent coordinates cannot be found")
+            raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
         qd[self.dependent] = -self._solve(s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows])
         self.near = q
         s.move(t, q, qd)
@@ -148,7 +152,7 @@ class Partitioned(Reduction):
             return b
         _, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
         if info or not np.isfinite(x).all():
-            raise Singular("the independent coordinates do not determine the others")
+            raise Singular("the independent coordinates do not determine the others: " + SINGULAR)
         return np.asarray(x, dtype=np.float64)
 
     def rates(self, t: float, y: Array) -> Array:

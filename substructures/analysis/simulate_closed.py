@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853
 
 from substructures.analysis.closed_record import Record, Status, judged
-from substructures.analysis.constrained import Array, Constrained, Singular, read_state
+from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular, read_state
 from substructures.analysis.events import Events, Occurrence, first_stop
 from substructures.analysis.loops import (
-    SINGULAR,
     check_fields,
     fixed_names,
     mobility,
@@ -32,7 +32,9 @@ FIELDS = {
 RETRIES = 10
 
 
-def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Trajectory:
+def simulate_closed(
+    model: Model, request: Mapping[str, Any], progress: Progress | None = None, folder: Path | None = None
+) -> Trajectory:
     """Integrate the equations of motion with closures from the closed state nearest to the given one.
 
     ``request`` (plain JSON data, or arrays): ``q``, ``qd`` (n,) or by name; ``fixed``: coordinates that keep their
@@ -40,7 +42,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
     (201), or ``times``; ``parameters``; ``inputs``: {name: number, expression in t, or {"times", "values"}};
     ``prescribed``: {coordinate: expression in t, or table}; ``method``: ``projection`` (default) or ``partitioning``;
     ``rtol`` (1e-10), ``atol`` (1e-12), ``max_step`` [s], ``max_steps`` (1,000,000); ``events``: [{name, expression,
-    direction, terminal}].
+    direction, terminal}]. ``folder``: a cache of compiled kernels.
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
@@ -54,7 +56,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
     if not isinstance(method, str) or method not in METHODS:
         known = ", ".join(METHODS)
         raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
-    s, (q, qd) = Constrained(model, request), read_state(model, request)
+    s, (q, qd) = Constrained(model, request, folder), read_state(model, request)
     _check_tables(s, span)
     events = Events(model, request, s.values)
     start = float(span.times[0])
@@ -66,7 +68,7 @@ def simulate_closed(model: Model, request: Mapping[str, Any], progress: Progress
     s.move(start, state.q, state.qd)
     run = _Run(METHODS[method](s, place.rank), span, events, progress)
     status, message = run.go(state.q, state.qd)
-    return judged(s, run.record, status, message)
+    return judged(s, run.record, status, message) if run.record.rows else _nothing(model, state, start, message)
 
 
 class _Run:
@@ -87,7 +89,7 @@ class _Run:
             self._output(start, lambda _: y)
             return self._steps(self._solver(start, y, None))
         except Singular as error:
-            return "failed", f"stopped at t = {self.s.t:.9g} s: {error}; {SINGULAR}"
+            return "failed", f"stopped at t = {self.s.t:.9g} s: {error}"
 
     def _solver(self, t: float, y: Array, first: float | None) -> DOP853:
         span, last = self.span, float(self.span.times[-1])

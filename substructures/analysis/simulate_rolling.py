@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ RESIDUAL = 1e-9
 class _Rolling:
     """The right-hand side in compiled form. y = (q, v, work)."""
 
-    def __init__(self, equations: QuasiVelocities, request: Mapping[str, Any]) -> None:
+    def __init__(self, equations: QuasiVelocities, request: Mapping[str, Any], folder: Path | None) -> None:
         model, self.form = equations.model, _form(request)
         self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
         names, given, pointers = given_inputs(model, request)
@@ -49,7 +50,7 @@ class _Rolling:
         self._x = np.zeros((1, len(columns)))
         wanted = ("rates", "metric", self.form, "forces", "lost_power")
         self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
-        kernel = compile_program(equations.program, wanted)
+        kernel = compile_program(equations.program, wanted, folder)
         self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
         self.columns = columns
 
@@ -72,22 +73,25 @@ class _Rolling:
         return result
 
 
-def simulate_rolling(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Trajectory:
+def simulate_rolling(
+    model: Model, request: Mapping[str, Any], progress: Progress | None = None, folder: Path | None = None
+) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
     ``request``: ``constraints``, ``velocities`` or ``independent`` (see VelocityConstraints); ``q`` (n,) or by name,
     and ``v`` (p,) or by name, or ``qd`` that meets the constraints; ``form``: ``voronets`` (default) or
     ``boltzmann-hamel``; ``parameters``, ``inputs``, ``start``, ``end``, ``times``, ``outputs``, ``rtol``, ``atol``,
-    ``max_step``, ``max_steps`` as for closed loops. Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the
-    latter B q'), ``gaps``, ``kinetic_energy``, ``potential_energy``, ``work``. Checks: B q' is zero, gaps and T + V -
-    work are constant. A span that cannot be finished is ``failed``. Raises InvalidDocument, MissingValue and TooLarge.
+    ``max_step``, ``max_steps`` as for closed loops; ``folder``: a cache of compiled kernels. Series: ``v`` (K, p),
+    ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``, ``potential_energy``,
+    ``work``. Checks: B q' is zero, gaps and T + V - work are constant. A span that cannot be finished is ``failed``.
+    Raises InvalidDocument, MissingValue and TooLarge.
     """
     check_fields(request, FIELDS)
     span = read_span(request)
     document = {k: request[k] for k in DOCUMENT if request.get(k) is not None}
     place = dict(zip(model.coordinates, map(float, read_state(model, request)[0]), strict=True))
     equations = quasi_velocity_equations(model, document, place)
-    rolling = _Rolling(equations, request)
+    rolling = _Rolling(equations, request, folder)
     q, v = _start(rolling, request)
     states, status, message, steps = _integrate(rolling, span, np.concatenate((q, v, (0.0,))), progress)
     return _judged(rolling, span.times[: len(states)], states, (status, message, steps))
@@ -95,6 +99,9 @@ def simulate_rolling(model: Model, request: Mapping[str, Any], progress: Progres
 
 def _integrate(rolling: _Rolling, span: Span, y: Array, progress: Progress | None) -> tuple[Array, Status, str, int]:
     first, last = span.times[[0, -1]]
+    if not np.isfinite(rolling.rates(first, y)).all():
+        advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
+        return y[None], "failed", advice, 0
     solver = DOP853(rolling.rates, first, y, last, rtol=span.rtol, atol=span.atol, max_step=span.max_step)
     states, steps = [y], 0
     while solver.status == "running":
@@ -192,6 +199,6 @@ def _slip_check(t: Array, slips: Array) -> Check:
 def _gap_check(t: Array, gaps: Array) -> Check:
     drift = np.abs(gaps - gaps[0]).max(axis=1)
     bad = np.flatnonzero(~(drift <= RESIDUAL))
-    reason = "rolling bodies keep their distance from the plane: the integral of the constraint along the normal"
+    reason = "integrals of constraints: rolling bodies keep their distance from the plane, loops stay closed"
     first = float(t[bad[0]]) if len(bad) else None
     return Check("gaps", "constant", reason, "m", float(drift.max()), 1.0, RESIDUAL, first)

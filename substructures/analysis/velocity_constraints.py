@@ -7,6 +7,8 @@ linear       ``expression`` in velocities (arm.q1'), coordinates and parameters;
 knife_edge   the origin of ``frame`` does not move along its second axis (the edge is along the first): U_a2
 rolling      the body of ``frame`` rolls without slip on a plane: U_a + Omega_a x rho in the axes of the plane, three
              rows ``slip_1``, ``slip_2`` and ``contact``; rho leads from the origin of the frame to the contact point
+closure      the rows of a closure of the tree, differentiated by time: G q' = 0. With them the equations of a closed
+             mechanism are formulas in independent velocities; its positions must meet the closures from the start
 ===========  =====================================================================================================
 
 A rolling disc has its axis along the third axis e of the frame: rho = -r (N - (N.e) e) / |N - (N.e) e|, N the normal of
@@ -61,7 +63,14 @@ class Rolling(Document):
     normal: tuple[Number, Number, Number] = Field((0, 0, 1), description="of the plane in the world (constant)")
 
 
-Constraint = Annotated[Linear | KnifeEdge | Rolling, Field(discriminator="type")]
+class Closed(Document):
+    """A closure of the tree, by its name."""
+
+    type: Literal["closure"]
+    name: Name
+
+
+Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
 
 
 class VelocityConstraints(Document):
@@ -83,7 +92,9 @@ class VelocityConstraints(Document):
 
 @dataclass
 class VelocityRows:
-    """Rows of B with their names (constraint, or constraint.row), and the gaps of rolling contacts by name."""
+    """Rows of B with their names (constraint, or constraint.row), and what they keep constant by name: the gaps of
+    rolling contacts and the residuals of closures.
+    """
 
     labels: list[str] = field(default_factory=list)
     rows: list[list[Expr]] = field(default_factory=list)
@@ -99,11 +110,14 @@ class VelocityRows:
 def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
     """The rows of all constraints. Raises InvalidDocument."""
     result = VelocityRows()
-    kinematics = f.kinematics() if any(c.type != "linear" for c in constraints) else {}
+    framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
+    kinematics = f.kinematics() if framed else {}
     for i, constraint in enumerate(constraints):
         pointer = f"/constraints/{i}"
         if isinstance(constraint, Linear):
             result.add(constraint.name, linear_row(f, constraint.expression, f"{pointer}/expression"))
+        elif isinstance(constraint, Closed):
+            _close(f, constraint.name, f"{pointer}/name", result)
         elif constraint.frame not in f.model.frames:
             known = ", ".join(f.model.frames[:20])
             message = f"unknown frame '{constraint.frame}'; there are {known}"
@@ -136,6 +150,21 @@ class _Frame:
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
         self.Omega = [vector("Omega", a) for a in range(f.n)]
+
+
+def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:
+    names = [(rows.name, row) for rows in f.model.closures for row in rows.rows]
+    if name not in {closure for closure, _ in names}:
+        known = ", ".join(rows.name for rows in f.model.closures) or "none"
+        f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'; there are {known}")
+        return
+    found = f.outputs(["closure.jacobian", "closure.residual"])
+    zero = f.graph.zero
+    for k, (closure, row) in enumerate(names):
+        residual = found["closure.residual"].get((k,), zero)
+        if closure == name and not residual.is_zero:
+            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
+            result.gaps[f"{name}.{row}"] = residual
 
 
 def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:

@@ -118,6 +118,15 @@ def test_four_bar(method: str) -> None:
     np.testing.assert_allclose(left, np.cos(crank - rocker), atol=1e-11)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_large_mechanisms(method: str) -> None:
+    """A thousand times as large, where rounding is, too."""
+    pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
+    model = closed_entry("four-bar", [pin], (0, -9.81, 0), l0=400, l1=100, l2=350, l3=250)
+    request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=0.3), "fixed": ["x.crank"]}
+    right(simulate_closed(model, request | {"end": 5, "outputs": 11, "method": method}))
+
+
 def piston(a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """x, dx/da, d2x/da2 of a slider-crank with r = 0.04, l = 0.14."""
     r, length = 0.04, 0.14
@@ -311,6 +320,13 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
     assert (long.status, long.steps) == ("failed", 20)
     assert "max_steps" in long.message
     assert len(long.t) >= 1
+
+
+def test_nothing_that_has_mass() -> None:
+    massless = dict.fromkeys(("x.m1", "x.m2", "x.m3"), 0)
+    motion = simulate_closed(four_bar(), {"q": [0.7, 0.2, 1.2], "parameters": massless, "end": 1})
+    assert motion.status == "failed"
+    assert "metric is singular" in motion.message
 
 
 BAD: list[tuple[Plain, str, str]] = [
