@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.closed_requests import LoopRequest
 from substructures.analysis.constrained import Constrained
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.reductions import METHODS
@@ -49,15 +50,15 @@ def closed(name: str) -> Model:
 def requests(model: Model, name: str) -> dict[str, Any]:
     """What is simulated."""
     if name == "andrews-squeezer":
-        return {"q": [SQUEEZER[c[2:]][0] for c in model.coordinates], "end": 0.03, "outputs": 2}
+        return {"q": [SQUEEZER[c[2:]][0] for c in model.coordinates], "span": [0, 0.03], "count": 2}
     start = {"four-bar": [0.7, 0.2, 1.2], "slider-crank": [0.7, -0.2, 0.16]}[name]
-    return {"q": start, "qd": [20, 0, 0], "fixed": [model.coordinates[0]], "end": 1, "outputs": 2}
+    return {"q": start, "qd": [20, 0, 0], "fixed": [model.coordinates[0]], "span": [0, 1], "count": 2}
 
 
 def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
     """Seconds for q'' at one state: compiled formulas and the linear equations."""
     state = analyse_loops(model, {k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
-    s = Constrained(model, {})
+    s = Constrained(model, LoopRequest())
     s.move(0, state.q, state.qd)
     rows = s.independent_rows()
     start = perf_counter()
@@ -78,7 +79,7 @@ def measure(name: str, method: str) -> dict[str, Any]:
         seconds.append(perf_counter() - start)
     result: dict[str, Any] = {"mechanism": name, "method": method, "seconds": median(seconds), "steps": motion.steps}
     result |= {check.name: check.worst / check.scale for check in motion.checks}
-    result |= {"span": request["end"], "per_call": per_call(model, request), "right": motion.is_right}
+    result |= {"span": request["span"][1], "per_call": per_call(model, request), "right": motion.is_right}
     if name == "andrews-squeezer":
         end = np.array([SQUEEZER[c[2:]][1] for c in model.coordinates])
         result["error"] = float(np.abs(motion.q[-1] / end - 1).max())

@@ -9,15 +9,15 @@ where c = G' q' for closures and -s'' for prescribed coordinates, whose multipli
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
+from substructures.analysis.closed_requests import ClosedRequest, LoopRequest, StateRequest
 from substructures.analysis.signals import Signals
 from substructures.analysis.work import POWER, with_power
 from substructures.compile import compile_program
@@ -59,21 +59,16 @@ class Constrained:
     ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
     """
 
-    def __init__(self, model: Model, request: Mapping[str, Any], folder: Path | None = None) -> None:
-        """``request``: ``parameters``, ``inputs`` (numbers, expressions in t, tables) and ``prescribed``; ``folder``: a
-        cache of compiled kernels.
-
-        Raises InvalidDocument with pointers into the request, and MissingValue.
-        """
+    def __init__(self, model: Model, request: LoopRequest | ClosedRequest, folder: Path | None = None) -> None:
+        """``folder``: a cache of compiled kernels. Raises InvalidDocument (pointers into the request), MissingValue."""
         self.model, self.n = model, model.dof
-        names, given, pointers = given_inputs(model, request)
-        self._inputs = Signals(given, pointers, smooth=False)
+        self._inputs = read_inputs(model, request)
         self.prescribed = _prescribed(model, request)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
         self.closed = len(self.labels)
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
-        self._bind(request, names, folder)
+        self._bind(request, folder)
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
@@ -83,19 +78,17 @@ class Constrained:
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
-    def _bind(self, request: Mapping[str, Any], inputs: Sequence[str], folder: Path | None) -> None:
-        model, n, m = self.model, self.n, self.closed
-        states = States(np.zeros((1, n)), np.zeros((1, n)), None, True)
+    def _bind(self, request: StateRequest, folder: Path | None) -> None:
+        model, m, inputs = self.model, self.closed, self._inputs.names
         outputs = [*NEEDS, *(CLOSURES if m else ())]
-        plain = {"parameters": request.get("parameters")}
-        found = symbol_values(model, plain, states, outputs)
+        found = parameter_values(model, request, outputs)
         source = with_power(model, outputs, inputs)
         self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
         rates = [f"{name}'" for name in model.coordinates]
         columns = [*model.coordinates, *rates, "t", *inputs]
         self._x = np.zeros((1, len(columns)))
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
-        self.values = {k: float(np.reshape(v, -1)[0]) for k, v in found.items() if k not in columns}
+        self.values = {name: x for name, x in found.items() if name not in columns}
         kernel = compile_program(source, list(self._out), folder)
         self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
         self.g = self._out["metric"][0]
@@ -211,41 +204,50 @@ def rank_of(G: Array) -> int:
     return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
 
 
-def given_inputs(model: Model, request: Mapping[str, Any]) -> tuple[list[str], list[Any], list[str]]:
-    """Names of the inputs that are given, what is given for them, and where. Raises InvalidDocument."""
-    given = request.get("inputs") or {}
-    if not isinstance(given, Mapping):
-        raise InvalidDocument.at("/inputs", "object-expected", "an object of numbers, expressions or tables by name")
+def read_inputs(model: Model, request: StateRequest) -> Signals:
+    """The inputs that are given; all others are zero. Raises InvalidDocument."""
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     known |= {f"tau.{name}" for name in model.coordinates}
-    for name in given:
-        if name not in known:
-            pointer = f"/inputs/{escape(name)}"
-            raise InvalidDocument.at(pointer, "unknown-input", f"unknown input '{str(name)[:80]}'")
-    return list(given), list(given.values()), [f"/inputs/{escape(name)}" for name in given]
+    check_names(request.inputs, known, "input", "/inputs")
+    return Signals(request.inputs, "/inputs", smooth=False)
 
 
-def _prescribed(model: Model, request: Mapping[str, Any]) -> Prescribed:
-    """``prescribed``: {coordinate: motion}."""
-    given = request.get("prescribed") or {}
-    if not isinstance(given, Mapping):
-        raise InvalidDocument.at("/prescribed", "object-expected", "an object of motions by coordinate is needed")
+def _prescribed(model: Model, request: LoopRequest | ClosedRequest) -> Prescribed:
+    given = request.prescribed
+    check_names(given, set(model.coordinates), "coordinate", "/prescribed")
+    if not given:
+        return Prescribed()
+    return Prescribed(tuple(model.coordinates.index(n) for n in given), Signals(given, "/prescribed", smooth=True))
+
+
+def check_names(given: Iterable[str], known: Collection[str], kind: str, pointer: str) -> None:
+    """Raises InvalidDocument for names that are not known."""
     faults = [
-        Fault(f"/prescribed/{escape(name)}", "unknown-coordinate", f"unknown coordinate '{str(name)[:80]}'")
+        Fault(f"{pointer}/{escape(name)}", f"unknown-{kind}", f"unknown {kind} '{name[:80]}'")
         for name in given
-        if name not in model.coordinates
+        if name not in known
     ]
     if faults:
         raise InvalidDocument(faults)
-    if not given:
-        return Prescribed()
-    signals = Signals(list(given.values()), [f"/prescribed/{escape(name)}" for name in given], smooth=True)
-    return Prescribed(tuple(model.coordinates.index(name) for name in given), signals)
 
 
-def read_state(model: Model, request: Mapping[str, Any]) -> tuple[Array, Array]:
+def check_fixed(model: Model, fixed: Sequence[str]) -> None:
+    """Raises InvalidDocument for coordinates that are not known."""
+    for i, name in enumerate(fixed):
+        if name not in model.coordinates:
+            raise InvalidDocument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+
+
+def parameter_values(model: Model, request: StateRequest, needs: Sequence[str]) -> dict[str, float]:
+    """Values of all symbols for outputs; states are zero. Raises InvalidDocument and MissingValue."""
+    nothing = States(np.zeros((1, model.dof)), np.zeros((1, model.dof)), None, True)
+    found = symbol_values(model, {"parameters": request.parameters}, nothing, needs)
+    return {name: float(np.reshape(x, -1)[0]) for name, x in found.items()}
+
+
+def read_state(model: Model, request: StateRequest) -> tuple[Array, Array]:
     """One state q, qd (n,) of a request. Raises InvalidDocument."""
-    states = read_states(model, {k: request[k] for k in ("q", "qd") if k in request}, None)
+    states = read_states(model, {"q": request.q, "qd": request.qd}, None)
     if len(states.q) != 1:
         raise InvalidDocument.at("/q", "wrong-length", f"one state is needed, found {len(states.q)}")
     return states.q[0].copy(), states.qd[0].copy()

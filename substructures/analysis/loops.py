@@ -11,11 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.constrained import RANK, SINGULAR, Array, Constrained, Singular, rank_of, read_state
+from substructures.analysis.closed_requests import LoopRequest
+from substructures.analysis.constrained import (
+    RANK,
+    SINGULAR,
+    Array,
+    Constrained,
+    Singular,
+    check_fixed,
+    rank_of,
+    read_state,
+)
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
-from substructures.analysis.signals import scalar
-from substructures.definition import escape
-from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
@@ -83,15 +90,14 @@ class LoopState:
 def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None = None) -> LoopState:
     """Close the loops at a state and say what moves and what holds.
 
-    ``request``: ``q`` and ``qd`` (n,), near a closed position; ``fixed``: coordinates that keep their values; ``t``,
-    ``parameters``, ``inputs`` and ``prescribed`` as for a simulation. ``folder``: a cache of compiled kernels.
+    ``request``: see LoopRequest; ``q`` and ``qd`` near a closed position. ``folder``: a cache of compiled kernels.
     Raises InvalidDocument and MissingValue; loops that cannot be closed, and singular positions, are messages in the
     result.
     """
-    check_fields(request, {"q", "qd", "fixed", "t", "parameters", "inputs", "prescribed"})
-    s, (q, qd) = Constrained(model, request, folder), read_state(model, request)
-    t = scalar(request.get("t", 0), "/t")
-    state = consistent_state(s, t, q, qd, fixed_names(model, request))
+    asked = LoopRequest.read(request)
+    check_fixed(model, asked.fixed)
+    s, (q, qd), t = Constrained(model, asked, folder), read_state(model, asked), asked.t
+    state = consistent_state(s, t, q, qd, asked.fixed)
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
@@ -172,25 +178,3 @@ def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reac
             k += 1
         result.append(Reaction(rows.name, load[0], load[1], place.entangled.get(rows.name, ())))
     return tuple(result)
-
-
-def fixed_names(model: Model, request: Mapping[str, Any]) -> tuple[str, ...]:
-    """``fixed``: a list of coordinates. Raises InvalidDocument."""
-    given = request.get("fixed") or ()
-    if not isinstance(given, (list, tuple)):
-        raise InvalidDocument.at("/fixed", "list-expected", "a list of coordinates is needed")
-    faults = [
-        Fault(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{str(name)[:80]}'")
-        for i, name in enumerate(given)
-        if name not in model.coordinates
-    ]
-    if faults:
-        raise InvalidDocument(faults)
-    return tuple(given)
-
-
-def check_fields(request: Mapping[str, Any], known: set[str]) -> None:
-    """Raises InvalidDocument for fields that a request does not have."""
-    faults = [Fault(f"/{escape(k)}", "unknown-field", f"unknown field '{k}'") for k in request if k not in known]
-    if faults:
-        raise InvalidDocument(faults)

@@ -70,7 +70,14 @@ def quasi_velocity_equations(
     velocities that are not given should describe the motion well. Raises InvalidDocument (pointers into the document):
     constraints that are not linear, quasi-velocities that do not determine the velocities; TooLarge.
     """
-    spec, f = VelocityConstraints.read(document), Formulation(model)
+    return velocity_equations(model, VelocityConstraints.read(document), near)
+
+
+def velocity_equations(
+    model: Model, spec: VelocityConstraints, near: Mapping[str, float] | None = None
+) -> QuasiVelocities:
+    """quasi_velocity_equations for a document that was read."""
+    f = Formulation(model)
     given = velocity_rows(f, spec.constraints)
     rows, dependent = independent_rows(f, given)
     names, own = quasi_velocity_rows(f, spec, rows, near)

@@ -10,24 +10,18 @@ import numpy as np
 from scipy.integrate import DOP853
 
 from substructures.analysis.closed_record import Record, Status, judged
-from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular, read_state
+from substructures.analysis.closed_requests import ClosedRequest
+from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular, check_fixed, read_state
 from substructures.analysis.events import Events, Occurrence, first_stop
-from substructures.analysis.loops import (
-    check_fields,
-    fixed_names,
-    mobility,
-)
+from substructures.analysis.loops import mobility
 from substructures.analysis.project import Consistent, consistent_state
 from substructures.analysis.reductions import METHODS, Reduction
-from substructures.analysis.span import Progress, Span, read_span
 from substructures.analysis.trajectory import Trajectory
 from substructures.errors import InvalidDocument
 from substructures.model import Model
 
-FIELDS = {
-    *("q", "qd", "parameters", "inputs", "prescribed", "fixed", "start", "end", "times", "outputs", "method"),
-    *("rtol", "atol", "max_step", "max_steps", "events"),
-}
+#: told the share of the time span that is done; False cancels
+Progress = Callable[[float], bool | None]
 #: how often a step that ran into a singular position is begun again, each time a quarter as long
 RETRIES = 10
 
@@ -37,12 +31,8 @@ def simulate_closed(
 ) -> Trajectory:
     """Integrate the equations of motion with closures from the closed state nearest to the given one.
 
-    ``request`` (plain JSON data, or arrays): ``q``, ``qd`` (n,) or by name; ``fixed``: coordinates that keep their
-    start values while the loops are closed; ``end`` (and ``start``, 0) [s]; ``outputs``: number of equidistant times
-    (201), or ``times``; ``parameters``; ``inputs``: {name: number, expression in t, or {"times", "values"}};
-    ``prescribed``: {coordinate: expression in t, or table}; ``method``: ``projection`` (default) or ``partitioning``;
-    ``rtol`` (1e-10), ``atol`` (1e-12), ``max_step`` [s], ``max_steps`` (1,000,000); ``events``: [{name, expression,
-    direction, terminal}]. ``folder``: a cache of compiled kernels.
+    ``request``: see ClosedRequest. ``progress`` is told the finished share of the span and cancels by False.
+    ``folder``: a cache of compiled kernels.
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
@@ -51,22 +41,18 @@ def simulate_closed(
     position and a span that cannot be finished are ``failed``, with advice and the motion up to there. Raises
     InvalidDocument and MissingValue.
     """
-    check_fields(request, FIELDS)
-    span, method = read_span(request), request.get("method", "projection")
-    if not isinstance(method, str) or method not in METHODS:
-        known = ", ".join(METHODS)
-        raise InvalidDocument.at("/method", "unknown-method", f"unknown method {str(method)[:40]!r}; there are {known}")
-    s, (q, qd) = Constrained(model, request, folder), read_state(model, request)
-    _check_tables(s, span)
-    events = Events(model, request, s.values)
-    start = float(span.times[0])
-    state = consistent_state(s, start, q, qd, fixed_names(model, request))
+    asked = ClosedRequest.read(request)
+    check_fixed(model, asked.fixed)
+    s, (q, qd), start = Constrained(model, asked, folder), read_state(model, asked), asked.span[0]
+    _check_tables(s, asked.span)
+    events = Events(model, asked.events, s.values)
+    state = consistent_state(s, start, q, qd, asked.fixed)
     place = mobility(s, start, state.q)
     message = state.message or (f"the start is singular: {SINGULAR}" if place.singular else "")
     if message:
         return _nothing(model, state, start, message)
     s.move(start, state.q, state.qd)
-    run = _Run(METHODS[method](s, place.rank), span, events, progress)
+    run = _Run(METHODS[asked.method](s, place.rank), asked, events, progress)
     status, message = run.go(state.q, state.qd)
     return judged(s, run.record, status, message) if run.record.rows else _nothing(model, state, start, message)
 
@@ -74,15 +60,15 @@ def simulate_closed(
 class _Run:
     """One integration."""
 
-    def __init__(self, reduction: Reduction, span: Span, events: Events, progress: Progress | None) -> None:
-        self.reduction, self.span, self.events, self.progress = reduction, span, events, progress
+    def __init__(self, reduction: Reduction, asked: ClosedRequest, events: Events, progress: Progress | None) -> None:
+        self.reduction, self.asked, self.events, self.progress = reduction, asked, events, progress
         self.s, self.record = reduction.s, Record()
-        self.pending: Iterator[float] = iter(span.times)
+        self.pending: Iterator[float] = iter(asked.outputs().tolist())
         self.next = next(self.pending, np.inf)
 
     def go(self, q: Array, qd: Array) -> tuple[Status, str]:
         """Status and message at the end; the states are in the record."""
-        start = float(self.span.times[0])
+        start = self.asked.span[0]
         try:
             self.landed = start, q, qd, 0.0
             y = self.reduction.pack(q, qd, 0.0)
@@ -92,8 +78,8 @@ class _Run:
             return "failed", f"stopped at t = {self.s.t:.9g} s: {error}"
 
     def _solver(self, t: float, y: Array, first: float | None) -> DOP853:
-        span, last = self.span, float(self.span.times[-1])
-        options: dict[str, Any] = {"rtol": span.rtol, "atol": span.atol, "max_step": span.max_step}
+        last = self.asked.span[1]
+        options: dict[str, Any] = self.asked.options()
         if first is not None:
             options["first_step"] = min(first, last - t)
         return DOP853(self.reduction.rates, t, y, last, **options)
@@ -114,7 +100,7 @@ class _Run:
                 if stop is not None:
                     return self._stopped(stop, dense)
             solver = self._landed(solver)
-            if self.progress is not None and not self.progress(self._share(solver.t)):
+            if self.progress is not None and self.progress(self._share(solver.t)) is False:
                 return "stopped", f"cancelled at t = {solver.t:.9g} s"
         return "finished", ""
 
@@ -133,7 +119,7 @@ class _Run:
 
     def _advance(self, solver: DOP853) -> tuple[DOP853, str]:
         """The solver after one step; what to change when there is none."""
-        if self.record.steps >= self.span.max_steps:
+        if self.record.steps >= self.asked.max_steps:
             many = f"t = {solver.t:.9g} s after {self.record.steps:,} steps"
             return solver, f"{many}: raise 'max_steps', or shorten the time span"
         for _ in range(RETRIES):
@@ -147,7 +133,7 @@ class _Run:
         if solver.status == "failed":
             return solver, (
                 f"no step from t = {solver.t:.9g} s on: {complaint} Look for very stiff springs, for masses or lengths "
-                "near zero and for jumps in loads; else loosen 'rtol', or end before"
+                "near zero and for jumps in loads; else loosen 'relative_tolerance', or end before"
             )
         self.record.steps += 1
         return solver, ""
@@ -189,16 +175,16 @@ class _Run:
         return "stopped", f"event '{stop.event.name}' at t = {stop.time:.12g} s"
 
     def _share(self, t: float) -> float:
-        first, last = self.span.times[[0, -1]]
+        first, last = self.asked.span
         return float((t - first) / (last - first))
 
 
-def _check_tables(s: Constrained, span: Span) -> None:
+def _check_tables(s: Constrained, span: tuple[float, float]) -> None:
     """Tables of prescribed motions hold within their times only."""
     if s.prescribed.motions is None:
         return
     first, last = s.prescribed.motions.span
-    if span.times[0] < first or span.times[-1] > last:
+    if span[0] < first or span[1] > last:
         message = f"the tables hold from {first:.9g} s to {last:.9g} s only; end within, or continue them"
         raise InvalidDocument.at("/prescribed", "outside-table", message)
 

@@ -11,25 +11,19 @@ from scipy.integrate import DOP853
 from scipy.linalg import lapack
 
 from substructures.analysis.closed_record import Status, energy_check
-from substructures.analysis.constrained import Array, given_inputs, read_state
-from substructures.analysis.loops import check_fields
-from substructures.analysis.quasi_velocities import QuasiVelocities, quasi_velocity_equations
-from substructures.analysis.signals import Signals
-from substructures.analysis.span import Progress, Span, read_span
+from substructures.analysis.closed_requests import RollingRequest
+from substructures.analysis.constrained import Array, parameter_values, read_inputs, read_state
+from substructures.analysis.quasi_velocities import QuasiVelocities, velocity_equations
 from substructures.analysis.trajectory import Check, Trajectory
 from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
-from substructures.states import States, numeric, symbol_values
+from substructures.states import numeric
 
-DOCUMENT = ("constraints", "velocities", "independent")
-FIELDS = {
-    *DOCUMENT,
-    *("q", "qd", "v", "parameters", "inputs", "start", "end", "times", "outputs", "rtol", "atol", "max_step"),
-    *("max_steps", "form"),
-}
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
+#: told the share of the time span that is done; False cancels
+Progress = Callable[[float], bool | None]
 #: largest constrained velocity [m/s] and change of a gap [m] along a right motion
 RESIDUAL = 1e-9
 
@@ -37,16 +31,13 @@ RESIDUAL = 1e-9
 class _Rolling:
     """The right-hand side in compiled form. y = (q, v, work)."""
 
-    def __init__(self, equations: QuasiVelocities, request: Mapping[str, Any], folder: Path | None) -> None:
-        model, self.form = equations.model, _form(request)
+    def __init__(self, equations: QuasiVelocities, request: RollingRequest, folder: Path | None) -> None:
+        model, self.form = equations.model, FORMS[request.form]
         self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
-        names, given, pointers = given_inputs(model, request)
-        self._inputs = Signals(given, pointers, smooth=False)
-        nothing = States(np.zeros((1, self.n)), np.zeros((1, self.n)), None, True)
-        plain = {"parameters": request.get("parameters")}
-        found = symbol_values(model, plain, nothing, ["metric", "forces", "potential_energy"])
-        columns = [*model.coordinates, *equations.velocities, "t", *names]
-        self.values = {k: float(np.reshape(v, -1)[0]) for k, v in found.items() if k not in columns}
+        self._inputs = read_inputs(model, request)
+        found = parameter_values(model, request, ["metric", "forces", "potential_energy"])
+        columns = [*model.coordinates, *equations.velocities, "t", *self._inputs.names]
+        self.values = {name: x for name, x in found.items() if name not in columns}
         self._x = np.zeros((1, len(columns)))
         wanted = ("rates", "metric", self.form, "forces", "lost_power")
         self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
@@ -78,67 +69,68 @@ def simulate_rolling(
 ) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
-    ``request``: ``constraints``, ``velocities`` or ``independent`` (see VelocityConstraints); ``q`` (n,) or by name,
-    and ``v`` (p,) or by name, or ``qd`` that meets the constraints; ``form``: ``voronets`` (default) or
-    ``boltzmann-hamel``; ``parameters``, ``inputs``, ``start``, ``end``, ``times``, ``outputs``, ``rtol``, ``atol``,
-    ``max_step``, ``max_steps`` as for closed loops; ``folder``: a cache of compiled kernels. Series: ``v`` (K, p),
+    ``request``: see RollingRequest. ``progress`` is told the finished share of the span and cancels by False.
+    ``folder``: a cache of compiled kernels. Series: ``v`` (K, p),
     ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``, ``potential_energy``,
     ``work``. Checks: B q' is zero, gaps and T + V - work are constant. A span that cannot be finished is ``failed``.
     Raises InvalidDocument, MissingValue and TooLarge.
     """
-    check_fields(request, FIELDS)
-    span = read_span(request)
-    document = {k: request[k] for k in DOCUMENT if request.get(k) is not None}
-    place = dict(zip(model.coordinates, map(float, read_state(model, request)[0]), strict=True))
-    equations = quasi_velocity_equations(model, document, place)
-    rolling = _Rolling(equations, request, folder)
-    q, v = _start(rolling, request)
-    states, status, message, steps = _integrate(rolling, span, np.concatenate((q, v, (0.0,))), progress)
-    return _judged(rolling, span.times[: len(states)], states, (status, message, steps))
+    asked = RollingRequest.read(request)
+    start, _ = read_state(model, asked)
+    place = dict(zip(model.coordinates, start.tolist(), strict=True))
+    equations = velocity_equations(model, asked, place)
+    rolling = _Rolling(equations, asked, folder)
+    q, v = _start(rolling, asked)
+    states, outcome = _integrate(rolling, asked, np.concatenate((q, v, (0.0,))), progress)
+    return _judged(rolling, asked.outputs()[: len(states)], states, outcome)
 
 
-def _integrate(rolling: _Rolling, span: Span, y: Array, progress: Progress | None) -> tuple[Array, Status, str, int]:
-    first, last = span.times[[0, -1]]
+def _integrate(
+    rolling: _Rolling, asked: RollingRequest, y: Array, progress: Progress | None
+) -> tuple[Array, tuple[Status, str, int]]:
+    """States at the output times that were reached; status, message and number of steps."""
+    (first, last), times = asked.span, asked.outputs()
     if not np.isfinite(rolling.rates(first, y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
-        return y[None], "failed", advice, 0
-    solver = DOP853(rolling.rates, first, y, last, rtol=span.rtol, atol=span.atol, max_step=span.max_step)
-    states, steps = [y], 0
+        return y[None], ("failed", advice, 0)
+    solver = DOP853(rolling.rates, first, y, last, **asked.options())
+    states, steps = [y] if times[0] == first else [], 0
     while solver.status == "running":
-        if steps >= span.max_steps:
-            return np.array(states), "failed", f"t = {solver.t:.9g} s after {steps:,} steps: raise 'max_steps'", steps
+        if steps >= asked.max_steps:
+            return _some(states, y), ("failed", f"t = {solver.t:.9g} s after {steps:,} steps: raise 'max_steps'", steps)
         complaint = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
             advice = "the quasi-velocities may not describe the motion there (take others), or a body may lie flat"
-            return (
-                np.array(states),
-                "failed",
-                f"no step from t = {solver.t:.9g} s on: {complaint or ''} {advice}",
-                steps,
-            )
+            message = f"no step from t = {solver.t:.9g} s on: {complaint or ''} {advice}"
+            return _some(states, y), ("failed", message, steps)
         steps += 1
-        if len(states) < len(span.times) and solver.t >= span.times[len(states)]:
-            dense: Callable[[float], Array] = solver.dense_output()
-            due = span.times[len(states) : np.searchsorted(span.times, solver.t, side="right")]
+        due = times[len(states) : np.searchsorted(times, solver.t, side="right")]
+        if len(due):
+            dense = solver.dense_output()
             states += [dense(t) for t in due]
-        if progress is not None and not progress(float((solver.t - first) / (last - first))):
-            return np.array(states), "stopped", f"cancelled at t = {solver.t:.9g} s", steps
-    return np.array(states), "finished", "", steps
+        if progress is not None and progress(float((solver.t - first) / (last - first))) is False:
+            return _some(states, y), ("stopped", f"cancelled at t = {solver.t:.9g} s", steps)
+    return np.array(states), ("finished", "", steps)
 
 
-def _start(rolling: _Rolling, request: Mapping[str, Any]) -> tuple[Array, Array]:
+def _some(states: list[Array], start: Array) -> Array:
+    """At least one state."""
+    return np.array(states or [start])
+
+
+def _start(rolling: _Rolling, request: RollingRequest) -> tuple[Array, Array]:
     """q and v at the start."""
     model, names = rolling.equations.model, rolling.equations.velocities
     q, qd = read_state(model, request)
-    if request.get("v") is not None and request.get("qd") is not None:
+    if request.v is not None and request.qd is not None:
         raise InvalidDocument.at("/v", "two-velocities", "give either 'v' or 'qd'")
     place = rolling.values | dict(zip(model.coordinates, q, strict=True))
     T = interpret(rolling.equations.program, place, ["T"])["T"]
     if not np.isfinite(T).all():
         message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
         raise InvalidDocument.at("/q", "singular-start", message)
-    if request.get("qd") is None:
-        return q, _by_name(request.get("v"), names)
+    if request.qd is None:
+        return q, _by_name(request.v, names)
     v = np.asarray(np.linalg.lstsq(T, qd)[0], dtype=np.float64)
     left = np.abs(T @ v - qd).max(initial=0)
     if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
@@ -161,13 +153,6 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
         message = f"shape {v.shape} found, ({len(names)},) expected: {', '.join(names)}"
         raise InvalidDocument.at("/v", "wrong-length", message)
     return v
-
-
-def _form(request: Mapping[str, Any]) -> str:
-    form = request.get("form", "voronets")
-    if not isinstance(form, str) or form not in FORMS:
-        raise InvalidDocument.at("/form", "unknown-form", f"unknown form; there are {', '.join(FORMS)}")
-    return FORMS[form]
 
 
 def _judged(rolling: _Rolling, t: Array, states: Array, outcome: tuple[Status, str, int]) -> Trajectory:

@@ -91,7 +91,7 @@ def test_andrews_squeezer(build: Any) -> None:
     expected = np.zeros(7)
     expected[:2] = 14222.4439199541138, -10666.8329399655854
     np.testing.assert_allclose(first.qdd, expected, rtol=1e-9, atol=1e-6)
-    motion = simulate_closed(model, request | {"q": start, "end": 0.03, "outputs": 4})
+    motion = simulate_closed(model, request | {"q": start, "span": [0, 0.03], "count": 4})
     right(motion)
     np.testing.assert_allclose(motion.q[-1], end, rtol=1e-7)
 
@@ -109,7 +109,7 @@ def test_four_bar(method: str) -> None:
     """The angles along the motion obey Freudenstein's equation (Trans. ASME 77, 1955); the energy stays."""
     model = four_bar((0, -9.81, 0))
     request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=9), "fixed": ["x.crank"]}
-    motion = simulate_closed(model, request | {"end": 0.5, "method": method})
+    motion = simulate_closed(model, request | {"span": [0, 0.5], "method": method})
     right(motion)
     l0, l1, l2, l3 = 0.4, 0.1, 0.35, 0.25
     crank, _, rocker = motion.q.T
@@ -124,7 +124,7 @@ def test_large_mechanisms(method: str) -> None:
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
     model = closed_entry("four-bar", [pin], (0, -9.81, 0), l0=400, l1=100, l2=350, l3=250)
     request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=0.3), "fixed": ["x.crank"]}
-    right(simulate_closed(model, request | {"end": 5, "outputs": 11, "method": method}))
+    right(simulate_closed(model, request | {"span": [0, 5], "count": 11, "method": method}))
 
 
 def piston(a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -156,7 +156,9 @@ def test_slider_crank(method: str) -> None:
     """Position, velocity and acceleration of the piston, and J a'' + J' a'^2 / 2 = torque."""
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=40), "fixed": ["x.crank"]}
-    motion = simulate_closed(model, request | {"end": 0.3, "method": method, "inputs": {"tau.x.crank": "2*sin(20*t)"}})
+    motion = simulate_closed(
+        model, request | {"span": [0, 0.3], "method": method, "inputs": {"tau.x.crank": "2*sin(20*t)"}}
+    )
     right(motion)
     a, w, dw = motion.q[:, 0], motion.qd[:, 0], motion.series["qdd"][:, 0]
     x, dx, ddx = piston(a)
@@ -174,7 +176,7 @@ def test_prescribed_crank(kind: str) -> None:
     given: Any = "30*t + 0.2*sin(25*t)"
     if kind == "table":
         given = {"times": t, "values": 30 * t + 0.2 * np.sin(25 * t)}
-    request = {"q": at(model, piston=0.18), "prescribed": {"x.crank": given}, "end": 0.1, "outputs": 51}
+    request = {"q": at(model, piston=0.18), "prescribed": {"x.crank": given}, "span": [0, 0.1], "count": 51}
     motion = simulate_closed(model, request)
     right(motion)
     a = 30 * motion.t + 0.2 * np.sin(25 * motion.t)
@@ -190,7 +192,7 @@ def test_bricard(method: str) -> None:
     """A redundant mechanism, through the positions where its independent coordinate turns back."""
     model, a = bricard(), 1.9
     b = np.arccos(-np.cos(a) / (1 + np.cos(a)))
-    motion = simulate_closed(model, {"q": [a, b, a, b, a], "end": 2.5, "outputs": 51, "method": method})
+    motion = simulate_closed(model, {"q": [a, b, a, b, a], "span": [0, 2.5], "count": 51, "method": method})
     right(motion)
     cos = np.cos(motion.q[:, :2])
     np.testing.assert_allclose(cos.sum(axis=1) + cos.prod(axis=1), 0, atol=1e-11)
@@ -235,10 +237,10 @@ def test_governor_keeps_its_speed_and_its_angular_momentum() -> None:
     low, high = governor_accelerations(angle, 0, 0)[0], governor_accelerations(angle, 0, 1)[0]
     steady = np.sqrt(-low / (high - low))
     start = at(model, right=angle, left=angle, lift=lift(angle)[0])
-    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=steady), "end": 0.5, "outputs": 3})
+    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=steady), "span": [0, 0.5], "count": 3})
     right(motion)
     np.testing.assert_allclose(motion.q[-1][1:], start[1:], atol=1e-9)
-    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=1.2 * steady), "end": 1.5, "outputs": 51})
+    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=1.2 * steady), "span": [0, 1.5], "count": 51})
     right(motion)
     arms = motion.q[:, model.coordinates.index("x.right")]
     momentum = (0.011 + 2 * (0.03 + 0.3 * np.sin(arms)) ** 2) * motion.qd[:, 0]
@@ -257,7 +259,7 @@ def test_stewart_platform() -> None:
     found = analyse_loops(model, request)
     assert (found.mobility.degrees_of_freedom, found.mobility.redundant) == (6, False)
     np.testing.assert_allclose(found.consistent.q[:6], list(pose.values()))
-    motion = simulate_closed(model, request | {"end": 0.3, "outputs": 4})
+    motion = simulate_closed(model, request | {"span": [0, 0.3], "count": 4})
     right(motion)
     assert abs(motion.q[-1, 2] - 1.1) > 0.1
     feet, joints = stewart_points()
@@ -272,17 +274,22 @@ def test_stewart_platform() -> None:
 
 def test_both_methods_agree() -> None:
     model, _, start, _ = squeezer_in_one_piece()
-    ends = [simulate_closed(model, {"q": start, "end": 0.01, "method": method}).q[-1] for method in METHODS]
+    ends = [simulate_closed(model, {"q": start, "span": [0, 0.01], "method": method}).q[-1] for method in METHODS]
     np.testing.assert_allclose(*ends, rtol=1e-8, atol=1e-10)
 
 
 def test_events_and_progress() -> None:
     model = slider_crank()
     events = [
-        {"name": "dead centre", "expression": "x.piston'", "terminal": False},
-        {"name": "turned", "expression": "x.crank - 2*pi", "direction": 1},
+        {"name": "dead_centre", "quantity": "x.piston'", "action": "record"},
+        {"name": "turned", "quantity": "x.crank/(2*pi)", "level": 1, "direction": "rising"},
     ]
-    request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=40), "fixed": ["x.crank"], "end": 1}
+    request: Plain = {
+        "q": at(model, crank=0.3, piston=0.17),
+        "qd": at(model, crank=40),
+        "fixed": ["x.crank"],
+        "span": [0, 1],
+    }
     told: list[float] = []
     motion = simulate_closed(model, request | {"events": events}, lambda share: told.append(share) is None)
     assert (motion.status, motion.message[:14]) == ("stopped", "event 'turned'")
@@ -298,24 +305,24 @@ def test_a_locked_motion_fails_with_the_motion_up_to_there() -> None:
     """A crank longer than its rod cannot be turned further than where both are in line with the wrist."""
     wrist = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     model = closed_entry("slider-crank", [wrist], r=0.2)
-    request = {"q": at(model, rod=0.3, piston=0.3), "prescribed": {"x.crank": "2*t"}, "end": 1, "outputs": 101}
+    request = {"q": at(model, rod=0.3, piston=0.3), "prescribed": {"x.crank": "2*t"}, "span": [0, 1], "count": 101}
     motion = simulate_closed(model, request)
     assert motion.status == "failed"
     locked = np.arcsin(0.14 / 0.2) / 2
     assert locked - 0.02 < motion.t[-1] < locked
-    assert "dead centre" in motion.message or "rtol" in motion.message
+    assert "dead centre" in motion.message or "relative_tolerance" in motion.message
 
 
 def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
-    open_loop = simulate_closed(closed_entry("four-bar", [pin], l0=5), {"q": [0, 0, 0], "end": 1})
+    open_loop = simulate_closed(closed_entry("four-bar", [pin], l0=5), {"q": [0, 0, 0], "span": [0, 1]})
     assert (open_loop.status, len(open_loop.t)) == ("failed", 1)
     assert "cannot be met" in open_loop.message
     flat = closed_entry("four-bar", [pin], l0=0.3, l1=0.2, l2=0.3, l3=0.2)
-    singular = simulate_closed(flat, {"q": [0, 0, 0], "qd": [1, -1, 1], "end": 1})
+    singular = simulate_closed(flat, {"q": [0, 0, 0], "qd": [1, -1, 1], "span": [0, 1]})
     assert (singular.status, "singular" in singular.message) == ("failed", True)
     model = four_bar()
-    request = {"q": [0.7, 0.2, 1.2], "qd": [9, 0, 0], "fixed": ["x.crank"], "end": 100, "max_steps": 20}
+    request = {"q": [0.7, 0.2, 1.2], "qd": [9, 0, 0], "fixed": ["x.crank"], "span": [0, 100], "max_steps": 20}
     long = simulate_closed(model, request)
     assert (long.status, long.steps) == ("failed", 20)
     assert "max_steps" in long.message
@@ -324,31 +331,31 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
 
 def test_nothing_that_has_mass() -> None:
     massless = dict.fromkeys(("x.m1", "x.m2", "x.m3"), 0)
-    motion = simulate_closed(four_bar(), {"q": [0.7, 0.2, 1.2], "parameters": massless, "end": 1})
+    motion = simulate_closed(four_bar(), {"q": [0.7, 0.2, 1.2], "parameters": massless, "span": [0, 1]})
     assert motion.status == "failed"
     assert "metric is singular" in motion.message
 
 
 BAD: list[tuple[Plain, str, str]] = [
-    ({"method": "magic"}, "/method", "unknown-method"),
-    ({"method": ["projection"]}, "/method", "unknown-method"),
-    ({"start": [0, 1]}, "/start", "bad-number"),
-    ({"end": 0}, "/end", "bad-number"),
-    ({"end": None}, "/end", "missing"),
-    ({"outputs": 1}, "/outputs", "bad-number"),
-    ({"times": [0, 0]}, "/times", "not-rising"),
-    ({"rtol": -1}, "/rtol", "bad-number"),
-    ({"events": [{"name": "x"}]}, "/events/0/expression", "missing"),
-    ({"events": [{"expression": "u + 1"}]}, "/events/0/expression", "bad-expression"),
-    ({"prescribed": {"x.crank": {"times": [0, 1], "values": [0, 1]}}, "end": 2}, "/prescribed", "outside-table"),
-    ({"velocity": 1}, "/velocity", "unknown-field"),
+    ({"method": "magic"}, "/method", "literal-error"),
+    ({"method": ["projection"]}, "/method", "literal-error"),
+    ({"count": 5, "step": 0.1}, "", "one-grid"),
+    ({"span": [0, 0]}, "", "empty-span"),
+    ({"span": None}, "/span", "tuple-type"),
+    ({"count": 1}, "/count", "greater-than-equal"),
+    ({"times": [0, 0]}, "", "not-increasing"),
+    ({"relative_tolerance": -1}, "/relative_tolerance", "greater-than-equal"),
+    ({"events": [{"name": "x"}]}, "/events/0/quantity", "missing"),
+    ({"events": [{"name": "x", "quantity": "u + 1"}]}, "/events/0/quantity", "unknown-name"),
+    ({"prescribed": {"x.crank": {"times": [0, 1], "values": [0, 1]}}, "span": [0, 2]}, "/prescribed", "outside-table"),
+    ({"velocity": 1}, "/velocity", "extra-forbidden"),
 ]
 
 
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_requests(change: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidDocument) as caught:
-        simulate_closed(SLIDER, {"q": [0, 0, 0.18], "end": 1} | change)
+        simulate_closed(SLIDER, {"q": [0, 0, 0.18], "span": [0, 1]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 
 

@@ -84,7 +84,7 @@ def test_skate_on_an_inclined_plane(form: str) -> None:
     slope, w = 9.81 * 0.28, 1.7
     model = sleigh((slope, 0, -9.81 * 0.96))
     request = {"constraints": [BLADE], "velocities": FORWARD, "parameters": {"s.a": 0}, "q": [0, 0, 0], "v": {"w": w}}
-    motion = simulate_rolling(model, request | {"end": 5, "form": form})
+    motion = simulate_rolling(model, request | {"span": [0, 5], "form": form})
     assert motion.status == "finished"
     assert motion.is_right, motion.checks
     wt = w * motion.t
@@ -142,16 +142,14 @@ def test_rolling_disc_in_steady_motion_and_beyond() -> None:
     th, dpsi = 1.2, 1.5
     mr2 = M * R**2
     w3 = (A * dpsi**2 * np.sin(th) * np.cos(th) - M * 9.81 * R * np.cos(th)) / ((C + mr2) * dpsi * np.sin(th))
-    request: Plain = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(th), 0.2, th, 0], "end": 3}
+    request: Plain = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(th), 0.2, th, 0], "span": [0, 3]}
     steady = simulate_rolling(disc(), request | {"v": [dpsi, 0, w3 - dpsi * np.cos(th)]})
     assert steady.is_right
     np.testing.assert_allclose(steady.q[:, 4], th, atol=1e-9)
     # the centre goes along a circle of radius r |w3 / psi'|
-    circle = steady.q[:, :2] - steady.q[:, :2].mean(axis=0)
     period = 2 * np.pi / dpsi
     whole = steady.q[steady.t <= period][:, :2]
-    np.testing.assert_allclose(np.ptp(whole[:, 0]) / 2, R * abs(w3 / dpsi), rtol=1e-3)
-    assert len(circle) == 201
+    np.testing.assert_allclose(np.ptp(whole[:, 0]) / 2, R * abs(w3 / dpsi), rtol=5e-3)
     wild = simulate_rolling(disc(), request | {"v": {"s.psi'": 1.0, "s.th'": 0.5, "s.ph'": 6.0}})
     assert (wild.status, [c.holds for c in wild.checks]) == ("finished", [True, True, True])
     assert np.ptp(wild.q[:, 4]) > 0.1
@@ -203,7 +201,7 @@ def test_sphere_on_an_inclined_plane() -> None:
         "shape": "sphere",
         "normal": normal,
     }
-    motion = simulate_rolling(model, {"constraints": [floor], "q": [0, 0, 0, 0, 0, 0], "end": 0.5, "outputs": 11})
+    motion = simulate_rolling(model, {"constraints": [floor], "q": [0, 0, 0, 0, 0, 0], "span": [0, 0.5], "count": 11})
     assert motion.is_right
     down = motion.q[:, 0] * np.cos(tilt) - motion.q[:, 2] * np.sin(tilt)
     np.testing.assert_allclose(down, 5 / 14 * 9.81 * np.sin(tilt) * motion.t**2, atol=1e-10)
@@ -260,7 +258,7 @@ def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
 
 
 def test_other_quasi_velocities_describe_the_same_motion() -> None:
-    request: Plain = {"constraints": [BLADE], "q": [0, 0, 0.4], "end": 0.8, "inputs": {"tau.s.f": "sin(t)"}}
+    request: Plain = {"constraints": [BLADE], "q": [0, 0, 0.4], "span": [0, 0.8], "inputs": {"tau.s.f": "sin(t)"}}
     one = simulate_rolling(sleigh(), request | {"velocities": FORWARD, "v": {"u": 1.0, "w": 0.5}})
     two = simulate_rolling(sleigh(), request | {"independent": ["s.x", "s.f"], "qd": one.qd[0]})
     assert one.is_right
@@ -286,8 +284,8 @@ def test_closed_loops_in_independent_velocities() -> None:
         np.testing.assert_allclose(out["rates"], qd, rtol=1e-12)
         np.testing.assert_allclose(out["forces"][0] - out[bias][0], out["metric"][0, 0] * state.qdd[0], rtol=1e-9)
         np.testing.assert_allclose(out["multipliers"], state.multipliers[:2], rtol=1e-9)
-    motion = simulate_rolling(model, document | {"q": q, "v": [30], "end": 0.2, "outputs": 5})
-    closed = simulate_closed(model, {"q": q, "qd": qd, "end": 0.2, "outputs": 5})
+    motion = simulate_rolling(model, document | {"q": q, "v": [30], "span": [0, 0.2], "count": 5})
+    closed = simulate_closed(model, {"q": q, "qd": qd, "span": [0, 0.2], "count": 5})
     assert motion.is_right, motion.checks
     np.testing.assert_allclose(motion.q, closed.q, atol=1e-8)
 
@@ -299,7 +297,7 @@ def test_rows_that_follow_from_others_are_left_out() -> None:
 
 
 def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
-    request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "end": 100}
+    request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 100]}
     motion = simulate_rolling(sleigh(), request | {"max_steps": 10})
     assert (motion.status, motion.steps) == ("failed", 10)
     assert "max_steps" in motion.message
@@ -308,7 +306,7 @@ def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
 
 
 def test_nothing_that_has_mass() -> None:
-    request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "end": 1}
+    request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 1]}
     motion = simulate_rolling(sleigh(), request | {"parameters": {"s.m": 0, "s.I": 0}})
     assert (motion.status, len(motion.t)) == ("failed", 1)
     assert "check masses" in motion.message
@@ -316,7 +314,7 @@ def test_nothing_that_has_mass() -> None:
 
 def test_a_disc_that_falls_flat() -> None:
     """Its contact is not determined any more; that is said, or the checks say that the numbers are wrong."""
-    request = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(1.0), 0, 1.0, 0], "v": [0, 0, 0], "end": 2}
+    request = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(1.0), 0, 1.0, 0], "v": [0, 0, 0], "span": [0, 2]}
     motion = simulate_rolling(disc(), request | {"max_steps": 5000})
     assert motion.status == "failed" or not motion.is_right
 
@@ -349,7 +347,7 @@ BAD: list[tuple[Plain, str, str]] = [
     ({"qd": [1, 1, 0]}, "/qd", "violated"),
     ({"independent": ["s.x", "s.f"], "q": [0, 0, "pi/2"]}, "/q/2", "number-expected"),
     ({"independent": ["s.y", "s.f"], "qd": [0, 0, 1]}, "/q", "singular-start"),
-    ({"form": "lagrange"}, "/form", "unknown-form"),
+    ({"form": "lagrange"}, "/form", "literal-error"),
     (
         {"constraints": [{"name": "c", "type": "rolling", "frame": "s.b", "radius": 1}]},
         "/constraints/0/frame",
@@ -361,7 +359,7 @@ BAD: list[tuple[Plain, str, str]] = [
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_requests(change: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidDocument) as caught:
-        simulate_rolling(SLEIGH, {"constraints": [BLADE], "q": [0, 0, 0], "end": 1} | change)
+        simulate_rolling(SLEIGH, {"constraints": [BLADE], "q": [0, 0, 0], "span": [0, 1]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 
 
