@@ -9,7 +9,6 @@ where c = G' q' for closures and -s'' for prescribed coordinates, whose multipli
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,14 +17,12 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
 from substructures.analysis.closed_requests import ClosedRequest, LoopRequest, StateRequest
+from substructures.analysis.given import check_names, parameter_values, read_inputs
 from substructures.analysis.signals import Signals
 from substructures.analysis.work import POWER, with_power
 from substructures.compile import compile_program
-from substructures.definition import escape
-from substructures.errors import Fault, InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
-from substructures.states import States, read_states, symbol_values
 
 Array = NDArray[np.float64]
 NEEDS = ("metric", "bias", "forces", "potential_energy")
@@ -204,50 +201,9 @@ def rank_of(G: Array) -> int:
     return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
 
 
-def read_inputs(model: Model, request: StateRequest) -> Signals:
-    """The inputs that are given; all others are zero. Raises InvalidDocument."""
-    known = {s.name for s in model.program.symbols if s.kind == "input"}
-    known |= {f"tau.{name}" for name in model.coordinates}
-    check_names(request.inputs, known, "input", "/inputs")
-    return Signals(request.inputs, "/inputs", smooth=False)
-
-
 def _prescribed(model: Model, request: LoopRequest | ClosedRequest) -> Prescribed:
     given = request.prescribed
     check_names(given, set(model.coordinates), "coordinate", "/prescribed")
     if not given:
         return Prescribed()
     return Prescribed(tuple(model.coordinates.index(n) for n in given), Signals(given, "/prescribed", smooth=True))
-
-
-def check_names(given: Iterable[str], known: Collection[str], kind: str, pointer: str) -> None:
-    """Raises InvalidDocument for names that are not known."""
-    faults = [
-        Fault(f"{pointer}/{escape(name)}", f"unknown-{kind}", f"unknown {kind} '{name[:80]}'")
-        for name in given
-        if name not in known
-    ]
-    if faults:
-        raise InvalidDocument(faults)
-
-
-def check_fixed(model: Model, fixed: Sequence[str]) -> None:
-    """Raises InvalidDocument for coordinates that are not known."""
-    for i, name in enumerate(fixed):
-        if name not in model.coordinates:
-            raise InvalidDocument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
-
-
-def parameter_values(model: Model, request: StateRequest, needs: Sequence[str]) -> dict[str, float]:
-    """Values of all symbols for outputs; states are zero. Raises InvalidDocument and MissingValue."""
-    nothing = States(np.zeros((1, model.dof)), np.zeros((1, model.dof)), None, True)
-    found = symbol_values(model, {"parameters": request.parameters}, nothing, needs)
-    return {name: float(np.reshape(x, -1)[0]) for name, x in found.items()}
-
-
-def read_state(model: Model, request: StateRequest) -> tuple[Array, Array]:
-    """One state q, qd (n,) of a request. Raises InvalidDocument."""
-    states = read_states(model, {"q": request.q, "qd": request.qd}, None)
-    if len(states.q) != 1:
-        raise InvalidDocument.at("/q", "wrong-length", f"one state is needed, found {len(states.q)}")
-    return states.q[0].copy(), states.qd[0].copy()

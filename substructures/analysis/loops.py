@@ -18,10 +18,9 @@ from substructures.analysis.constrained import (
     Array,
     Constrained,
     Singular,
-    check_fixed,
     rank_of,
-    read_state,
 )
+from substructures.analysis.given import check_fixed, read_state
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
 from substructures.model import Model
 

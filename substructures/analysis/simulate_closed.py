@@ -11,8 +11,9 @@ from scipy.integrate import DOP853
 
 from substructures.analysis.closed_record import Record, Status, judged
 from substructures.analysis.closed_requests import ClosedRequest
-from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular, check_fixed, read_state
+from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular
 from substructures.analysis.events import Events, Occurrence, first_stop
+from substructures.analysis.given import check_fixed, read_state
 from substructures.analysis.loops import mobility
 from substructures.analysis.project import Consistent, consistent_state
 from substructures.analysis.reductions import METHODS, Reduction

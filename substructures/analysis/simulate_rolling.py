@@ -12,7 +12,8 @@ from scipy.linalg import lapack
 
 from substructures.analysis.closed_record import Status, energy_check
 from substructures.analysis.closed_requests import RollingRequest
-from substructures.analysis.constrained import Array, parameter_values, read_inputs, read_state
+from substructures.analysis.constrained import Array
+from substructures.analysis.given import parameter_values, read_inputs, read_state
 from substructures.analysis.quasi_velocities import QuasiVelocities, velocity_equations
 from substructures.analysis.trajectory import Check, Trajectory
 from substructures.compile import compile_program

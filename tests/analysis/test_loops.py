@@ -267,6 +267,18 @@ def test_bad_requests(change: Plain, pointer: str, code: str) -> None:
 SLIDER = slider_crank()
 
 
+def test_inputs_may_be_numbers_expressions_and_tables() -> None:
+    """At t = 0.5 all three are the same torque; numbers may come from numpy."""
+    table = {"times": np.array([0, 1.0]), "values": [0, 4]}
+    given: list[Any] = [2, np.float64(2.0), "8*t^2", table, table | {"interpolation": "cubic"}]
+    given.append({"times": [0, 0.4, 1], "values": [1, 2, 3], "interpolation": "hold"})
+    request: Plain = {"q": at(SLIDER, crank=0.4, piston=0.17), "t": 0.5, "fixed": ["x.crank"]}
+    found = [analyse_loops(SLIDER, request | {"inputs": {"tau.x.crank": x}}).qdd for x in given]
+    for qdd in found:
+        np.testing.assert_allclose(qdd, found[0], rtol=1e-12)
+    assert np.abs(found[0]).max() > 1
+
+
 def test_a_tree_without_loops_is_the_special_case() -> None:
     part = {
         "name": "p",
