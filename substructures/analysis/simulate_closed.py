@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -68,15 +69,25 @@ class _Run:
         self.next = next(self.pending, np.inf)
 
     def go(self, q: Array, qd: Array) -> tuple[Status, str]:
-        """Status and message at the end; the states are in the record."""
+        """Status and message at the end; the states are in the record, the last one that was reached included."""
         start = self.asked.span[0]
         try:
             self.landed = start, q, qd, 0.0
             y = self.reduction.pack(q, qd, 0.0)
             self._output(start, lambda _: y)
-            return self._steps(self._solver(start, y, None))
+            status, message = self._steps(self._solver(start, y, None))
         except Singular as error:
-            return "failed", f"stopped at t = {self.s.t:.9g} s: {error}"
+            status, message = "failed", f"stopped at t = {self.s.t:.9g} s: {error}"
+        if status == "failed":
+            self._keep_last()
+        return status, message
+
+    def _keep_last(self) -> None:
+        t, q, qd, work = self.landed
+        if self.record.rows and t > self.record.rows[-1]["t"]:
+            self.s.move(t, q, qd)
+            with suppress(Singular):
+                self.record.keep(self.s, self.reduction.rows, work)
 
     def _solver(self, t: float, y: Array, first: float | None) -> DOP853:
         last = self.asked.span[1]

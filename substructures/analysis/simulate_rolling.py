@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -82,41 +83,58 @@ def simulate_rolling(
     equations = velocity_equations(model, asked, place)
     rolling = _Rolling(equations, asked, folder)
     q, v = _start(rolling, asked)
-    states, outcome = _integrate(rolling, asked, np.concatenate((q, v, (0.0,))), progress)
-    return _judged(rolling, asked.outputs()[: len(states)], states, outcome)
+    return _judged(rolling, *_integrate(rolling, asked, np.concatenate((q, v, (0.0,))), progress))
+
+
+class _Reached:
+    """States at the output times that were reached."""
+
+    def __init__(self, times: Array) -> None:
+        self.due = deque(times.tolist())
+        self.t: list[float] = []
+        self.y: list[Array] = []
+
+    def until(self, t: float, state: Callable[[float], Array]) -> None:
+        """Add the states of all output times up to t."""
+        while self.due and self.due[0] <= t:
+            self.t.append(self.due.popleft())
+            self.y.append(state(self.t[-1]))
+
+    def with_last(self, t: float, y: Array) -> tuple[Array, Array]:
+        """Times and states, the last one that was reached included."""
+        if not self.t or t > self.t[-1]:
+            self.t.append(t)
+            self.y.append(y)
+        return np.array(self.t), np.array(self.y)
 
 
 def _integrate(
     rolling: _Rolling, asked: RollingRequest, y: Array, progress: Progress | None
-) -> tuple[Array, tuple[Status, str, int]]:
-    """States at the output times that were reached; status, message and number of steps."""
-    (first, last), times = asked.span, asked.outputs()
-    if not np.isfinite(rolling.rates(first, y)).all():
+) -> tuple[Array, Array, tuple[Status, str, int]]:
+    """Times, states; status, message and number of steps."""
+    (t, last), reached, steps = asked.span, _Reached(asked.outputs()), 0
+    reached.until(t, lambda _: y)
+    if not np.isfinite(rolling.rates(t, y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
-        return y[None], ("failed", advice, 0)
-    solver = DOP853(rolling.rates, first, y, last, **asked.options())
-    states, steps = [y] if times[0] == first else [], 0
+        return *reached.with_last(t, y), ("failed", advice, 0)
+    solver = DOP853(rolling.rates, t, y, last, **asked.options())
     while solver.status == "running":
+        t, y = solver.t, solver.y
         if steps >= asked.max_steps:
-            return _some(states, y), ("failed", f"t = {solver.t:.9g} s after {steps:,} steps: raise 'max_steps'", steps)
+            message = f"t = {t:.9g} s after {steps:,} steps: raise 'max_steps', or shorten the time span"
+            return *reached.with_last(t, y), ("failed", message, steps)
         complaint = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
             advice = "the quasi-velocities may not describe the motion there (take others), or a body may lie flat"
-            message = f"no step from t = {solver.t:.9g} s on: {complaint or ''} {advice}"
-            return _some(states, y), ("failed", message, steps)
+            message = f"no step from t = {t:.9g} s on: {complaint or ''} {advice}"
+            return *reached.with_last(t, y), ("failed", message, steps)
         steps += 1
-        due = times[len(states) : np.searchsorted(times, solver.t, side="right")]
-        if len(due):
-            dense = solver.dense_output()
-            states += [dense(t) for t in due]
-        if progress is not None and progress(float((solver.t - first) / (last - first))) is False:
-            return _some(states, y), ("stopped", f"cancelled at t = {solver.t:.9g} s", steps)
-    return np.array(states), ("finished", "", steps)
-
-
-def _some(states: list[Array], start: Array) -> Array:
-    """At least one state."""
-    return np.array(states or [start])
+        if reached.due and reached.due[0] <= solver.t:
+            reached.until(solver.t, solver.dense_output())
+        if progress is not None and progress(float((solver.t - asked.span[0]) / (last - asked.span[0]))) is False:
+            message = f"cancelled at t = {solver.t:.9g} s"
+            return *reached.with_last(solver.t, solver.y), ("stopped", message, steps)
+    return np.array(reached.t), np.array(reached.y), ("finished", "", steps)
 
 
 def _start(rolling: _Rolling, request: RollingRequest) -> tuple[Array, Array]:

@@ -309,7 +309,7 @@ def test_a_locked_motion_fails_with_the_motion_up_to_there() -> None:
     motion = simulate_closed(model, request)
     assert motion.status == "failed"
     locked = np.arcsin(0.14 / 0.2) / 2
-    assert locked - 0.02 < motion.t[-1] < locked
+    assert locked - 0.001 < motion.t[-1] < locked
     assert "dead centre" in motion.message or "relative_tolerance" in motion.message
 
 
@@ -326,7 +326,7 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
     long = simulate_closed(model, request)
     assert (long.status, long.steps) == ("failed", 20)
     assert "max_steps" in long.message
-    assert len(long.t) >= 1
+    assert 0 < long.t[-1] < 100
 
 
 def test_nothing_that_has_mass() -> None:

@@ -301,7 +301,7 @@ def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
     motion = simulate_rolling(sleigh(), request | {"max_steps": 10})
     assert (motion.status, motion.steps) == ("failed", 10)
     assert "max_steps" in motion.message
-    assert len(motion.t) >= 1
+    assert 0 < motion.t[-1] < 100
     assert simulate_rolling(sleigh(), request, lambda share: share < 0.1).status == "stopped"
 
 
