@@ -161,6 +161,9 @@ class TreeView(Shape):
     parameters: dict[str, ParameterView]
     gravity: Any = Field(description="acceleration in world axes, m/s^2")
     instances: list[dict[str, Any]] = Field(description="references pinned to digests")
+    closures: list[dict[str, Any]] = Field(
+        [], description="loops: name, type, from, to and rows of each; left out if none"
+    )
     operations: dict[str, Any]
     certificate: dict[str, Any]
     program: Digest

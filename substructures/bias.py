@@ -12,14 +12,20 @@ from substructures.skeleton import INTERFACE
 
 def bias_forces(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S]) -> list[S]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
-    motions: list[list[Motion]] = []
+    motions = body_motions(mounted, states, rates)
     loads: list[list[Load]] = []
-    for m, state in zip(mounted, states, strict=True):
-        own = _motions(m, state, motions, rates)
-        motions.append(own)
+    for state, own in zip(states, motions, strict=True):
         inertias = [state.own.inertia("inertia", c) for c in range(len(state.links))]
         loads.append([inertial_load(*pair) for pair in zip(own, [*inertias, state.own.inertia("base")], strict=True)])
     return _pass_back(mounted, states, loads, len(rates))
+
+
+def body_motions(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S]) -> list[list[Motion]]:
+    """For every part the motions at q'' = 0 of its joints' body frames, and last of its interface."""
+    motions: list[list[Motion]] = []
+    for m, state in zip(mounted, states, strict=True):
+        motions.append(_motions(m, state, motions, rates))
+    return motions
 
 
 def from_body(state: State, carrier: int, z: Vector) -> Vector:

@@ -27,7 +27,7 @@ def _number(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str)):
         raise PydanticCustomError("number-expected", "expected a number or an expression")
     if isinstance(value, float):
-        value = Decimal(repr(value))
+        value = Decimal(repr(float(value)))
     if isinstance(value, Decimal) and not value.is_finite():
         raise PydanticCustomError("number-not-finite", "the number is not finite")
     return value

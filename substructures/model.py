@@ -14,6 +14,7 @@ angular_momentum       n 3          moment of momentum of unit velocity q'^a abo
 position               frames 3     origin of every body frame and port in the world [m]
 rotation               frames 3 3   from the axes of the frame to those of the world
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
+closure.*              m ...        of a tree with closures: see :mod:`substructures.closures`
 =====================  ===========  ==========================================================================
 """
 
@@ -26,14 +27,15 @@ from time import perf_counter
 from typing import Any
 
 from substructures.bias import bias_forces
-from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link, over_formulas
+from substructures.closures import Rows, closure_formulas
+from substructures.coupling import Coupled, couple_parts, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.base_functions import Twist, carried
-from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, transpose
+from substructures.kinematics import frame_kinematics
+from substructures.mechanics.linear3 import add, apply, cross, transpose
 from substructures.mounting import Assembly, assemble, joint_parents
 from substructures.part import MAX_ENTRIES, MAX_NODES, Part
-from substructures.skeleton import INTERFACE, christoffel_entries
+from substructures.skeleton import christoffel_entries
 from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
@@ -42,7 +44,8 @@ KINEMATICS = ("position", "rotation", "U", "Omega")
 
 @dataclass(frozen=True)
 class Model:
-    """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs."""
+    """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
+    the rows of the closure outputs are."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -50,6 +53,7 @@ class Model:
     frames: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     certificate: Mapping[str, Any] = field(hash=False)
+    closures: tuple[Rows, ...] = ()
 
     @cached_property
     def operations(self) -> dict[str, int]:
@@ -63,7 +67,8 @@ class Model:
 
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
-        return {
+        closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
+        return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
             "frames": list(self.frames),
@@ -76,7 +81,9 @@ class Model:
     def load(cls, summary: Mapping[str, Any], program_bytes: bytes) -> Model:
         """A stored model. Raises InvalidProgram when the bytes are damaged."""
         names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
-        return cls(Program.from_bytes(program_bytes), *names, summary["parameters"], summary["certificate"])
+        described = (summary["parameters"], summary["certificate"])
+        closures = tuple(Rows.read(plain) for plain in summary.get("closures", ()))
+        return cls(Program.from_bytes(program_bytes), *names, *described, closures)
 
 
 def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:
@@ -107,7 +114,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     certificate = certify_tree(assembly, names, result, seconds)
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
-    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate)
+    rows = tuple(cut.rows for cut in assembly.cuts)
+    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows)
 
 
 def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
@@ -120,9 +128,13 @@ def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
-    bias = bias_forces(assembly.mounted, coupled.states, _rates(assembly))
+    rates = _rates(assembly)
+    bias = bias_forces(assembly.mounted, coupled.states, rates)
     outputs["bias"] = array((n,), lambda a: bias[a])
-    return outputs | _momentum(assembly, coupled) | _kinematics(assembly, coupled)
+    outputs |= _momentum(assembly, coupled) | _kinematics(assembly, coupled)
+    if assembly.cuts:
+        outputs |= closure_formulas(assembly.mounted, coupled.states, assembly.cuts, rates)
+    return outputs
 
 
 def _rates(assembly: Assembly) -> list[Any]:
@@ -164,17 +176,6 @@ def _kinematics(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
     n = len(coupled.gravity)
     shapes = {"position": (f, 3), "rotation": (f, 3, 3), "U": (f, n, 3), "Omega": (f, n, 3)}
     return {name: Formulas(shapes[name], some) for name, some in entries.items()}
-
-
-def frame_kinematics(m: Mounted, state: State, frame: int) -> tuple[Matrix, Vector, dict[int, Twist]]:
-    """Rotation world -> frame, origin in the world, columns in the axes of the frame."""
-    link = frame_link(m, state, frame)
-    carrier = link.parent
-    source = state.outside if carrier == INTERFACE else state.columns[carrier]
-    own = m.first + carrier if carrier != INTERFACE and state.links[carrier].s else None
-    twists = {a: carried(twist, link, a == own) for a, twist in source.items()}
-    pose = state.pose(carrier).beyond(link)
-    return pose.R, pose.r, twists
 
 
 def _frame_names(assembly: Assembly) -> tuple[str, ...]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from substructures.closures import ROWS, Cut, End, Rows
 from substructures.coupling import WORLD, Mounted
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
-from substructures.mechanics.linear3 import Vector
+from substructures.frames import axis_rotation
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
 from substructures.part import Part
 from substructures.scope import Scope, no_names
 from substructures.skeleton import INTERFACE
@@ -24,6 +26,7 @@ class Assembly:
     mounted: list[Mounted]
     gravity: Vector
     parameters: dict[str, dict[str, object]]
+    cuts: list[Cut]
 
 
 def tree_name(instance: str, symbol: str) -> str:
@@ -44,9 +47,10 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
     mounted = [_mount(spec, i, parts, scope, place, bound) for i in order]
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
+    cuts = [_cut(spec, i, parts, scope, place, bound) for i in range(len(spec.closures))]
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
-    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left)
+    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left, cuts)
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -141,21 +145,48 @@ def _mount(
     spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
 ) -> Mounted:
     instance, part = spec.instances[i], parts[spec.instances[i].name]
-    host, frame = WORLD, 0
-    if instance.at != "world":
-        host_name, frame_name = instance.at.split(".")
-        host = place[host_name]
-        frames = parts[host_name].frames
-        if frame_name in frames:
-            frame = frames.index(frame_name)
-        else:
-            known = ", ".join(frames)
-            message = f"'{host_name}' has no port or body '{frame_name}'; it has {known}"
-            scope.fault(f"/instances/{i}/at", "unknown-port", message)
+    host, frame = _frame(instance.at, f"/instances/{i}/at", parts, scope, place)
     pointer = f"/instances/{i}/placement"
     E = scope.rpy(instance.placement.rpy, f"{pointer}/rpy", bound.lookup).matrix()
     position = scope.vector(instance.placement.position, f"{pointer}/position", bound.lookup)
     return Mounted(part, host, frame, E, position, _symbols(instance.name, part, scope, bound))
+
+
+def _frame(at: str, pointer: str, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int]) -> tuple[int, int]:
+    """Index of an instance (or WORLD) and of its frame, for ``world`` or ``instance.frame``."""
+    if at == "world":
+        return WORLD, 0
+    name, frame = at.split(".")
+    if name not in place:
+        scope.fault(pointer, "unknown-instance", f"unknown instance '{name}'")
+        return WORLD, 0
+    frames = parts[name].frames
+    if frame not in frames:
+        known = ", ".join(frames)
+        scope.fault(pointer, "unknown-port", f"'{name}' has no port or body '{frame}'; it has {known}")
+        return place[name], 0
+    return place[name], frames.index(frame)
+
+
+def _cut(
+    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
+) -> Cut:
+    """A closure of the document with its frames; the third axes of both ends are the joint axis."""
+    closure, pointer = spec.closures[i], f"/closures/{i}"
+    if any(other.name == closure.name for other in spec.closures[:i]):
+        scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
+    axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
+    E = scope.rpy(closure.placement.rpy, f"{pointer}/placement/rpy", bound.lookup).matrix()
+    position = scope.vector(closure.placement.position, f"{pointer}/placement/position", bound.lookup)
+    start = End(*_frame(closure.from_, f"{pointer}/from", parts, scope, place), axis, ZERO)
+    end = End(*_frame(closure.to, f"{pointer}/to", parts, scope, place), multiply(axis, E), position)
+    length = scope.graph.zero
+    if closure.length is not None:
+        length = scope.read(closure.length, f"{pointer}/length", bound.lookup)
+        if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
+            scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
+    rows = Rows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
+    return Cut(rows, start, end, length)
 
 
 def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[str, Expr]:

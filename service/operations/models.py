@@ -24,6 +24,7 @@ from substructures.printers.symmetry import symmetry_rule
 GROUPS = {
     "kinematics": ("position", "rotation", "U", "Omega"),
     "momentum": ("linear_momentum", "angular_momentum"),
+    "closures": ("closure.residual", "closure.jacobian", "closure.acceleration", "closure.direction"),
     "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
 }
 CHRISTOFFEL = "christoffel"

@@ -1,0 +1,105 @@
+"""Closed loops: error, steps and time of Andrews' squeezer and of other closed mechanisms, by both methods.
+
+python -m benchmarks.loops [--json FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.closed_requests import LoopRequest
+from substructures.analysis.constrained import Constrained
+from substructures.analysis.loops import analyse_loops
+from substructures.analysis.reductions import METHODS
+from substructures.analysis.simulate_closed import simulate_closed
+
+#: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers: start, and values at t = 0.03 s
+SQUEEZER = {
+    "beta": (-0.0617138900142764496, 15.81077119629904),
+    "Theta": (0.0, -15.75637105984298),
+    "gamma": (0.455279819163070380, 0.04082224013073101),
+    "Phi": (0.222668390165885885, -0.5347301163226948),
+    "delta": (0.487364979543842550, 0.5244099658805304),
+    "Omega": (-0.222668390165885885, 0.5347301163226948),
+    "epsilon": (1.23054744454982119, 1.048080741042263),
+}
+PINS = {
+    "andrews-squeezer": [("end2", f"end{k}") for k in (3, 4, 6)],
+    "four-bar": [("coupler_end", "rocker_end")],
+    "slider-crank": [("rod_end", "pin")],
+}
+
+
+def closed(name: str) -> Model:
+    """A catalogue entry with its loops closed by pins."""
+    pins = [{"name": f"c{k}", "type": "pin", "from": f"x.{a}", "to": f"x.{b}"} for k, (a, b) in enumerate(PINS[name])]
+    instance = {"name": "x", "substructure": name}
+    gravity = [0, 0 if name == "andrews-squeezer" else "-9.81", 0]
+    document = {"name": "loop", "gravity": gravity, "instances": [instance], "closures": pins}
+    return couple(TreeSpec.read(document), {"x": derive(Definition.read(catalogue.load(name)))})
+
+
+def requests(model: Model, name: str) -> dict[str, Any]:
+    """What is simulated."""
+    if name == "andrews-squeezer":
+        return {"q": [SQUEEZER[c[2:]][0] for c in model.coordinates], "span": [0, 0.03], "count": 2}
+    start = {"four-bar": [0.7, 0.2, 1.2], "slider-crank": [0.7, -0.2, 0.16]}[name]
+    return {"q": start, "qd": [20, 0, 0], "fixed": [model.coordinates[0]], "span": [0, 1], "count": 2}
+
+
+def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
+    """Seconds for q'' at one state: compiled formulas and the linear equations."""
+    state = analyse_loops(model, {k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
+    s = Constrained(model, LoopRequest())
+    s.move(0, state.q, state.qd)
+    rows = s.independent_rows()
+    start = perf_counter()
+    for _ in range(calls):
+        s.move(0, state.q, state.qd)
+        s.accelerations(rows)
+    return (perf_counter() - start) / calls
+
+
+def measure(name: str, method: str) -> dict[str, Any]:
+    """Figures of one mechanism."""
+    model = closed(name)
+    request = requests(model, name) | {"method": method}
+    seconds = []
+    for _ in range(5):
+        start = perf_counter()
+        motion = simulate_closed(model, request)
+        seconds.append(perf_counter() - start)
+    result: dict[str, Any] = {"mechanism": name, "method": method, "seconds": median(seconds), "steps": motion.steps}
+    result |= {check.name: check.worst / check.scale for check in motion.checks}
+    result |= {"span": request["span"][1], "per_call": per_call(model, request), "right": motion.is_right}
+    if name == "andrews-squeezer":
+        end = np.array([SQUEEZER[c[2:]][1] for c in model.coordinates])
+        result["error"] = float(np.abs(motion.q[-1] / end - 1).max())
+    return result
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", type=Path)
+    arguments = parser.parse_args()
+    rows = [measure(name, method) for name in PINS for method in METHODS]
+    for row in rows:
+        error = f", relative error at the end {row['error']:.1e}" if "error" in row else ""
+        run = f"{row['span']} s in {row['seconds']:.3f} s, {row['steps']} steps, q'' in {1e6 * row['per_call']:.0f} us"
+        residuals = f"residuals {row['position residual']:.0e} and {row['velocity residual']:.0e}"
+        print(f"{row['mechanism']:17} {row['method']:12} {run}; {residuals}, energy {row['energy']:.0e}{error}")
+    if arguments.json:
+        arguments.json.write_text(json.dumps(rows, indent=1))
+
+
+if __name__ == "__main__":
+    main()

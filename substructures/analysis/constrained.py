@@ -1,0 +1,209 @@
+"""A model with closures and prescribed coordinates in numbers: everything a state needs in one compiled call.
+
+With rows of closures and rows q_a - s(t) of prescribed coordinates:
+
+    g q'' + Gamma q'q' = Q + G^T lambda        phi(q, t) = 0        G q' + phi_t = 0        G q'' + c = 0
+
+where c = G' q' for closures and -s'' for prescribed coordinates, whose multipliers are the forces of their actuators.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack, qr, svdvals
+
+from substructures.analysis.closed_requests import ClosedRequest, LoopRequest, StateRequest
+from substructures.analysis.given import check_names, parameter_values, read_inputs
+from substructures.analysis.signals import Signals
+from substructures.analysis.work import POWER, with_power
+from substructures.compile import compile_program
+from substructures.expr.interpret import interpret
+from substructures.model import Model
+
+Array = NDArray[np.float64]
+NEEDS = ("metric", "bias", "forces", "potential_energy")
+CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
+#: singular values of the Jacobian below this part of the largest one count as zero
+RANK = 1e-8
+
+
+SINGULAR = (
+    "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
+    "(another start, a shorter time span), or change the lengths"
+)
+
+
+class Singular(ArithmeticError):
+    """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """Coordinates whose motion is given: their indices and the motions."""
+
+    index: tuple[int, ...] = ()
+    motions: Signals | None = None
+
+
+class Constrained:
+    """A state at a time and what follows from it, in arrays that the next :meth:`move` overwrites.
+
+    ``g`` (n, n), ``f`` = Q - Gamma q'q' (n,), ``phi`` (m,), ``G`` (m, n), ``c`` (m,), ``phi_t`` (m,);
+    ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
+    """
+
+    def __init__(self, model: Model, request: LoopRequest | ClosedRequest, folder: Path | None = None) -> None:
+        """``folder``: a cache of compiled kernels. Raises InvalidDocument (pointers into the request), MissingValue."""
+        self.model, self.n = model, model.dof
+        self._inputs = read_inputs(model, request)
+        self.prescribed = _prescribed(model, request)
+        self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
+        self.closed = len(self.labels)
+        self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
+        self._arrays()
+        self._bind(request, folder)
+
+    def _arrays(self) -> None:
+        n, m = self.n, len(self.labels)
+        self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
+        self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
+        self.G = np.zeros((m, n))
+        for k, a in enumerate(self.prescribed.index):
+            self.G[self.closed + k, a] = 1
+
+    def _bind(self, request: StateRequest, folder: Path | None) -> None:
+        model, m, inputs = self.model, self.closed, self._inputs.names
+        outputs = [*NEEDS, *(CLOSURES if m else ())]
+        found = parameter_values(model, request, outputs)
+        source = with_power(model, outputs, inputs)
+        self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
+        rates = [f"{name}'" for name in model.coordinates]
+        columns = [*model.coordinates, *rates, "t", *inputs]
+        self._x = np.zeros((1, len(columns)))
+        self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
+        self.values = {name: x for name, x in found.items() if name not in columns}
+        kernel = compile_program(source, list(self._out), folder)
+        self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
+        self.g = self._out["metric"][0]
+
+    def move(self, t: float, q: Array, qd: Array) -> None:
+        """Evaluate everything at a state."""
+        n, x, out = self.n, self._x[0], self._out
+        self.t, self.q, self.qd = t, q, qd
+        x[:n], x[n : 2 * n], x[2 * n] = q, qd, t
+        x[2 * n + 1 :] = self._inputs.at(t)[:, 0]
+        self._run()
+        np.subtract(out["forces"][0], out["bias"][0], out=self.f)
+        m = self.closed
+        if m:
+            self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
+            self.G[:m] = out["closure.jacobian"][0]
+        if self.prescribed.motions is not None:
+            motion = self.prescribed.motions.at(t)
+            self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
+            self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
+
+    @property
+    def velocity_residual(self) -> Array:
+        """G q' + phi_t."""
+        return self.G @ self.qd + self.phi_t
+
+    @property
+    def energies(self) -> tuple[float, float]:
+        """T and V [J]."""
+        return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
+
+    @property
+    def lost_power(self) -> float:
+        """(Q + dV/dq) q': power of the applied forces that have no potential [W]."""
+        return float(self._out[POWER][0])
+
+    def directions(self) -> Array:
+        """Force or moment on ``to`` of unit multipliers of the closures, in the axes of ``from`` (m, 3)."""
+        return self._closure_output("closure.direction", (0, 3))
+
+    def upside_down(self) -> str:
+        """The name of a closure that holds all three directions but is closed with axes turned round; else ''."""
+        aligned = self._closure_output("closure.alignment", (0,))
+        k = 0
+        for rows in self.model.closures:
+            end = k + len(rows.rows)
+            if "rz" in rows.rows and aligned[k:end].min() < 0:
+                return rows.name
+            k = end
+        return ""
+
+    def _closure_output(self, name: str, empty: tuple[int, ...]) -> Array:
+        """An output that is seldom needed, at the present state."""
+        if not self.closed:
+            return np.zeros(empty)
+        rates = [f"{name}'" for name in self.model.coordinates]
+        values = self.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
+        values |= dict(zip(self.model.coordinates, self.q, strict=True))
+        return interpret(self.model.program, values, [name])[name]
+
+    def factor(self, rows: NDArray[np.int64]) -> Factor:
+        """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
+        n, r = self.n, len(rows)
+        A = np.zeros((n + r, n + r), order="F")
+        A[:n, :n] = self.g
+        if r:
+            G = self.G[rows]
+            A[n:, :n], A[:n, n:] = G, G.T
+        lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
+        if info:
+            raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
+        return Factor(n, lu, pivots)
+
+    def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
+        """q'' (n,) and the multipliers of the given rows. Raises Singular."""
+        q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
+        if not np.isfinite(q2).all():
+            raise Singular("the accelerations are not finite: check masses, inertias and loads")
+        return q2, -minus
+
+    def rank(self) -> int:
+        """Number of independent rows here."""
+        return rank_of(self.G)
+
+    def independent_rows(self) -> NDArray[np.int64]:
+        """Indices of as many independent rows as there are, chosen by QR with pivoting of G^T; in order."""
+        rank = self.rank()
+        if not rank:
+            return np.zeros(0, dtype=np.int64)
+        pivots = qr(self.G.T, mode="r", pivoting=True)[1]
+        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Factors of [g G^T; G 0]."""
+
+    n: int
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    def solve(self, a: Array, b: Array) -> tuple[Array, Array]:
+        """x, y with g x + G^T y = a and G x = b."""
+        x, _ = lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
+        return x[: self.n], x[self.n :]
+
+
+def rank_of(G: Array) -> int:
+    """Number of singular values above RANK times the largest."""
+    if not G.size:
+        return 0
+    values = svdvals(G)
+    return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
+
+
+def _prescribed(model: Model, request: LoopRequest | ClosedRequest) -> Prescribed:
+    given = request.prescribed
+    check_names(given, set(model.coordinates), "coordinate", "/prescribed")
+    if not given:
+        return Prescribed()
+    return Prescribed(tuple(model.coordinates.index(n) for n in given), Signals(given, "/prescribed", smooth=True))

@@ -1,0 +1,161 @@
+"""Closures: their formulas against exact derivatives, the joints they stand for, documents and their faults."""
+
+# ruff: noqa: N806 -- symbols of the notation
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, vector
+
+from substructures import Definition, InvalidDocument, Model, TreeSpec, catalogue, couple, derive
+from substructures.closures import ROWS
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Program, array, program
+from substructures.expr.replay import replay
+
+TYPES = tuple(ROWS)
+
+
+def closed_model(seed: int) -> Model:
+    """A random tree of two random parts, one on the other, with a closure of every type between random frames."""
+    rng = np.random.default_rng(seed)
+    definitions = [random_definition(rng, Kind(3, depth=5), f"part{i}") for i in range(2)]
+    parts = {f"x{i}": derive(Definition.read(d)) for i, d in enumerate(definitions)}
+    frames = [f"{name}.{frame}" for name, part in parts.items() for frame in part.frames]
+    second = {"name": "x1", "definition": definitions[1], "at": f"x0.{parts['x0'].frames[-1]}"}
+    closures = []
+    for k, kind in enumerate(TYPES):
+        closure: Plain = {"name": f"c{k}", "type": kind, "from": str(rng.choice(frames))}
+        closure["to"] = str(rng.choice([*frames, "world"]))
+        closure["placement"] = {"position": vector(rng), "rpy": vector(rng, 3)}
+        if kind == "rod":
+            closure["length"] = "L/2"
+        elif kind in ("pin", "planar", "universal"):
+            closure["axis"] = [0.6, 0, 0.8]
+        closures.append(closure)
+    document = {
+        "name": "loops",
+        "gravity": list(GRAVITY),
+        "parameters": {"L": {"value": 1.4}},
+        "instances": [{"name": "x0", "definition": definitions[0]}, second],
+        "closures": closures,
+    }
+    return couple(TreeSpec.read(document), parts)
+
+
+def differentiated(model: Model) -> Program:
+    """dphi/dq, and d(dphi/dq q')/dq q', by the chain rule on the graph."""
+    graph = Graph()
+    residual = replay(model.program, graph, {}, ["closure.residual"])["closure.residual"]
+    rows = [graph.zero + residual.entries.get((k,), 0) for k in range(residual.shape[0])]
+    rates = [graph.symbol(f"{name}'") for name in model.coordinates]
+    G = gradient(rows, model.coordinates)
+    speeds: list[Expr] = [graph.sum(x * v for x, v in zip(row, rates, strict=True)) for row in G]
+    second = gradient(speeds, model.coordinates)
+    total = [graph.sum(x * v for x, v in zip(row, rates, strict=True)) for row in second]
+    outputs = {
+        "jacobian": array((len(rows), model.dof), lambda k, a: G[k][a]),
+        "acceleration": array((len(rows),), lambda k: total[k]),
+    }
+    symbols = {s.name: s for s in model.program.symbols}
+    return program(graph, outputs, symbols)
+
+
+def values(model: Model, seed: int, count: int = 3) -> Plain:
+    states = random_states(np.random.default_rng(seed), count, model.dof)
+    result: Plain = {"L": 1.4, "t": 0.0}
+    for a, name in enumerate(model.coordinates):
+        result |= {name: states["q"][:, a], f"{name}'": states["qd"][:, a]}
+    return result
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cross_products_equal_derivatives(seed: int) -> None:
+    model = closed_model(40 + seed)
+    x = values(model, seed)
+    exact = interpret(differentiated(model), x)
+    names = ["closure.jacobian", "closure.acceleration"]
+    found = interpret(model.program, x, names)
+    for name in names:
+        expected = exact[name.removeprefix("closure.")]
+        np.testing.assert_allclose(found[name], expected, rtol=0, atol=1e-12 * max(1, np.abs(expected).max()))
+
+
+def test_residuals_are_the_distances_of_the_frames() -> None:
+    """Against position and rotation of the frames, for closures without placement and axis."""
+    model = one_loop([{"name": "c", "type": kind, "from": "x.coupler_end", "to": "x.rocker"} for kind in ("weld",)])
+    x = {n: 0.3 + 0.1 * k for k, n in enumerate(model.coordinates)} | defaults(model)
+    out = interpret(model.program, x, ["position", "rotation", "closure.residual"])
+    a, b = model.frames.index("x.coupler_end"), model.frames.index("x.rocker")
+    R, d = out["rotation"][a], out["position"][b] - out["position"][a]
+    np.testing.assert_allclose(out["closure.residual"][:3], R.T @ d, atol=1e-15)
+    turned = R.T @ out["rotation"][b]
+    np.testing.assert_allclose(out["closure.residual"][3:], [-turned[1, 2], turned[0, 2], turned[1, 0]], atol=1e-15)
+
+
+def defaults(model: Model) -> Plain:
+    return {name: float(p["value"]) for name, p in model.parameters.items()}
+
+
+def one_loop(closures: list[Plain], **more: Any) -> Model:
+    part = derive(Definition.read(catalogue.load("four-bar")))
+    document = {"name": "t", "instances": [{"name": "x", "substructure": "four-bar"}], "closures": closures} | more
+    return couple(TreeSpec.read(document), {"x": part})
+
+
+PIN = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
+
+
+def test_without_closures_nothing_changes() -> None:
+    """Digests of trees and of their models stay what they were."""
+    document = {"name": "t", "instances": [{"name": "x", "substructure": "four-bar"}]}
+    assert b"closures" not in TreeSpec.read(document).canonical()
+    plain, looped = one_loop([]), one_loop([PIN])
+    assert "closures" not in plain.summary()
+    assert not [name for name in plain.program.outputs if name.startswith("closure")]
+    shared = list(plain.program.outputs)
+    assert looped.program.select(shared).digest == plain.program.select(shared).digest
+
+
+def test_rows_of_a_planar_pin() -> None:
+    """Out of the plane nothing is left: those rows are zero as formulas."""
+    model = one_loop([PIN])
+    assert {i[0] for i in model.program.outputs["closure.residual"].index} == {0, 1}
+    assert {i[0] for i in model.program.outputs["closure.jacobian"].index} == {0, 1}
+    assert model.closures[0].rows == ("x", "y", "z", "rx", "ry")
+    again = Model.load(model.summary(), model.program.to_bytes())
+    assert again.closures == model.closures
+
+
+BAD: list[tuple[Plain, str, str]] = [
+    ({"type": "pinn"}, "/closures/0/type", "literal-error"),
+    ({"from": "x"}, "/closures/0/from", "string-pattern-mismatch"),
+    ({"from": "y.rocker"}, "/closures/0/from", "unknown-instance"),
+    ({"to": "x.end"}, "/closures/0/to", "unknown-port"),
+    ({"type": "rod"}, "/closures/0", "rod-length"),
+    ({"length": 1}, "/closures/0", "rod-length"),
+    ({"type": "rod", "length": 0}, "/closures/0/length", "bad-length"),
+    ({"type": "rod", "length": "2*L"}, "/closures/0/length", "unknown-name"),
+    ({"type": "ball", "axis": [1, 0, 0]}, "/closures/0", "no-axis"),
+    ({"axis": [0, 0, 0]}, "/closures/0/axis", "bad-axis"),
+    ({"placement": {"position": [0, "u", 0]}}, "/closures/0/placement/position/1", "unknown-name"),
+    ({"stiffness": 1}, "/closures/0/stiffness", "extra-forbidden"),
+]
+
+
+@pytest.mark.parametrize(("change", "pointer", "code"), BAD)
+def test_bad_closures(change: Plain, pointer: str, code: str) -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        one_loop([PIN | change])
+    assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
+
+
+def test_two_closures_of_one_name() -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        one_loop([PIN, PIN])
+    assert [(f.pointer, f.code) for f in caught.value.faults] == [("/closures/1/name", "duplicate-name")]

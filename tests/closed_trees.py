@@ -1,0 +1,98 @@
+"""Closed mechanisms of the tests: catalogue entries and small parts with closures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from random_trees import Plain
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+
+SQUEEZER = ("beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon")
+
+
+def tree_model(document: Plain, definitions: Plain) -> Model:
+    """``definitions``: by the reference that instances give."""
+    parts = {name: derive(Definition.read(data)) for name, data in definitions.items()}
+    full = {"name": "loop"} | document
+    return couple(TreeSpec.read(full), {i["name"]: parts[i["substructure"]] for i in full["instances"]})
+
+
+def closed_entry(name: str, closures: list[Plain], gravity: Any = (0, 0, 0), **parameters: Any) -> Model:
+    """One catalogue entry, called x."""
+    instance = {"name": "x", "substructure": name, "parameters": parameters}
+    document = {"gravity": list(gravity), "instances": [instance], "closures": closures}
+    return tree_model(document, {name: catalogue.load(name)})
+
+
+def slider_crank(gravity: Any = (0, 0, 0), kind: str = "pin") -> Model:
+    return closed_entry("slider-crank", [{"name": "wrist", "type": kind, "from": "x.rod_end", "to": "x.pin"}], gravity)
+
+
+def four_bar(gravity: Any = (0, 0, 0)) -> Model:
+    pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
+    return closed_entry("four-bar", [pin], gravity)
+
+
+def governor() -> Model:
+    """The links as rods; the springs that stand for them in the entry have no stiffness."""
+    rods = [
+        {"name": side, "type": "rod", "from": f"x.{side}_pin", "to": f"x.sleeve_{side}", "length": "x.ll"}
+        for side in ("right", "left")
+    ]
+    return closed_entry("flyball-governor", rods, (0, 0, -9.81), kl=0)
+
+
+def bricard(gravity: Any = (0, -9.81, 0)) -> Model:
+    """Six equal links with axes at right angles, all hinges of one part; the sixth link is the world."""
+    links = {}
+    for sign in ("pi/2", "-pi/2"):
+        body = {"name": "rod", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}}
+        body |= {"mass": 1, "com": [0.5, 0, 0], "inertia": {"yy": "1/12", "zz": "1/12"}}
+        end = {"name": "end", "body": "rod", "position": [1, 0, 0], "rotation": {"rpy": [sign, 0, 0]}}
+        links[sign] = {"name": "link", "bodies": [body], "ports": [end]}
+    instances = [
+        {"name": f"l{k}", "substructure": ("pi/2", "-pi/2")[k % 2], "at": f"l{k - 1}.end" if k else "world"}
+        for k in range(5)
+    ]
+    # the frame of the last hinge, from which Tx(1) Rx(-pi/2) leads to the first one
+    last = {"position": [-1, 0, 0], "rpy": ["pi/2", 0, 0]}
+    closure = {"name": "hinge", "type": "revolute", "from": "l4.end", "to": "world", "placement": last}
+    references = {"pi/2": "plus", "-pi/2": "minus"}
+    named = {references[sign]: link for sign, link in links.items()}
+    for instance in instances:
+        instance["substructure"] = references[instance["substructure"]]
+    return tree_model({"gravity": list(gravity), "instances": instances, "closures": [closure]}, named)
+
+
+def at(model: Model, **values: float) -> np.ndarray:
+    """A state by coordinate names without the instance."""
+    return np.array([values.get(name.partition(".")[2], 0.0) for name in model.coordinates])
+
+
+#: where the legs of the Stewart platform stand, and where they carry it (angles in rad, radii in m)
+STEWART = [(1.0, 0.2 + k * np.pi / 3 + 0.25 * (-1) ** k, 0.6, 0.2 + k * np.pi / 3 - 0.25 * (-1) ** k) for k in range(6)]
+
+
+def stewart_points() -> tuple[np.ndarray, np.ndarray]:
+    """Feet in the world and joints in the platform, (6, 3) each, in millimetres exactly."""
+    feet = [[r * np.cos(a), r * np.sin(a), 0] for r, a, _, _ in STEWART]
+    joints = [[r * np.cos(a), r * np.sin(a), 0] for _, _, r, a in STEWART]
+    return np.round(feet, 3), np.round(joints, 3)
+
+
+def stewart() -> Model:
+    """Six legs of the catalogue and a platform that is free, tied by six balls."""
+    feet, joints = stewart_points()
+    free = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+    body = {"name": "plate", "parent": "base", "joint": free, "mass": 80, "inertia": {"xx": 8, "yy": 8, "zz": 15}}
+    ports = [{"name": f"p{k}", "body": "plate", "position": [float(x) for x in p]} for k, p in enumerate(joints)]
+    plate = {"name": "plate", "bodies": [body], "ports": ports}
+    instances: list[Plain] = [{"name": "top", "substructure": "plate"}]
+    for k, foot in enumerate(feet):
+        place = {"position": [float(x) for x in foot]}
+        instances.append({"name": f"leg{k}", "substructure": "stewart-leg", "placement": place})
+    closures = [{"name": f"ball{k}", "type": "ball", "from": f"leg{k}.joint", "to": f"top.p{k}"} for k in range(6)]
+    document = {"gravity": [0, 0, -9.81], "instances": instances, "closures": closures}
+    return tree_model(document, {"plate": plate, "stewart-leg": catalogue.load("stewart-leg")})

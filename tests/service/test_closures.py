@@ -1,0 +1,55 @@
+"""Trees with closures over HTTP: stored, shown, printed in every format."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.negotiation import MEDIA_TYPES
+from substructures.expr.program import Program
+
+PART: dict[str, Any] = {
+    "name": "bar",
+    "bodies": [
+        {"name": "bar", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}, "mass": 1, "com": [1, 0, 0]}
+    ],
+    "ports": [{"name": "end", "body": "bar", "position": [1, 0, 0]}],
+}
+TREE: dict[str, Any] = {
+    "name": "ring",
+    "instances": [
+        {"name": "a", "definition": PART},
+        {"name": "b", "definition": PART, "at": "a.end"},
+        {"name": "c", "definition": PART, "at": "b.end"},
+    ],
+    "closures": [{"name": "pin", "type": "pin", "from": "c.end", "to": "world", "placement": {"position": [1, 0, 0]}}],
+}
+
+
+def test_a_tree_with_closures_is_stored_and_shown(client: TestClient) -> None:
+    made = client.post("/v1/trees", json=TREE)
+    assert made.status_code == 201, made.text
+    rows = {"name": "pin", "type": "pin", "from": "c.end", "to": "world", "rows": ["x", "y", "z", "rx", "ry"]}
+    assert made.json()["closures"] == [rows]
+    assert client.get("/v1/trees/ring").json()["closures"] == [rows]
+    open_tree = client.post("/v1/trees", json={**TREE, "name": "chain", "closures": []})
+    assert "closures" not in open_tree.json()
+
+
+@pytest.mark.parametrize("name", MEDIA_TYPES)
+def test_closures_in_every_format(client: TestClient, name: str) -> None:
+    client.post("/v1/trees", json=TREE)
+    answer = client.get("/v1/trees/ring/closures", params={"format": name})
+    assert answer.status_code == 200, answer.text
+    if name == "json":
+        outputs = Program.from_bytes(answer.content).outputs
+        assert outputs["closure.jacobian"].shape == (5, 3)
+
+
+def test_a_bad_closure_is_pointed_at(client: TestClient) -> None:
+    bad = {**TREE, "closures": [{**TREE["closures"][0], "to": "d.end"}]}
+    answer = client.post("/v1/trees", json=bad)
+    assert answer.status_code == 422
+    assert [(e["pointer"], e["code"]) for e in answer.json()["errors"]] == [("/closures/0/to", "unknown-instance")]
