@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from substructures.compile.lowering import Lowered, Part, Place
 from substructures.expr.program import Operation
 
-BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
+#: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)
+BINARY = {"add": "fadd contract", "sub": "fsub contract", "mul": "fmul contract", "div": "fdiv"}
 INTRINSICS = {"sqrt": "sqrt", "abs": "fabs"}
 
 
@@ -29,8 +30,13 @@ def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
     bodies = [f"define void @part{k}(ptr %s, ptr %p, ptr %o) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
     kind = vector(width)
     declared = [f"declare {kind} @llvm.{name}.v{width}f64({kind})\n" for name in INTRINSICS.values()]
+    return "".join([*declared, *bodies, attributes(width)])
+
+
+def attributes(width: int) -> str:
+    """Of all functions. An aligned stack: a spilled vector does not lie across two cache lines."""
     wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
-    return "".join([*declared, *bodies, f"attributes #0 = {{ nounwind {wide} }}\n"])
+    return f"attributes #0 = {{ nounwind alignstack={8 * width} {wide} }}\n"
 
 
 class _Emitter:

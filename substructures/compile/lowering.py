@@ -80,11 +80,13 @@ class Lowered:
 
 def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
     """Stages of the named outputs. Raises KeyError for an unknown name."""
-    needed, ops = program.reachable(names), program.operations
+    ops = program.operations
+    entries = {e for name in names for e in program.outputs[name].entries}
+    needed = _depth_first(ops, sorted(entries))
     literals = {i: constant(ops[i]) for i in needed if ops[i][0] in ("int", "rat")}
     varying = _varying(program, needed)
     # in the order of computation, so that results are written one after the other
-    outputs = sorted({e for name in names for e in program.outputs[name].entries})
+    outputs = [i for i in needed if i in entries]
     kept = {x for i in needed if varying[i] for x in operands(ops[i]) if not varying[x]}
     kept |= {i for i in outputs if not varying[i]}
     parts: list[Part] = []
@@ -94,6 +96,24 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
     results: dict[int, Place] = {i: ("o", k) for k, i in enumerate(outputs, 1)}
     second.build([i for i in needed if varying[i]], set(), results, part)
     return Lowered(first.stage, second.stage, parts, outputs, literals)
+
+
+def _depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
+    """What the results need, every value as late as possible before its first use: few values wait at a time."""
+    order, done = list[int](), bytearray(len(ops))
+    for result in results:
+        stack = [result]
+        while stack:
+            i = stack[-1]
+            waiting = [x for x in operands(ops[i]) if not done[x]]
+            if waiting and not done[i]:
+                stack += waiting
+                continue
+            stack.pop()
+            if not done[i]:
+                done[i] = 1
+                order.append(i)
+    return order
 
 
 def _varying(program: Program, needed: Iterable[int]) -> bytearray:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from substructures.compile.assembler import Assembly
-from substructures.compile.emission import literal, vector
+from substructures.compile.emission import attributes, literal, vector
 from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body
 
@@ -35,9 +35,8 @@ def runtime(width: int) -> str:
         scatter_some(width),
         _drive(width),
     ]
-    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
     declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
-    return declared + "\n".join(body) + f"\nattributes #0 = {{ nounwind {wide} }}\n"
+    return declared + "\n".join(body) + attributes(width)
 
 
 BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
