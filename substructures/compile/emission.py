@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator, Sequence
 
-from substructures.compile.lowering import Lowered, Part, Place
+from substructures.compile.lowering import REGIONS, Lowered, Part, Place
 from substructures.expr.program import Operation
 
 #: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)
@@ -25,9 +25,10 @@ def literal(value: float, width: int) -> str:
 
 
 def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
-    """A module with the functions part0, part1, ... (ptr s, ptr p, ptr o)."""
+    """A module with the functions part0, part1, ... of the scratch arrays of the stages and of the outputs."""
     emitters = (_Emitter(lowered, part, ops, width) for part in lowered.parts)
-    bodies = [f"define void @part{k}(ptr %s, ptr %p, ptr %o) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
+    given = ", ".join(f"ptr %{region}" for region in (*REGIONS, "o"))
+    bodies = [f"define void @part{k}({given}) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
     kind = vector(width)
     declared = [f"declare {kind} @llvm.{name}.v{width}f64({kind})\n" for name in INTRINSICS.values()]
     return "".join([*declared, *bodies, attributes(width)])
