@@ -5,7 +5,8 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator, Sequence
 
-from substructures.compile.lowering import REGIONS, Lowered, Part, Place
+from substructures.compile.lowering import Lowered, Part, Place
+from substructures.compile.order import REGIONS
 from substructures.expr.program import Operation
 
 #: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)

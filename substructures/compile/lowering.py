@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from substructures.compile.order import REGIONS, depth_first, stage_of
 from substructures.expr.graph import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
@@ -24,11 +25,6 @@ MAX_PRODUCT = 8
 #: evaluated in batches: sin and cos in vectors, the others by the C library
 BATCHED = frozenset(("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log"))
 LEAVES = frozenset(("sym", "int", "rat"))
-#: stage by kind of symbol
-STAGE = {"parameter": 0, "inertia": 0, "coordinate": 1, "time": 1, "velocity": 2, "acceleration": 3, "input": 3}
-#: names of the stages' scratch arrays
-REGIONS = ("p", "q", "v", "a")
-
 #: (region, number of the vector in it); regions: those of the stages, "o" outputs
 Place = tuple[str, int]
 
@@ -86,9 +82,9 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
     """Stages of the named outputs. Raises KeyError for an unknown name."""
     ops = program.operations
     entries = {e for name in names for e in program.outputs[name].entries}
-    needed = _depth_first(ops, sorted(entries))
+    needed = depth_first(ops, sorted(entries))
     literals = {i: constant(ops[i]) for i in needed if ops[i][0] in ("int", "rat")}
-    stage = _stages(program, needed)
+    stage = stage_of(program, needed)
     # values that cross from one stage to another
     kept = {x for i in needed for x in operands(ops[i]) if stage[x] < stage[i]}
     stages, parts, place, number = list[Stage](), list[Part](), dict[int, Place](), 1
@@ -101,36 +97,6 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
         stages.append(builder.stage)
         place, number = builder.place, number + len(found)
     return Lowered(tuple(stages), parts, literals)
-
-
-def _depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
-    """What the results need, every value as late as possible before its first use: few values wait at a time."""
-    order, done = list[int](), bytearray(len(ops))
-    for result in results:
-        stack = [result]
-        while stack:
-            i = stack[-1]
-            waiting = [x for x in operands(ops[i]) if not done[x]]
-            if waiting and not done[i]:
-                stack += waiting
-                continue
-            stack.pop()
-            if not done[i]:
-                done[i] = 1
-                order.append(i)
-    return order
-
-
-def _stages(program: Program, needed: Iterable[int]) -> bytearray:
-    """The stage of every operation: that of its latest operand."""
-    result = bytearray(len(program))
-    for i in needed:
-        operation = program.operations[i]
-        if operation[0] == "sym":
-            result[i] = STAGE[program.symbols[operation[1]].kind]
-        else:
-            result[i] = max((result[x] for x in operands(operation)), default=0)
-    return result
 
 
 def batch_name(operation: Operation) -> str | None:

@@ -5,21 +5,18 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import accumulate
 from math import prod
-from operator import is_
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from substructures.compile import layout, target
-from substructures.compile.arguments import NOTHING, Arguments, Array, Columns, Inputs, batch_shape, merged
-from substructures.compile.engine import WORDS, Runtime, Scratch, Table, address, workers
+from substructures.compile.arguments import Arguments, Array, Columns, batch_shape, merged
+from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, Table, address, workers
 from substructures.compile.kernel import Blocks, Kernel, Packed, is_packed
 from substructures.compile.layout import Layout, Words
-from substructures.compile.lowering import REGIONS
 from substructures.compile.recipe import Recipe
-from substructures.compile.runtime import STEP
+from substructures.compile.stages import Once, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
 
@@ -31,24 +28,13 @@ THREADED = 1024
 #: scratch arrays kept for the next call
 KEPT = 4
 NO_OUTPUTS = Table.written(())
-Counter = ctypes.c_int64
-
-
-class _Once(NamedTuple):
-    """Leading stages that have run for the whole batch: their scratch rows, and a row of results."""
-
-    scratch: tuple[Scratch, ...]
-    results: Scratch
 
 
 class _Job(NamedTuple):
-    """A batch: number of states, leading stages, inputs of all stages, tables for the driver.
-
-    ``counter``: groups of vectors that have been taken.
-    """
+    """A batch: number of states, leading stages, inputs of all stages, tables for the driver."""
 
     states: int
-    once: _Once
+    once: Once
     arguments: list[Arguments]
     inputs: Table
     outputs: Table
@@ -73,20 +59,12 @@ class MachineKernel(Kernel):
         self.width, self.recipe, self.runtime = width, recipe, runtime
         self._code = target.Loaded.load(code, recipe.functions)
         self._place = {operation: k for k, operation in enumerate(recipe.outputs, 1)}
-        steps = [self.runtime.steps(x.steps, k, self._code.names) for k, x in enumerate(recipe.stages)]
-        self._steps = Table.of(np.concatenate(steps))
-        # of the stages: first step, results before, doubles of a scratch row
-        self._first = [0, *accumulate(map(len, steps))]
-        self._results = [0, *accumulate(len(x.results) for x in recipe.stages)]
-        self._rows = [width * max(x.size, 1) for x in recipe.stages]
-        self._inputs = [Inputs(x.inputs) for x in recipe.stages]
+        self._stages = Stages(recipe, runtime, self._code.names)
         # a zero, and the results
-        self._o_row = width * (1 + self._results[-1])
-        self.group = min(MAX_GROUP, max(1, GROUP_BYTES // (8 * (sum(self._rows[1:]) + self._o_row))))
+        self._o_row = width * (1 + self._stages.results[-1])
+        self.group = min(MAX_GROUP, max(1, GROUP_BYTES // (8 * (sum(self._stages.rows[1:]) + self._o_row))))
         self._layouts: dict[tuple[str, bool], tuple[Layout, tuple[int, ...]]] = {}
         self._scratch: list[list[Scratch]] = []
-        self._none = _Once((), Scratch.zeros(1, width))
-        self._last: tuple[tuple[float, ...], _Once] | None = None
 
     @property
     def compiled(self) -> bool:
@@ -112,7 +90,7 @@ class MachineKernel(Kernel):
         columns = list(columns)
         batch = batch_shape(values, columns)
         count = prod(batch)
-        shape = (-(-count // self.width), self._results[-1], self.width)
+        shape = (-(-count // self.width), self._stages.results[-1], self.width)
         array = Scratch.zeros(shape[0], shape[1] * shape[2]).array.reshape(shape) if out is None else out
         if (
             array.shape != shape
@@ -145,56 +123,17 @@ class MachineKernel(Kernel):
         in_place: bool = False,
     ) -> _Job:
         """Addresses and tables of a batch; the leading stages whose inputs do not vary have run."""
-        found, count = self._find(values), prod(batch)
-        last = self._last
-        once = last[1] if last is not None and all(map(is_, found[0], last[0])) else self._none
-        done = len(once.scratch)
-        arguments = [NOTHING] * done
-        arguments += [x.read(f, batch, in_place) for x, f in zip(self._inputs[done:], found[done:], strict=True)]
-        if not done and not arguments[0].varying:
-            once = self._continued(once, arguments[:1])
-            if set(map(type, found[0])) <= {float}:
-                self._last = found[0], once
-        fixed = next((k for k, x in enumerate(arguments) if x.varying), len(arguments))
-        # for one vector another call of the driver would not pay
-        if fixed > 1 and count > self.width:
-            once = self._continued(once, arguments[1:fixed])
-        ready = self._results[len(once.scratch)]
+        try:
+            once, arguments = self._stages.begin(values, batch, in_place)
+        except KeyError:
+            # the first one in the order of the program, as the interpreter has it
+            raise MissingValue(next(name for name in self.symbols if name not in values)) from None
+        ready = self._stages.results[len(once.scratch)]
         if ready and blocks is not None:
             blocks[:, :ready] = once.results.array[0, self.width :].reshape(ready, self.width)
         size = 8 * self.width
         inputs = [(a, stride, size * k, stage) for stage, x in enumerate(arguments) for k, a, stride in x.varying]
-        return _Job(count, once, arguments, Table.written(inputs), outputs, Counter(), blocks)
-
-    def _find(self, values: Mapping[str, Any]) -> list[tuple[Any, ...]]:
-        """The inputs of every stage. Raises MissingValue."""
-        try:
-            return [stage.find(values) for stage in self._inputs]
-        except KeyError:
-            # the first one in the order of the program, as the interpreter has it
-            raise MissingValue(next(name for name in self.symbols if name not in values)) from None
-
-    def _continued(self, once: _Once, arguments: Sequence[Arguments]) -> _Once:
-        """The next stages, run once."""
-        start = len(once.scratch)
-        stop = start + len(arguments)
-        scratch = list(once.scratch)
-        for x, size in zip(arguments, self._rows[start:stop], strict=True):
-            row = Scratch.zeros(1, size)
-            row.array[0, : len(x.numbers) * self.width] = np.repeat(x.numbers, self.width)
-            scratch.append(row)
-        results = Scratch.zeros(1, self.width * (1 + self._results[stop]))
-        results.array[:, : once.results.array.size] = once.results.array
-        counter = Counter()
-        rows = [word for x in scratch for word in x[:2]] + [0] * 2 * (len(REGIONS) - stop)
-        steps = self._between(start, stop)
-        self.runtime.drive(*rows, results.address, 0, 0, 1, ctypes.addressof(counter), 0, 0, *steps, 0, 0, 1)
-        return _Once(tuple(scratch), results)
-
-    def _between(self, start: int, stop: int) -> tuple[int, int]:
-        """Address and number of the steps of these stages."""
-        first, last = self._first[start], self._first[stop]
-        return self._steps.address + 8 * len(STEP) * first, last - first
+        return _Job(prod(batch), once, arguments, Table.written(inputs), outputs, Counter(), blocks)
 
     def _run_job(self, job: _Job, threads: int) -> None:
         if threads > 1 and job.states >= THREADED:
@@ -239,9 +178,9 @@ class MachineKernel(Kernel):
         try:
             own = self._scratch.pop()
         except IndexError:
-            own = [Scratch.zeros(self.group, size) for size in (*self._rows[1:], self._o_row)]
+            own = [Scratch.zeros(self.group, size) for size in (*self._stages.rows[1:], self._o_row)]
         done, width = len(job.once.scratch), self.width
-        varying = own[done - 1 : -1] if done else [Scratch.zeros(self.group, self._rows[0]), *own[:-1]]
+        varying = own[done - 1 : -1] if done else [Scratch.zeros(self.group, self._stages.rows[0]), *own[:-1]]
         rows = [*job.once.scratch, *varying]
         for row, x in zip(varying, job.arguments[done:], strict=True):
             if len(x.varying) < len(x.numbers):
@@ -254,7 +193,7 @@ class MachineKernel(Kernel):
         else:
             # the array has no zero
             words += (address(job.blocks) - 8 * width, job.blocks.strides[0], job.blocks.strides[0])
-        tables = (*job.inputs[:2], *self._between(done, len(REGIONS)), *job.outputs[:2])
+        tables = (*job.inputs[:2], *self._stages.steps(done), *job.outputs[:2])
         return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group))
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from substructures.compile.lowering import REGIONS, Lowered, Stage, Step
+from substructures.compile.lowering import Lowered, Stage, Step
+from substructures.compile.order import REGIONS
 from substructures.expr.program import Program
 
 

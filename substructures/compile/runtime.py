@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 from substructures.compile.assembler import Assembly
 from substructures.compile.emission import attributes, literal, vector
-from substructures.compile.lowering import REGIONS
+from substructures.compile.order import REGIONS
 from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body
 

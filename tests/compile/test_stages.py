@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from substructures.compile import compile_program
-from substructures.compile.lowering import REGIONS, lower
+from substructures.compile.lowering import lower
+from substructures.compile.order import REGIONS
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program
