@@ -16,8 +16,6 @@ from substructures.compile.recipe import needed_symbols
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Output, Program
 
-#: states that :meth:`Kernel.chunks` takes at once
-CHUNK = 16_384
 #: outputs of which only the independent elements are wanted: all, none, or these
 Packed = bool | Collection[str]
 
@@ -139,18 +137,29 @@ class Kernel(ABC):
             if not fits or not (array.flags.c_contiguous or _rows(array, batch)):
                 raise ValueError(f"'{name}': a writable C-ordered array of doubles of shape {expected} is needed")
 
-    def chunks(
-        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), size: int = CHUNK, threads: int = 1
+    def stream(
+        self,
+        batches: Iterable[tuple[Mapping[str, Any], Iterable[Columns]]],
+        names: Iterable[str] | None = None,
+        *,
+        packed: Packed = False,
+        threads: int = 1,
     ) -> Iterator[dict[str, Array]]:
-        """The results for ``size`` states after the other, in bounded memory; for batches of one axis."""
-        columns = list(columns)
-        (count,) = batch_shape(values, columns) or (1,)
-        for start in range(0, count, size):
-            part = slice(start, start + size)
-            some = {n: v[part] if np.ndim(v) and len(v) == count else v for n, v in values.items()}
-            yield self.evaluate(
-                some, columns=[(n, a[part] if len(a) == count else a) for n, a in columns], threads=threads
-            )
+        """The results of one batch (values, columns) after the other, as :meth:`evaluate` gives them.
+
+        All come in the same memory, as much as the largest batch needs: the next results overwrite the last ones.
+        """
+        wanted, held = tuple(self.names if names is None else names), 0
+        memory: dict[str, Array] = {}
+        for values, columns in batches:
+            given = list(columns)
+            batch = batch_shape(values, given)
+            if prod(batch) > held or not memory:
+                held = prod(batch)
+                memory = {n: np.zeros((held, *self.shape(n, is_packed(n, packed)))) for n in wanted}
+            out = {n: array[: prod(batch)].reshape(batch + array.shape[1:]) for n, array in memory.items()}
+            self._run(merged(values, given, batch), batch, out, packed, threads, clean=True)
+            yield out
 
     @abstractmethod
     def _run(
