@@ -20,6 +20,8 @@ from substructures.model import Model
 from substructures.states import default_number
 
 Array = Any
+METRIC_FORCES = ("metric", "forces")
+EVERYTHING = (*METRIC_FORCES, "christoffel")
 #: states of a batch; the results of a batch should stay in the third-level cache
 BATCHES = {"6r": 4096, "34": 1024}
 #: states that Pinocchio is called for in a round
@@ -107,7 +109,8 @@ def robots() -> tuple[Robot, Robot]:
     definition = chain("general-6r", general_rows(6))
     rng = np.random.default_rng(7)
     values = {f"p0.{p}": float(rng.uniform(0.1, 1)) for p in definition.parameters}
-    values |= {n: 1 + v for n, v in values.items() if n.startswith(("p0.Ixx", "p0.Iyy", "p0.Izz"))}
+    # inertia tensors of real bodies: definite, and none of their moments larger than the sum of the others
+    values |= {n: (1 if n[4] == n[5] else 0) + v / 10 for n, v in values.items() if n.startswith("p0.I")}
     small = Robot.of(
         "general 6R", row_of([definition]), {definition.name: definition}, values | {"g": 9.81}, BATCHES["6r"]
     )
