@@ -37,6 +37,15 @@ def test_catalogue(name: str, tree: Any, states: Any, deviation: Any) -> None:
     assert all_agree(model, states(model, 37), deviation) < FEW
 
 
+@pytest.mark.parametrize("width", [2, 4, 8])
+@pytest.mark.parametrize("name", ["puma560", "quadruped-leg", "two-arms"])
+def test_vectors_of_other_hosts(name: str, width: int, tree: Any, states: Any, deviation: Any) -> None:
+    model = tree(*TREES[name])
+    values = states(model, 37)
+    kernel = compile_program(model.program, list(model.program.outputs), width=width)
+    assert deviation(model.program, values, kernel.evaluate(values)) < FEW
+
+
 def test_humanoid(tree: Any, states: Any, deviation: Any) -> None:
     model = tree(*HUMANOID)
     values = states(model, 70)
