@@ -1,7 +1,5 @@
 """The robots of the benchmark: ours, and the same in Pinocchio."""
 
-# ruff: noqa: N806 -- symbols of the notation
-
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -95,11 +93,15 @@ class Robot:
         place, data = np.argsort(order), self.peer.model.createData()
         for i in range(20):
             x, v = self.q[i][place], self.qd[i][place]
-            M = np.triu(pin.crba(self.peer.model, data, x))
-            M = (M + np.triu(M, 1).T)[np.ix_(order, order)]
+            upper = np.triu(pin.crba(self.peer.model, data, x))
+            metric = (upper + np.triu(upper, 1).T)[np.ix_(order, order)]
             forces = -pin.computeGeneralizedGravity(self.peer.model, data, x)[order]
-            C = pin.computeCoriolisMatrix(self.peer.model, data, x, v)[np.ix_(order, order)]
-            pairs = ((found["metric"][i], M), (found["gravity"][i], forces), (found["christoffel"][i] @ self.qd[i], C))
+            coriolis = pin.computeCoriolisMatrix(self.peer.model, data, x, v)[np.ix_(order, order)]
+            pairs = (
+                (found["metric"][i], metric),
+                (found["gravity"][i], forces),
+                (found["christoffel"][i] @ self.qd[i], coriolis),
+            )
             worst = max(worst, *(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs))
         return worst
 

@@ -13,7 +13,7 @@ import numpy as np
 from substructures.compile import layout, target
 from substructures.compile.arguments import Arguments, Array, Columns, batch_shape, merged
 from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, Table, address, workers
-from substructures.compile.kernel import Blocks, Kernel, Packed, is_packed
+from substructures.compile.kernel import Blocks, Kernel, Request, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.recipe import Recipe
 from substructures.compile.stages import Once, Stages
@@ -71,18 +71,9 @@ class MachineKernel(Kernel):
         """True."""
         return True
 
-    def _run(
-        self,
-        values: Mapping[str, Any],
-        batch: tuple[int, ...],
-        out: Mapping[str, Array],
-        packed: Packed,
-        threads: int,
-        *,
-        clean: bool,
-    ) -> None:
-        if prod(batch):
-            self._run_job(self._job(values, batch, self._outputs(out, batch, packed, clean)), threads)
+    def _run(self, request: Request) -> None:
+        if prod(request.batch):
+            self._run_job(self._job(request.values, request.batch, self._outputs(request)), request.threads)
 
     def blocks(
         self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
@@ -108,11 +99,9 @@ class MachineKernel(Kernel):
         places = {name: [self._place[e] - 1 for e in output.entries] for name, output in self.outputs.items()}
         return {name: np.array(some, dtype=np.int64) for name, some in places.items()}
 
-    def _bound(
-        self, values: Mapping[str, Any], batch: tuple[int, ...], out: Mapping[str, Array], packed: Packed
-    ) -> Callable[[], None]:
-        job = self._job(values, batch, self._outputs(out, batch, packed, clean=False), in_place=True)
-        return _Bound((self, job, dict(out)), self.runtime.call, self._prepared(job), job.counter)
+    def _bound(self, request: Request) -> Callable[[], None]:
+        job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
+        return _Bound((self, job, request), self.runtime.call, self._prepared(job), job.counter)
 
     def _job(
         self,
@@ -141,20 +130,20 @@ class MachineKernel(Kernel):
         else:
             self._work(job)
 
-    def _outputs(self, out: Mapping[str, Array], batch: tuple[int, ...], packed: Packed, clean: bool) -> Table:
+    def _outputs(self, request: Request) -> Table:
         """The table OUTPUT."""
-        rows = [self._output(n, array, is_packed(n, packed), len(batch), clean) for n, array in out.items()]
-        return Table.written(rows)
+        return Table.written([self._output(name, array, request) for name, array in request.out.items()])
 
-    def _output(self, name: str, array: Array, packed: bool, axes: int, clean: bool) -> tuple[int, ...]:
+    def _output(self, name: str, array: Array, request: Request) -> tuple[int, ...]:
+        packed = is_packed(name, request.packed)
         if (name, packed) not in self._layouts:
             made = (layout.packed if packed else layout.dense)(self.outputs[name], self._place, self.width)
             words = [word for table in (made.groups, made.singles) for word in (address(table), len(table))]
             self._layouts[name, packed] = made, tuple(words)
         where, tables = self._layouts[name, packed]
-        if where.sparse and not clean:
+        if where.sparse and not request.clean:
             array.fill(0)
-        stride = array.strides[0] if axes == 1 else 8 * prod(where.shape)
+        stride = array.strides[0] if len(request.batch) == 1 else 8 * prod(where.shape)
         return (address(array), stride, *tables)
 
     def _share(self, job: _Job, threads: int) -> None:

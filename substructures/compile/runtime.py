@@ -1,7 +1,7 @@
 """LLVM assembly of what all kernels share: input, sines and cosines, library calls, output, and the driver loop.
 
-Widths are fixed by the host, so this module is compiled once. Its functions take addresses in tables of 64-bit words
-(:mod:`substructures.compile.tables`); compiled objects contain no address and no name to be resolved.
+Widths are fixed by the host, so this module is compiled once. Its functions take addresses in tables of 64-bit words;
+compiled objects contain no address and no name to be resolved.
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
 """Kernels of random trees and of the whole catalogue beside Pinocchio."""
 
-# ruff: noqa: N806 -- symbols of the notation
-
 from __future__ import annotations
 
 from typing import Any
@@ -36,11 +34,15 @@ def compare(model: Model, definition: Plain, numbers: dict[str, float], count: i
     place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))
     data, worst = engine.model.createData(), 0.0
     for i in range(count):
-        M = np.triu(pin.crba(engine.model, data, q[i][place]))
-        M = (M + np.triu(M, 1).T)[np.ix_(order, order)] + rotors
-        C = pin.computeCoriolisMatrix(engine.model, data, q[i][place], qd[i][place])[np.ix_(order, order)]
+        upper = np.triu(pin.crba(engine.model, data, q[i][place]))
+        metric = (upper + np.triu(upper, 1).T)[np.ix_(order, order)] + rotors
+        coriolis = pin.computeCoriolisMatrix(engine.model, data, q[i][place], qd[i][place])[np.ix_(order, order)]
         forces = -pin.computeGeneralizedGravity(engine.model, data, q[i][place])[order]
-        pairs = ((found["metric"][i], M), (found["gravity"][i], forces), (found["christoffel"][i] @ qd[i], C))
+        pairs = (
+            (found["metric"][i], metric),
+            (found["gravity"][i], forces),
+            (found["christoffel"][i] @ qd[i], coriolis),
+        )
         worst = max(worst, *(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-2)) for a, b in pairs))
     return worst
 
