@@ -60,7 +60,7 @@ def parameters(robot: Robot, figures: dict[str, float], rounds: int) -> None:
     )
 
 
-def one_position(robot: Robot, figures: dict[str, float], rounds: int) -> None:
+def one_position(robot: Robot, key: str, figures: dict[str, float], rounds: int) -> None:
     """Many velocities at one position beside a position for every state: metric, forces and bias."""
     names = ("metric", "forces", "bias")
     kernel, count = robot.kernel(names), len(robot.q)
@@ -72,10 +72,10 @@ def one_position(robot: Robot, figures: dict[str, float], rounds: int) -> None:
         return lambda: kernel.evaluate_into(out, robot.numbers, columns=columns, clean=True), count
 
     times = alternating({"one": work(robot.q[:1]), "all": work(robot.q)}, rounds)
-    figures["one_position"] = ratio(times["one"], times["all"])
+    figures[key] = ratio(times["one"], times["all"])
     print(
-        f"M, Q and bias for many velocities at one position: {figures['one_position']:.2f} times the time for as many"
-        f" positions ({robot.name})"
+        f"M, Q and bias for many velocities at one position: {figures[key]:.2f} times the time for as many positions"
+        f" ({robot.name})"
     )
 
 

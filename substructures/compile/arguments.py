@@ -97,7 +97,7 @@ class Inputs:
             result.alive.append(value.array)
             return np.nan
         value = np.asarray(value, dtype=np.float64)
-        if value.ndim and (in_place or any(value.strides[k] and n != 1 for k, n in enumerate(value.shape))):
+        if value.ndim and (in_place or (value.size != 1 and any(value.strides))):
             _vary(result, place, value, batch)
             return np.nan
         return float(value.reshape(-1)[0])
