@@ -52,7 +52,10 @@ class Recipe:
     @classmethod
     def read(cls, data: Any) -> Recipe:
         """From plain data. Raises KeyError, TypeError or ValueError when it is something else."""
-        return cls(tuple(StageRecipe.read(data["stages"][k]) for k in range(len(REGIONS))), int(data["parts"]))
+        stages = tuple(StageRecipe.read(stage) for stage in data["stages"])
+        if len(stages) != len(REGIONS):
+            raise ValueError(f"{len(stages)} stages")
+        return cls(stages, int(data["parts"]))
 
     def plain(self) -> dict[str, Any]:
         """Plain data."""
