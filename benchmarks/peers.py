@@ -1,7 +1,5 @@
 """A tree with numbers for all parameters as a Pinocchio model with the same coordinates."""
 
-# ruff: noqa: N806 -- symbols of the notation
-
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -85,13 +83,12 @@ def _seat(joint: Mapping[str, Any], names: Mapping[str, float]) -> pin.SE3:
     """From the parent's frame to the joint at zero."""
     if joint.get("placement"):
         where = joint["placement"]
-        R = pin.rpy.rpyToMatrix(*(number(x, names) for x in where["rpy"]))
-        return pin.SE3(R, np.array([number(x, names) for x in where["position"]]))
+        turned = pin.rpy.rpyToMatrix(*(number(x, names) for x in where["rpy"]))
+        return pin.SE3(turned, np.array([number(x, names) for x in where["position"]]))
     psi, theta, d, sigma, phi, tau = (number(joint[x], names) for x in ("psi", "theta", "d", "sigma", "phi", "tau"))
     screws = [("z", psi, sigma), ("x", theta, d), ("z", phi, tau)]
     result = pin.SE3.Identity()
     for axis, angle, shift in screws:
         e = np.eye(3)["xyz".index(axis)]
-        R = pin.utils.rotate(axis, angle)
-        result = result * pin.SE3(R, shift * e)
+        result = result * pin.SE3(pin.utils.rotate(axis, angle), shift * e)
     return result

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from math import prod
 from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from substructures.errors import MissingValue
 
 Array = NDArray[np.float64]
 #: names, and an array whose columns (last axis) are their values
@@ -27,18 +24,22 @@ class Column(NamedTuple):
     number: int
 
 
-@dataclass(slots=True)
-class Arguments:
+class Arguments(NamedTuple):
     """Inputs of one stage: numbers for all states, and (place, address, stride in bytes) of those that vary."""
 
     numbers: Array
-    varying: list[tuple[int, int, int]] = field(default_factory=list)
-    alive: list[Array] = field(default_factory=list)
+    varying: list[tuple[int, int, int]]
+    alive: list[Array]
+
+
+#: of a stage without inputs
+NOTHING = Arguments(np.zeros(0), [], [])
 
 
 def batch_shape(values: Mapping[str, Any], columns: Iterable[Columns] = ()) -> tuple[int, ...]:
     """The common shape of all values. Raises ValueError when there is none."""
-    shapes = {v.shape if type(v) is np.ndarray else np.shape(v) for v in values.values() if type(v) is not float}
+    kinds = set(map(type, values.values()))
+    shapes = {np.shape(v) for v in values.values() if type(v) is not float} if kinds - {float} else set()
     shapes |= {np.shape(array)[:-1] for _, array in columns}
     shapes.discard(())
     if not shapes:
@@ -70,19 +71,18 @@ class Inputs:
         # a getter of two names and more answers with a tuple; of the repeated first one with a pair
         self.get = itemgetter(*self.names, *self.names[:1]) if names else lambda _: (None,)
 
-    def read(self, values: Mapping[str, Any], batch: tuple[int, ...], in_place: bool = False) -> Arguments:
-        """Arguments from the values. ``in_place``: arrays of one element are read anew by every run.
+    def find(self, values: Mapping[str, Any]) -> tuple[Any, ...]:
+        """The values as they are. Raises KeyError."""
+        return self.get(values)[:-1]
 
-        Raises MissingValue.
-        """
-        try:
-            found = self.get(values)[:-1]
-        except KeyError as error:
-            raise MissingValue(str(error.args[0])) from None
-        result = Arguments(np.zeros(0))
+    def read(self, found: tuple[Any, ...], batch: tuple[int, ...], in_place: bool = False) -> Arguments:
+        """Arguments from the values. ``in_place``: arrays of one element are read anew by every run."""
+        if not found:
+            return NOTHING
+        result = Arguments(np.empty(len(found)), [], [])
         if set(map(type, found)) - {float}:
-            found = tuple(self._number(result, k, x, batch, in_place) for k, x in enumerate(found))
-        result.numbers = np.array(found, dtype=np.float64)
+            found = tuple([self._number(result, k, x, batch, in_place) for k, x in enumerate(found)])
+        result.numbers[:] = found
         return result
 
     @staticmethod
@@ -91,11 +91,13 @@ class Inputs:
         if type(value) is float:
             return value
         if type(value) is Column:
+            if not value.stride and not in_place:
+                return float(value.array[0, value.number])
             result.varying.append((place, value.address, value.stride))
             result.alive.append(value.array)
             return np.nan
         value = np.asarray(value, dtype=np.float64)
-        if value.ndim and (in_place or value.size != 1):
+        if value.ndim and (in_place or (value.size != 1 and any(value.strides))):
             _vary(result, place, value, batch)
             return np.nan
         return float(value.reshape(-1)[0])

@@ -6,9 +6,11 @@ import struct
 from collections.abc import Callable, Iterator, Sequence
 
 from substructures.compile.lowering import Lowered, Part, Place
+from substructures.compile.order import REGIONS
 from substructures.expr.program import Operation
 
-BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
+#: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)
+BINARY = {"add": "fadd contract", "sub": "fsub contract", "mul": "fmul contract", "div": "fdiv"}
 INTRINSICS = {"sqrt": "sqrt", "abs": "fabs"}
 
 
@@ -24,13 +26,19 @@ def literal(value: float, width: int) -> str:
 
 
 def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
-    """A module with the functions part0, part1, ... (ptr s, ptr p, ptr o)."""
+    """A module with the functions part0, part1, ... of the scratch arrays of the stages and of the outputs."""
     emitters = (_Emitter(lowered, part, ops, width) for part in lowered.parts)
-    bodies = [f"define void @part{k}(ptr %s, ptr %p, ptr %o) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
+    given = ", ".join(f"ptr %{region}" for region in (*REGIONS, "o"))
+    bodies = [f"define void @part{k}({given}) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
     kind = vector(width)
     declared = [f"declare {kind} @llvm.{name}.v{width}f64({kind})\n" for name in INTRINSICS.values()]
+    return "".join([*declared, *bodies, attributes(width)])
+
+
+def attributes(width: int) -> str:
+    """Of all functions. An aligned stack: a spilled vector does not lie across two cache lines."""
     wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
-    return "".join([*declared, *bodies, f"attributes #0 = {{ nounwind {wide} }}\n"])
+    return f"attributes #0 = {{ nounwind alignstack={8 * width} {wide} }}\n"
 
 
 class _Emitter:

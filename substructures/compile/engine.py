@@ -19,6 +19,8 @@ from substructures.compile.lowering import Step
 from substructures.compile.runtime import CONTEXT, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
+#: groups of vectors that have been taken
+Counter = ctypes.c_int64
 #: of the scratch arrays: a cache line, and the widest vector
 ALIGNMENT = 64
 
@@ -87,19 +89,19 @@ class Runtime:
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 
-    def steps(self, steps: Iterable[Step], region: str, parts: Mapping[str, int]) -> NDArray[np.int64]:
-        """The table STEP."""
-        rows = [self._step(step, region, parts) for step in steps]
+    def steps(self, steps: Iterable[Step], stage: int, parts: Mapping[str, int]) -> NDArray[np.int64]:
+        """The table STEP of a stage."""
+        rows = [self._step(step, stage, parts) for step in steps]
         return np.array(rows, dtype=np.int64).reshape(-1, len(STEP))
 
-    def _step(self, step: Step, region: str, parts: Mapping[str, int]) -> list[int]:
+    def _step(self, step: Step, stage: int, parts: Mapping[str, int]) -> list[int]:
         if step.function == "part":
-            return [0, parts[f"part{step.number}"], 0, 0, 0, 0, 0]
-        kind, (a, b, c) = (1 if region == "s" else 2), (8 * self.width * x for x in (step.a, step.b, step.c))
+            return [-1, parts[f"part{step.number}"], 0, 0, 0, 0, 0]
+        a, b, c = (8 * self.width * x for x in (step.a, step.b, step.c))
         if step.function == "sincos":
-            return [kind, self.loaded.names["sincos"], a, b, c, step.count, address(self.pair)]
+            return [stage, self.loaded.names["sincos"], a, b, c, step.count, address(self.pair)]
         shared = "binary" if step.function in ("atan2", "pow") else "unary"
-        return [kind, self.loaded.names[shared], a, b, c, step.count, target.math_library()[step.function]]
+        return [stage, self.loaded.names[shared], a, b, c, step.count, target.math_library()[step.function]]
 
     def drive(self, *words: int) -> None:
         """One call of the driver, without the interpreter's lock; words in the order of CONTEXT."""

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,6 @@ from substructures.compile.recipe import needed_symbols
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Output, Program
 
-#: states that :meth:`Kernel.chunks` takes at once
-CHUNK = 16_384
 #: outputs of which only the independent elements are wanted: all, none, or these
 Packed = bool | Collection[str]
 
@@ -25,6 +23,17 @@ Packed = bool | Collection[str]
 def is_packed(name: str, packed: Packed) -> bool:
     """Whether only the independent elements of this output are wanted."""
     return packed if isinstance(packed, bool) else name in packed
+
+
+class Request(NamedTuple):
+    """What :meth:`Kernel.evaluate` is asked, checked; ``clean``: ``out`` holds zeros or earlier results."""
+
+    values: Mapping[str, Any]
+    batch: tuple[int, ...]
+    out: Mapping[str, Array]
+    packed: Packed
+    threads: int = 1
+    clean: bool = True
 
 
 @dataclass(frozen=True)
@@ -85,7 +94,7 @@ class Kernel(ABC):
         out = {
             n: np.zeros(batch + self.shape(n, is_packed(n, packed))) for n in (self.names if names is None else names)
         }
-        self._run(merged(values, columns, batch), batch, out, packed, threads, clean=True)
+        self._run(Request(merged(values, columns, batch), batch, out, packed, threads))
         return out
 
     def evaluate_into(
@@ -105,7 +114,7 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        self._run(merged(values, columns, batch), batch, out, packed, threads, clean=clean)
+        self._run(Request(merged(values, columns, batch), batch, out, packed, threads, clean))
 
     def bind(
         self,
@@ -122,7 +131,7 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        return self._bound(merged(values, columns, batch), batch, out, packed)
+        return self._bound(Request(merged(values, columns, batch), batch, out, packed, clean=False))
 
     @abstractmethod
     def blocks(
@@ -139,36 +148,36 @@ class Kernel(ABC):
             if not fits or not (array.flags.c_contiguous or _rows(array, batch)):
                 raise ValueError(f"'{name}': a writable C-ordered array of doubles of shape {expected} is needed")
 
-    def chunks(
-        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), size: int = CHUNK, threads: int = 1
-    ) -> Iterator[dict[str, Array]]:
-        """The results for ``size`` states after the other, in bounded memory; for batches of one axis."""
-        columns = list(columns)
-        (count,) = batch_shape(values, columns) or (1,)
-        for start in range(0, count, size):
-            part = slice(start, start + size)
-            some = {n: v[part] if np.ndim(v) and len(v) == count else v for n, v in values.items()}
-            yield self.evaluate(
-                some, columns=[(n, a[part] if len(a) == count else a) for n, a in columns], threads=threads
-            )
-
-    @abstractmethod
-    def _run(
+    def stream(
         self,
-        values: Mapping[str, Any],
-        batch: tuple[int, ...],
-        out: Mapping[str, Array],
-        packed: Packed,
-        threads: int,
+        batches: Iterable[tuple[Mapping[str, Any], Iterable[Columns]]],
+        names: Iterable[str] | None = None,
         *,
-        clean: bool,
-    ) -> None:
-        """Fills ``out``; ``clean``: it holds zeros or earlier results."""
+        packed: Packed = False,
+        threads: int = 1,
+    ) -> Iterator[dict[str, Array]]:
+        """The results of one batch (values, columns) after the other, as :meth:`evaluate` gives them.
+
+        All come in the same memory, as much as the largest batch needs: the next results overwrite the last ones.
+        """
+        wanted, held = tuple(self.names if names is None else names), 0
+        memory: dict[str, Array] = {}
+        for values, columns in batches:
+            given = list(columns)
+            batch = batch_shape(values, given)
+            if prod(batch) > held or not memory:
+                held = prod(batch)
+                memory = {n: np.zeros((held, *self.shape(n, is_packed(n, packed)))) for n in wanted}
+            out = {n: array[: prod(batch)].reshape(batch + array.shape[1:]) for n, array in memory.items()}
+            self._run(Request(merged(values, given, batch), batch, out, packed, threads))
+            yield out
 
     @abstractmethod
-    def _bound(
-        self, values: Mapping[str, Any], batch: tuple[int, ...], out: Mapping[str, Array], packed: Packed
-    ) -> Callable[[], None]:
+    def _run(self, request: Request) -> None:
+        """Fills ``out``."""
+
+    @abstractmethod
+    def _bound(self, request: Request) -> Callable[[], None]:
         """The same for later."""
 
 
@@ -204,24 +213,14 @@ class InterpretedKernel(Kernel):
             out[...] = array
         return Blocks(count, array if out is None else out, places)
 
-    def _run(
-        self,
-        values: Mapping[str, Any],
-        batch: tuple[int, ...],  # noqa: ARG002 -- the interpreter finds out itself
-        out: Mapping[str, Array],
-        packed: Packed,
-        threads: int,  # noqa: ARG002 -- numpy has one
-        *,
-        clean: bool,  # noqa: ARG002 -- it makes new arrays
-    ) -> None:
-        values = {n: _array(v) for n, v in values.items() if n in self.symbols}
-        for name, result in interpret(self.program, values, list(out)).items():
-            out[name][...] = _independent(self.outputs[name], result) if is_packed(name, packed) else result
+    def _run(self, request: Request) -> None:
+        values = {n: _array(v) for n, v in request.values.items() if n in self.symbols}
+        for name, result in interpret(self.program, values, list(request.out)).items():
+            chosen = _independent(self.outputs[name], result) if is_packed(name, request.packed) else result
+            request.out[name][...] = chosen
 
-    def _bound(
-        self, values: Mapping[str, Any], batch: tuple[int, ...], out: Mapping[str, Array], packed: Packed
-    ) -> Callable[[], None]:
-        return lambda: self._run(values, batch, out, packed, 1, clean=True)
+    def _bound(self, request: Request) -> Callable[[], None]:
+        return lambda: self._run(request)
 
 
 def _array(value: Any) -> Any:

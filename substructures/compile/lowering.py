@@ -1,9 +1,11 @@
 """Program -> staged, split straight-line code: what is computed when, where every value lives. Knows no LLVM.
 
-A program becomes two *stages*: operations of parameters only ("p", once per parameter set) and all others ("s", for
-every state). Each stage is a list of *steps*: functions of about PART operations, and batches of sines, cosines and
-library functions, which run as loops over contiguous arguments. Values that cross a function boundary live in numbered
-vector places of the stage's scratch array; places are reused when their value has been read for the last time.
+A program becomes four *stages*: operations of parameters only ("p"), then of positions and the time ("q"), of
+velocities ("v"), of accelerations and inputs ("a"). A batch runs the leading stages whose inputs do not vary once, all
+others for every state. Each stage is a list of *steps*: functions of about PART operations, and batches of sines,
+cosines and library functions, which run as loops over contiguous arguments. Values that cross a function boundary live
+in numbered vector places of the stage's scratch array; places are reused when their value has been read for the last
+time.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from substructures.compile.order import REGIONS, depth_first, stage_of
 from substructures.expr.graph import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
@@ -22,9 +25,7 @@ MAX_PRODUCT = 8
 #: evaluated in batches: sin and cos in vectors, the others by the C library
 BATCHED = frozenset(("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log"))
 LEAVES = frozenset(("sym", "int", "rat"))
-PARAMETERS = frozenset(("parameter", "inertia"))
-
-#: (region, number of the vector in it); regions: "s" state scratch, "p" parameter scratch, "o" outputs
+#: (region, number of the vector in it); regions: those of the stages, "o" outputs
 Place = tuple[str, int]
 
 
@@ -54,12 +55,13 @@ class Step:
 
 @dataclass
 class Stage:
-    """Inputs (symbol numbers, at the places 0, 1, ...), steps, size of the scratch array in vectors."""
+    """Inputs (symbol numbers, at the places 0, 1, ...), steps, size of the scratch array in vectors, results."""
 
     region: str
     inputs: list[int] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     size: int = 0
+    results: list[int] = field(default_factory=list)
 
     def new(self, count: int) -> int:
         """First of ``count`` new contiguous places."""
@@ -69,43 +71,32 @@ class Stage:
 
 @dataclass(frozen=True)
 class Lowered:
-    """Both stages and the functions of both. ``outputs``: operations at the places 1, 2, ... of the region "o"."""
+    """Stages, and the functions of all. The stages' results are at the places 1, 2, ... of the region "o"."""
 
-    parameters: Stage
-    states: Stage
+    stages: tuple[Stage, ...]
     parts: list[Part]
-    outputs: list[int]
     literals: dict[int, float]
 
 
 def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
     """Stages of the named outputs. Raises KeyError for an unknown name."""
-    needed, ops = program.reachable(names), program.operations
+    ops = program.operations
+    entries = {e for name in names for e in program.outputs[name].entries}
+    needed = depth_first(ops, sorted(entries))
     literals = {i: constant(ops[i]) for i in needed if ops[i][0] in ("int", "rat")}
-    varying = _varying(program, needed)
-    # in the order of computation, so that results are written one after the other
-    outputs = sorted({e for name in names for e in program.outputs[name].entries})
-    kept = {x for i in needed if varying[i] for x in operands(ops[i]) if not varying[x]}
-    kept |= {i for i in outputs if not varying[i]}
-    parts: list[Part] = []
-    first = _Builder(ops, Stage("p"), parts, {}, literals)
-    first.build([i for i in needed if not varying[i]], kept, {}, part)
-    second = _Builder(ops, Stage("s"), parts, first.place, literals)
-    results: dict[int, Place] = {i: ("o", k) for k, i in enumerate(outputs, 1)}
-    second.build([i for i in needed if varying[i]], set(), results, part)
-    return Lowered(first.stage, second.stage, parts, outputs, literals)
-
-
-def _varying(program: Program, needed: Iterable[int]) -> bytearray:
-    """Marks the operations that depend on more than parameters and constants."""
-    result = bytearray(len(program))
-    for i in needed:
-        operation = program.operations[i]
-        if operation[0] == "sym":
-            result[i] = program.symbols[operation[1]].kind not in PARAMETERS
-        elif any(result[x] for x in operands(operation)):
-            result[i] = 1
-    return result
+    stage = stage_of(program, needed)
+    # values that cross from one stage to another
+    kept = {x for i in needed for x in operands(ops[i]) if stage[x] < stage[i]}
+    stages, parts, place, number = list[Stage](), list[Part](), dict[int, Place](), 1
+    for k, region in enumerate(REGIONS):
+        mine = [i for i in needed if stage[i] == k]
+        # in the order of computation, so that results are written one after the other
+        found = [i for i in mine if i in entries]
+        builder = _Builder(ops, Stage(region, results=found), parts, place, literals)
+        builder.build(mine, kept, {i: ("o", number + j) for j, i in enumerate(found)}, part)
+        stages.append(builder.stage)
+        place, number = builder.place, number + len(found)
+    return Lowered(tuple(stages), parts, literals)
 
 
 def batch_name(operation: Operation) -> str | None:
@@ -126,7 +117,7 @@ class _Segment:
 
 
 class _Builder:
-    """Builds one stage. ``place``: where values live between functions, those of the stage before included."""
+    """Builds one stage. ``place``: where values live between functions, those of the stages before included."""
 
     def __init__(
         self,
@@ -140,7 +131,7 @@ class _Builder:
         self.expiring: dict[int, list[int]] = {}
 
     def build(self, needed: list[int], kept: set[int], results: dict[int, Place], size: int) -> None:
-        """``kept``: values that the next stage reads; ``results``: values with a place among the outputs."""
+        """``kept``: values that a later stage reads; ``results``: values with a place among the outputs."""
         for i in needed:
             if self.ops[i][0] == "sym":
                 self.place[i] = (self.stage.region, self.stage.new(1))

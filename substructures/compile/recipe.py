@@ -7,58 +7,64 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from substructures.compile.lowering import Lowered, Stage, Step
+from substructures.compile.order import REGIONS
 from substructures.expr.program import Program
 
 
 @dataclass(frozen=True)
 class StageRecipe:
-    """Names of the inputs (places 0, 1, ...), steps, vectors in the scratch array."""
+    """Names of the inputs (places 0, 1, ...), steps, vectors in the scratch array, results (operations)."""
 
     inputs: tuple[str, ...]
     steps: tuple[Step, ...]
     size: int
+    results: tuple[int, ...]
 
     @classmethod
     def of(cls, stage: Stage, program: Program) -> StageRecipe:
         """From a lowered stage."""
-        return cls(tuple(program.symbols[s].name for s in stage.inputs), tuple(stage.steps), stage.size)
+        names = tuple(program.symbols[s].name for s in stage.inputs)
+        return cls(names, tuple(stage.steps), stage.size, tuple(stage.results))
 
     @classmethod
     def read(cls, data: Any) -> StageRecipe:
         """From plain data."""
         steps = tuple(Step(str(f), *map(int, numbers)) for f, *numbers in data["steps"])
-        return cls(tuple(map(str, data["inputs"])), steps, int(data["size"]))
+        return cls(tuple(map(str, data["inputs"])), steps, int(data["size"]), tuple(map(int, data["results"])))
 
     def plain(self) -> dict[str, Any]:
         """Plain data."""
-        return {"inputs": self.inputs, "steps": [list(asdict(s).values()) for s in self.steps], "size": self.size}
+        return {**asdict(self), "steps": [list(asdict(s).values()) for s in self.steps]}
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """Both stages; ``outputs``: operations in the places 1, 2, ... of the results; ``parts``: number of functions."""
+    """All stages; ``parts``: number of functions."""
 
-    parameters: StageRecipe
-    states: StageRecipe
-    outputs: tuple[int, ...]
+    stages: tuple[StageRecipe, ...]
     parts: int
 
     @classmethod
     def of(cls, lowered: Lowered, program: Program) -> Recipe:
         """From a lowered program."""
-        first, second = (StageRecipe.of(stage, program) for stage in (lowered.parameters, lowered.states))
-        return cls(first, second, tuple(lowered.outputs), len(lowered.parts))
+        return cls(tuple(StageRecipe.of(stage, program) for stage in lowered.stages), len(lowered.parts))
 
     @classmethod
     def read(cls, data: Any) -> Recipe:
         """From plain data. Raises KeyError, TypeError or ValueError when it is something else."""
-        first, second = (StageRecipe.read(data[name]) for name in ("parameters", "states"))
-        return cls(first, second, tuple(map(int, data["outputs"])), int(data["parts"]))
+        stages = tuple(StageRecipe.read(stage) for stage in data["stages"])
+        if len(stages) != len(REGIONS):
+            raise ValueError(f"{len(stages)} stages")
+        return cls(stages, int(data["parts"]))
 
     def plain(self) -> dict[str, Any]:
         """Plain data."""
-        stages = {"parameters": self.parameters.plain(), "states": self.states.plain()}
-        return {**stages, "outputs": self.outputs, "parts": self.parts}
+        return {"stages": [stage.plain() for stage in self.stages], "parts": self.parts}
+
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """Operations in the places 1, 2, ... of the results."""
+        return tuple(i for stage in self.stages for i in stage.results)
 
     @property
     def functions(self) -> list[str]:

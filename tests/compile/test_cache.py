@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ import pytest
 
 import substructures.compile as package
 from substructures.compile import cache, compile_program, engine, target
+from substructures.compile.lowering import lower
+from substructures.compile.recipe import Recipe
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 
@@ -108,6 +111,14 @@ def damaged(data: bytes) -> dict[str, bytes]:
         "other JSON": sealed(line.replace(b'"steps"', b'"stops"') + b"\n" + code),
         "no code": sealed(line + b"\n"),
     }
+
+
+def test_recipes_as_plain_data(spring: Program) -> None:
+    recipe = Recipe.of(lower(spring, ["force", "energy"]), spring)
+    plain = json.loads(json.dumps(recipe.plain()))
+    assert Recipe.read(plain) == recipe
+    with pytest.raises(ValueError, match="3 stages"):
+        Recipe.read(plain | {"stages": plain["stages"][:3]})
 
 
 def test_damaged_entries_are_made_anew(

@@ -1,54 +1,105 @@
-"""Kernels of random trees beside Pinocchio."""
-
-# ruff: noqa: N806 -- symbols of the notation
+"""Kernels of random trees and of the whole catalogue beside Pinocchio."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from independent import by_coordinate, value, values
 from random_trees import GRAVITY, Kind, model_of, random_definition
 
+from substructures import catalogue
 from substructures.compile import compile_program
+from substructures.model import Model
+from substructures.states import default_number
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from independent import by_coordinate  # noqa: E402
 from pinocchio_trees import engine_of  # noqa: E402
 
 pytest.importorskip("llvmlite")
 
+Plain = dict[str, Any]
 
-def compare(seed: int, count: int) -> float:
-    """Largest relative deviation of metric, gravity forces and Coriolis matrix of a random tree."""
+
+def compare(model: Model, definition: Plain, numbers: dict[str, float], count: int, gravity: Any) -> float:
+    """Largest relative deviation of metric, gravity forces and Coriolis matrix; the definition holds numbers only."""
+    if not model.dof:
+        return 0.0
+    q, qd = np.random.default_rng(count).uniform(-3, 3, (2, count, model.dof))
+    kernel = compile_program(model.program, ["metric", "gravity", "christoffel"])
+    found = kernel.evaluate(numbers, columns=[(model.coordinates, q)])
+    engine, names = engine_of(definition, gravity), [c.removeprefix("x.") for c in model.coordinates]
+    order = engine.order(names)
+    place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))
+    data, worst = engine.model.createData(), 0.0
+    for i in range(count):
+        upper = np.triu(pin.crba(engine.model, data, q[i][place]))
+        metric = (upper + np.triu(upper, 1).T)[np.ix_(order, order)] + rotors
+        coriolis = pin.computeCoriolisMatrix(engine.model, data, q[i][place], qd[i][place])[np.ix_(order, order)]
+        forces = -pin.computeGeneralizedGravity(engine.model, data, q[i][place])[order]
+        pairs = (
+            (found["metric"][i], metric),
+            (found["gravity"][i], forces),
+            (found["christoffel"][i] @ qd[i], coriolis),
+        )
+        worst = max(worst, *(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-2)) for a, b in pairs))
+    return worst
+
+
+def random_tree(seed: int, count: int) -> float:
     rng = np.random.default_rng(seed)
     definition = random_definition(
         rng, Kind(int(rng.integers(2, 7)), bool(rng.integers(2)), loads=0, springs=0, depth=8)
     )
     model = model_of(definition)
-    if not model.dof:
-        return 0.0
-    q, qd = rng.uniform(-3, 3, (2, count, model.dof))
     rest = {s.name: 0.0 for s in model.program.symbols} | {n: p["value"] for n, p in model.parameters.items()}
-    kernel = compile_program(model.program, ["metric", "gravity", "christoffel"])
-    found = kernel.evaluate({n: float(v) for n, v in rest.items()}, columns=[(model.coordinates, q)])
-    engine, names = engine_of(definition, GRAVITY), [c.removeprefix("x.") for c in model.coordinates]
-    order = engine.order(names)
-    place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))
-    data, worst = engine.model.createData(), 0.0
-    for i in range(count):
-        M = np.triu(pin.crba(engine.model, data, q[i][place]))
-        M = (M + np.triu(M, 1).T)[np.ix_(order, order)] + rotors
-        C = pin.computeCoriolisMatrix(engine.model, data, q[i][place], qd[i][place])[np.ix_(order, order)]
-        forces = -pin.computeGeneralizedGravity(engine.model, data, q[i][place])[order]
-        pairs = ((found["metric"][i], M), (found["gravity"][i], forces), (found["christoffel"][i] @ qd[i], C))
-        worst = max(worst, *(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-2)) for a, b in pairs))
-    return worst
+    return compare(model, definition, {n: float(v) for n, v in rest.items()}, count, GRAVITY)
+
+
+def numeric(definition: Plain, names: dict[str, float]) -> Plain:
+    """The definition with numbers for its parameters, as far as the engine reads it."""
+
+    def numbers(given: Any) -> Any:
+        if isinstance(given, dict):
+            return {k: v if k in ("type", "about", "coordinate") else numbers(v) for k, v in given.items()}
+        return values(given, names).tolist() if isinstance(given, list) else value(given, names)
+
+    bodies = [{k: v if k in ("name", "parent") else numbers(v) for k, v in b.items()} for b in definition["bodies"]]
+    for body in bodies:
+        if "placement" in body["joint"]:
+            body["joint"]["placement"] = {"position": [0.0] * 3, "rpy": [0.0] * 3} | body["joint"]["placement"]
+    return {"bodies": bodies}
+
+
+def entry(name: str, count: int, tree: Any, states: Any) -> float:
+    """An entry of the catalogue by itself."""
+    model = tree(("x", name, "world"))
+    given = {n: v if np.ndim(v) == 0 else 0.0 for n, v in states(model, 1).items()}
+    document = catalogue.load(name)
+    # some drop out of the formulas
+    known = {n: default_number(p.get("value", 1)) for n, p in document.get("parameters", {}).items()}
+    plain = numeric(document, known | {n.removeprefix("x."): v for n, v in given.items()})
+    return compare(model, plain, given, count, [0, 0, -9.81])
 
 
 def test_random_trees() -> None:
-    assert max(compare(seed, 20) for seed in range(8)) < 1e-10
+    assert max(random_tree(seed, 20) for seed in range(8)) < 1e-10
+
+
+@pytest.mark.parametrize("name", ["puma560", "kuka-iiwa-14", "excavator-arm", "quadruped-leg", "ball-pendulum"])
+def test_entries(name: str, tree: Any, states: Any) -> None:
+    assert entry(name, 20, tree, states) < 1e-10
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("block", range(10))
 def test_many_random_trees(block: int) -> None:
-    assert max(compare(seed, 1000) for seed in range(100 + 10 * block, 110 + 10 * block)) < 1e-10
+    assert max(random_tree(seed, 1000) for seed in range(100 + 10 * block, 110 + 10 * block)) < 1e-10
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", catalogue.names())
+def test_many_states_of_the_catalogue(name: str, tree: Any, states: Any) -> None:
+    """Over all entries 10^5 states and more."""
+    assert entry(name, -(-100_000 // len(catalogue.names())), tree, states) < 1e-10

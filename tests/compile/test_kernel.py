@@ -186,10 +186,13 @@ def test_same_bits_from_threads_and_splits(mixture: Program) -> None:
         for parameters in ({}, {"m": rng.uniform(1, 2, count)}):
             whole = kernel.evaluate(values | parameters)
             threaded = kernel.evaluate(values | parameters, threads=3)
-            chunks = list(kernel.chunks(values | parameters, size=97, threads=2))
+            swept = values | parameters
+            cuts = [slice(k, k + 97) for k in range(0, count, 97)]
+            batches = [({n: v[cut] if np.ndim(v) else v for n, v in swept.items()}, ()) for cut in cuts]
+            pieces = [{n: a.copy() for n, a in found.items()} for found in kernel.stream(batches, threads=2)]
             for name, array in whole.items():
                 np.testing.assert_array_equal(threaded[name], array)
-                np.testing.assert_array_equal(np.concatenate([c[name] for c in chunks]), array)
+                np.testing.assert_array_equal(np.concatenate([piece[name] for piece in pieces]), array)
 
 
 def test_many_callers_at_once(mixture: Program) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
+import platform
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 
 from substructures import catalogue
-from substructures.compile import compile_program
+from substructures.compile import compile_program, engine, target
 from substructures.model import Model
 
 pytest.importorskip("llvmlite")
@@ -34,6 +37,32 @@ def all_agree(model: Model, values: dict[str, Any], deviation: Callable[..., flo
 @pytest.mark.parametrize("name", TREES)
 def test_catalogue(name: str, tree: Any, states: Any, deviation: Any) -> None:
     model = tree(*TREES[name])
+    assert all_agree(model, states(model, 37), deviation) < FEW
+
+
+@pytest.mark.parametrize("width", [2, 4, 8])
+@pytest.mark.parametrize("name", ["puma560", "quadruped-leg", "two-arms"])
+def test_vectors_of_other_hosts(name: str, width: int, tree: Any, states: Any, deviation: Any) -> None:
+    model = tree(*TREES[name])
+    values = states(model, 37)
+    kernel = compile_program(model.program, list(model.program.outputs), width=width)
+    assert deviation(model.program, values, kernel.evaluate(values)) < FEW
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="older CPUs of this family")
+@pytest.mark.parametrize(("cpu", "needs"), [("x86-64", "+sse2"), ("haswell", "+fma"), ("skylake-avx512", "+avx512dq")])
+def test_code_for_other_cpus(
+    cpu: str, needs: str, tree: Any, states: Any, deviation: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without fused multiply-add, with it, and with vectors of eight."""
+    here = target.host()
+    if needs not in here.features.split(","):
+        pytest.skip(f"this CPU cannot run code for {cpu}")
+    width = {"x86-64": 2, "haswell": 4}.get(cpu, 8)
+    monkeypatch.setattr(target, "host", lambda: dataclasses.replace(here, cpu=cpu, features="", width=width))
+    monkeypatch.setattr(target, "machine", cache(target.new_machine))
+    monkeypatch.setattr(engine, "_runtimes", {})
+    model = tree(*TREES["puma560"])
     assert all_agree(model, states(model, 37), deviation) < FEW
 
 

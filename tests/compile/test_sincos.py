@@ -34,10 +34,10 @@ def errors(kernel: Any, x: Any) -> dict[str, float]:
     return worst
 
 
-@pytest.mark.parametrize("limit", [1e-8, 1.0, 4.0, 100.0, 1e5, 1e8])
-def test_random_arguments(kernel: Any, limit: float) -> None:
+@pytest.mark.parametrize(("limit", "bound"), [(1e-8, 1), (1.0, 1.5), (4.0, 1.5), (100.0, 1.5), (1e5, 2.5), (1e8, 2.5)])
+def test_random_arguments(kernel: Any, limit: float, bound: float) -> None:
     x = np.random.default_rng(1).uniform(-limit, limit, 2000)
-    assert max(errors(kernel, x).values()) < 1.5
+    assert max(errors(kernel, x).values()) < bound
 
 
 def nearest(multiples: Any) -> Any:
@@ -48,12 +48,12 @@ def nearest(multiples: Any) -> Any:
 
 def test_next_to_multiples_of_a_right_angle(kernel: Any) -> None:
     x = nearest([*range(1, 300), *np.random.default_rng(2).integers(1, 63_661, 500)])
-    assert max(errors(kernel, np.concatenate([x, -x, np.nextafter(x, 0)])).values()) < 2
+    assert max(errors(kernel, np.concatenate([x, -x, np.nextafter(x, 0)])).values()) < 2.5
 
 
 @pytest.mark.deep
 def test_next_to_all_multiples_up_to_1e5(kernel: Any) -> None:
-    assert max(errors(kernel, nearest(range(1, 63_662))).values()) < 2
+    assert max(errors(kernel, nearest(range(1, 63_662))).values()) < 2.5
 
 
 def test_special_arguments(kernel: Any) -> None:

@@ -1,0 +1,42 @@
+"""The order of operations: by stages, and depth first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from substructures.expr.program import Operation, Program, operands
+
+#: stage by kind of symbol
+STAGE = {"parameter": 0, "inertia": 0, "coordinate": 1, "time": 1, "velocity": 2, "acceleration": 3, "input": 3}
+#: names of the stages' scratch arrays
+REGIONS = ("p", "q", "v", "a")
+
+
+def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
+    """What the results need, every value as late as possible before its first use: few values wait at a time."""
+    order, done = list[int](), bytearray(len(ops))
+    for result in results:
+        stack = [result]
+        while stack:
+            i = stack[-1]
+            waiting = [x for x in operands(ops[i]) if not done[x]]
+            if waiting and not done[i]:
+                stack += waiting
+                continue
+            stack.pop()
+            if not done[i]:
+                done[i] = 1
+                order.append(i)
+    return order
+
+
+def stage_of(program: Program, needed: Iterable[int]) -> bytearray:
+    """The stage of every operation: that of its latest operand."""
+    result = bytearray(len(program))
+    for i in needed:
+        operation = program.operations[i]
+        if operation[0] == "sym":
+            result[i] = STAGE[program.symbols[operation[1]].kind]
+        else:
+            result[i] = max((result[x] for x in operands(operation)), default=0)
+    return result

@@ -1,0 +1,94 @@
+"""Parameters, positions, velocities, accelerations and inputs: a stage whose inputs do not vary runs once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures.compile import compile_program
+from substructures.compile.lowering import lower
+from substructures.compile.order import REGIONS
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Formulas, Program
+
+pytest.importorskip("llvmlite")
+STAGES = (("m", "I"), ("x", "t"), ("v",), ("a", "f"))
+NAMES = ("parameter", "inertia", "coordinate", "time", "velocity", "acceleration", "input")
+KINDS = dict(zip((n for names in STAGES for n in names), NAMES, strict=True))
+COUNT = 1203
+
+
+@pytest.fixture
+def staged(collected: Callable[..., Program]) -> Program:
+    """Results, functions and symbols of every stage, and values that cross from each to each later one."""
+    g = Graph()
+    m, inertia, x, t, v, a, f = (g.symbol(n) for n in KINDS)
+    s, c = g.function("sin", x * m), g.function("cos", x + t)
+    w, root = g.function("exp", v * s), g.function("sqrt", m + inertia)
+    last = g.function("sin", a * w + f * root) - c
+    entries = [m, root, x, s * c, inertia * s, v, w + root, w * s, a, last, last * m + v * c, g.number(2)]
+    return collected(
+        g, KINDS, mixed=Formulas((len(entries),), {(k,): e for k, e in enumerate(entries)}), last=last, first=root * m
+    )
+
+
+def values_of(varying: tuple[int, ...], count: int = COUNT) -> dict[str, Any]:
+    """Numbers, and arrays for the inputs of the given stages."""
+    rng = np.random.default_rng(5)
+    values: dict[str, Any] = {n: float(rng.uniform(0.5, 1)) for names in STAGES for n in names}
+    return values | {n: rng.uniform(0.5, 1, count) for k in varying for n in STAGES[k]}
+
+
+CASES = pytest.mark.parametrize("varying", [(0, 1, 2, 3), (1, 2, 3), (2, 3), (3,), (2,), (0,), (0, 2), (1,), (1, 3)])
+
+
+@CASES
+@pytest.mark.parametrize("width", [2, 4, 8])
+def test_numbers_give_the_bits_of_arrays(staged: Program, varying: tuple[int, ...], width: int) -> None:
+    kernel = compile_program(staged, list(staged.outputs), width=width)
+    values = values_of(varying)
+    full = {n: np.full(COUNT, v) if np.ndim(v) == 0 else v for n, v in values.items()}
+    expected, once = kernel.evaluate(full), kernel.evaluate(values)
+    reference = interpret(staged, full, kernel.names)
+    broadcast = kernel.evaluate({n: np.broadcast_to(v, COUNT) for n, v in values.items()})
+    single = kernel.evaluate({n: v if np.ndim(v) else np.array([v]) for n, v in values.items()}, threads=2)
+    blocks, threaded = kernel.blocks(values), kernel.blocks(values, threads=2)
+    for name, array in expected.items():
+        np.testing.assert_allclose(array, reference[name], rtol=1e-14, atol=1e-15)
+        for found in (once, broadcast, single):
+            np.testing.assert_array_equal(found[name], array)
+        for some in (blocks, threaded):
+            np.testing.assert_array_equal(some.entries(name).reshape(array.shape), array)
+
+
+def test_calls_do_not_see_what_earlier_ones_have_left(staged: Program) -> None:
+    kernel = compile_program(staged, list(staged.outputs))
+    fresh = {v: compile_program(staged, list(staged.outputs)).evaluate(values_of(v)) for v in [(1, 2, 3), (2,), (0,)]}
+    for varying, expected in [*fresh.items(), *reversed(fresh.items())]:
+        for name, array in kernel.evaluate(values_of(varying)).items():
+            np.testing.assert_array_equal(array, expected[name])
+
+
+def test_one_position_as_a_row(staged: Program) -> None:
+    kernel = compile_program(staged, list(staged.outputs))
+    values = values_of((2, 3))
+    rest: Mapping[str, Any] = {n: values[n] for n in ("m", "I", "v", "a", "f")}
+    position = np.array([[values["x"], values["t"]]])
+    for given in (position, position[0], np.broadcast_to(position, (COUNT, 2))):
+        found = kernel.evaluate(rest, columns=[(("x", "t"), given)])
+        for name, array in kernel.evaluate(values).items():
+            np.testing.assert_array_equal(found[name], array)
+
+
+def test_operations_stand_in_the_stage_of_their_latest_operand(staged: Program) -> None:
+    stages = lower(staged, list(staged.outputs)).stages
+    assert [stage.region for stage in stages] == list(REGIONS)
+    for stage, names in zip(stages, STAGES, strict=True):
+        assert {staged.symbols[k].name for k in stage.inputs} == set(names)
+    entries = {e for output in staged.outputs.values() for e in output.entries}
+    assert sum(len(stage.results) for stage in stages) == len(entries)
+    assert [len(stage.results) for stage in stages] == [4, 3, 3, 3]
