@@ -8,7 +8,7 @@ Measured against expressing those products in the interface frame (f, n, K), thi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
@@ -45,7 +45,7 @@ USED = (
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
 FRAMES = ("frame.E", "frame.position")
-OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J")
+OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J", "armature")
 
 #: the outputs of a part's stored program, by name, for the given values of its symbols
 Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
@@ -256,13 +256,18 @@ def _gravity(m: Mounted, state: State, result: Coupled) -> None:
     result.potential = result.potential + state.stored.scalar("potential")
 
 
-def _applied(m: Mounted, state: State, result: Coupled) -> None:
-    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
+def applied_wrenches(m: Mounted, state: State) -> Iterator[tuple[int, Vector, Vector]]:
+    """(carrier, force, moment about its body frame origin) of every force and torque, in the carrier's axes."""
     for i, (carrier, moment, world) in enumerate(m.part.wrenches):
         vector = state.stored.vector("load.vector", i)
         if world:
             vector = apply(state.pose(carrier).R, vector)
-        force, n = wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
+        yield carrier, *wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
+
+
+def _applied(m: Mounted, state: State, result: Coupled) -> None:
+    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
+    for carrier, force, n in applied_wrenches(m, state):
         columns = state.outside if carrier == INTERFACE else state.columns[carrier]
         if carrier != INTERFACE:
             n = add(n, cross((0, 0, state.tau[carrier]), force))

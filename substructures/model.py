@@ -8,6 +8,7 @@ christoffel            n n n        Gamma_abc, first kind, first index = equatio
 gravity                n            generalised gravity forces
 bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
+inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
 potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
 linear_momentum        n 3          momentum of unit velocity q'^a, world axes
 angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
@@ -25,7 +26,7 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.bias import bias_forces
+from substructures.bias import bias_forces, inverse_dynamics
 from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_link, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
@@ -60,6 +61,11 @@ class Model:
     def dof(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
+
+    @cached_property
+    def derived(self) -> dict[str, Program]:
+        """Programs that were formed from this model's, by name; they live as long as it."""
+        return {}
 
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
@@ -120,19 +126,22 @@ def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
-    bias = bias_forces(assembly.mounted, coupled.states, _rates(assembly))
-    outputs["bias"] = array((n,), lambda a: bias[a])
+    rates, accelerations = rate_symbols(assembly)
+    bias = bias_forces(assembly.mounted, coupled.states, rates)
+    inverse = inverse_dynamics(assembly.mounted, coupled.states, rates, accelerations)
+    outputs |= {"bias": array((n,), lambda a: bias[a]), "inverse_dynamics": array((n,), lambda a: inverse[a])}
     return outputs | _momentum(assembly, coupled) | _kinematics(assembly, coupled)
 
 
-def _rates(assembly: Assembly) -> list[Any]:
-    """The symbols of all velocities."""
-    rates = []
+def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
+    """The symbols of all velocities and accelerations."""
+    rates, accelerations = [], []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
         for joint in m.part.skeleton.joints:
-            name = f"{instance.name}.{joint.coordinate}'"
-            rates.append(assembly.scope.declare(name, "velocity", "m/s" if joint.s else "rad/s"))
-    return rates
+            name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
+            rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
+            accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))
+    return rates, accelerations
 
 
 def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
