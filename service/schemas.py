@@ -191,6 +191,15 @@ class TreePage(Shape):
 Column = float | list[float]
 
 
+class Direction(BaseModel):
+    """The direction of a derivative, zero where nothing is given; one row for all states, or one for each."""
+
+    q: list[float] | list[list[float]] | dict[str, Column] | None = None
+    qd: list[float] | list[list[float]] | dict[str, Column] | None = None
+    qdd: list[float] | list[list[float]] | dict[str, Column] | None = Field(None, description="of inverse dynamics")
+    inputs: dict[str, Column] = {}
+
+
 class EvaluationRequest(BaseModel):
     """States to evaluate; SI units, angles in rad."""
 
@@ -201,6 +210,7 @@ class EvaluationRequest(BaseModel):
     qdd: list[float] | list[list[float]] | dict[str, Column] | None = None
     inputs: dict[str, Column] = Field({}, description="tau.<coordinate> (N m or N) and inputs of loads")
     t: Column = Field(0, description="s")
+    along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
 
 
 class EvaluationResult(BaseModel):
@@ -212,6 +222,8 @@ class EvaluationResult(BaseModel):
     count: int
     digest: Digest
     failures: list[Any] = []
+    frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
+    columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
 
 
 class LimitsView(BaseModel):

@@ -12,9 +12,13 @@ from service.queries import content
 from service.queries.trees import Tree
 from service.settings import Settings
 from substructures.definition import Definition
+from substructures.derived import derived
 from substructures.documents import read_json
+from substructures.errors import TooLarge
+from substructures.expr.program import Program
 from substructures.model import Model, couple
 from substructures.part import Part
+from substructures.regressor import RegressorModel
 from substructures.tree import TreeSpec
 
 PICTURES = 16 * 2**20  # characters
@@ -27,6 +31,8 @@ class Store:
         self.settings, self.database, self.metrics = settings, database, metrics
         self._parts: Cache[Part] = Cache(settings.cache_nodes // 2, lambda part: len(part.program))
         self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
+        self._derived: Cache[Program] = Cache(settings.cache_nodes // 2, len)
+        self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 2, lambda found: len(found.program))
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
 
@@ -64,6 +70,18 @@ class Store:
             model = couple(spec, parts, self.settings.limits.program_nodes)
             self._models.put(spec.digest, model)
         return model
+
+    def derived(self, model: Model, quantity: str) -> Program:
+        """A program of :data:`substructures.derived.DERIVED`. Raises as ``derived`` does, and TooLarge."""
+        key = model.program.digest, model.coordinates, quantity
+        program = self._derived.get(key)
+        self.metrics.cache("derived", program is not None)
+        if program is None:
+            program, limit = derived(model, quantity), self.settings.limits.program_nodes
+            if len(program) > limit:
+                raise TooLarge(f"the program of '{quantity}' (in operations)", len(program), limit)
+            self._derived.put(key, program)
+        return program
 
     def remember_model(self, digest: str, model: Model) -> None:
         """Keep a model that was just coupled."""

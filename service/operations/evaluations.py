@@ -11,40 +11,34 @@ import orjson
 from service.arrays import flat, read_npz, write_npz
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES, Engine, evaluate
+from substructures.evaluation import QUANTITIES, Engine, Sources, cost, evaluate
 from substructures.model import Model
 
-# dimensions of the answer for one state; what is not listed has one
-_DIMENSIONS = {
-    "metric": 2,
-    "coriolis": 2,
-    "christoffel": 3,
-    "kinetic_energy": 0,
-    "potential_energy": 0,
-}
-_FLAT_INPUTS = ("inputs", "parameters")
+_OBJECTS = ("along.inputs", "along", "inputs", "parameters")
 
 
-def compute(model: Model, request: Any, limits: Limits, engine: Engine) -> dict[str, Any]:
-    """Arrays by name, and ``failures``. Raises InvalidDocument, MissingValue, TooLarge."""
+def compute(
+    model: Model, request: Any, limits: Limits, engine: Engine, sources: Sources | None = None
+) -> dict[str, Any]:
+    """Arrays by name, and ``failures``. Raises InvalidDocument, MissingValue, TooLarge.
+
+    ``sources``: where derived programs are kept, and the regressor, which cannot be had from a model alone.
+    """
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    check_size(model, request, limits)
-    return evaluate(model, request, limits.states, engine)
+    check_size(model, request, limits, sources)
+    return evaluate(model, request, limits.states, engine, sources)
 
 
-def check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None:
+def check_size(model: Model, request: Mapping[str, Any], limits: Limits, sources: Sources | None = None) -> None:
     """Refuse what would take too long or too much memory, before anything is computed."""
     states = _states(request.get("q")) or 1
     given = request.get("quantities")
-    names = {name for name in given if isinstance(name, str)} & QUANTITIES.keys() if isinstance(given, list) else set()
-    needs = {output for name in names for output in QUANTITIES[name].needs}
-    work = states * len(model.program.reachable(needs))
+    names = [name for name in given if isinstance(name, str) and name in QUANTITIES] if isinstance(given, list) else []
+    operations, numbers = cost(sources or Sources(model), names)
+    work, size = states * operations, 8 * states * numbers
     if work > limits.evaluation_operations:
         raise TooLarge("the evaluation (states times operations)", work, limits.evaluation_operations)
-    n, frames = max(1, len(model.coordinates)), len(model.frames)
-    sizes = {"kinematics": frames * (12 + 6 * n)} | {name: n**k for name, k in _DIMENSIONS.items()}
-    size = 8 * states * sum(sizes.get(name, n) for name in names)
     if size > limits.binary_bytes:
         raise TooLarge("the answer (in bytes)", size, limits.binary_bytes)
 
@@ -60,16 +54,17 @@ def _states(q: Any) -> int | None:
 
 
 def read_npz_request(data: bytes, limits: Limits) -> dict[str, Any]:
-    """A request from npz arrays: ``q, qd, qdd, t, quantities``, ``inputs.<name>`` and ``parameters.<name>``."""
+    """A request from npz arrays: ``q, qd, qdd, t, quantities``, ``inputs.<name>``, ``parameters.<name>``, ``along.q``,
+    ``along.qd``, ``along.qdd`` and ``along.inputs.<name>``."""
     request: dict[str, Any] = {}
     for name, array in read_npz(data, limits.binary_bytes).items():
-        group, _, key = name.partition(".")
-        if array.dtype.kind == "U":
-            request[name] = array.tolist()
-        elif group in _FLAT_INPUTS and key:
-            request.setdefault(group, {})[key] = array
-        else:
-            request[name] = array
+        place = request
+        group = next((each for each in _OBJECTS if name.startswith(f"{each}.")), "")
+        for step in filter(None, group.split(".")):
+            place = place.setdefault(step, {})
+            if not isinstance(place, dict):
+                raise InvalidDocument.at(f"/{step}", "object-expected", f"both '{step}' and '{name}' are given")
+        place[name[len(group) + 1 :] if group else name] = array.tolist() if array.dtype.kind == "U" else array
     return request
 
 

@@ -10,6 +10,7 @@ from service.answers import Answer, etag, json_answer
 from service.negotiation import MEDIA_TYPES
 from service.once import OnceOf
 from service.operations import evaluations, models, trees
+from service.operations.sources import sources_of
 from service.problems import Refused
 from service.requests import NPZ, RawBody, StoreOf, conditional, media_type, needs, require_json
 from service.routes.bodies import binary, body_of, printed
@@ -34,7 +35,8 @@ def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: Onc
 
     def work() -> Answer:
         wanted = _request(request, raw, store)
-        result = {**evaluations.compute(model, wanted, limits, store.kernels), "digest": tree.digest}
+        result = evaluations.compute(model, wanted, limits, store.kernels, sources_of(store, tree, model))
+        result["digest"] = tree.digest
         if _wants_npz(request):
             return Answer(200, evaluations.as_npz(result), {"Content-Type": NPZ})
         return json_answer(evaluations.as_json(result, wanted))
@@ -60,7 +62,7 @@ def _wants_npz(request: Request) -> bool:
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
 def get_quantity(ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf) -> Response:
-    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, ..."""
+    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ..."""
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
@@ -68,7 +70,9 @@ def get_quantity(ref: str, quantity: str, request: Request, store: StoreOf, styl
     tag = etag(tree.digest, quantity, *style.identity)
 
     def make() -> Answer:
-        program = models.bound(models.model_quantity(model, quantity), model.parameters, style.bind)
-        return models.printed(program, style, model.coordinates)
+        sources = sources_of(store, tree, model)
+        members, parameters = models.described(sources, quantity)
+        program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
+        return models.printed(program, style, model.coordinates, members)
 
     return conditional(request, tag, is_pinned(ref), make)

@@ -11,7 +11,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin, tan
@@ -50,17 +50,7 @@ def gradient(exprs: Iterable[Expr], names: Sequence[str]) -> list[list[Expr]]:
 
 
 def _derivatives(roots: Sequence[Expr], name: str) -> list[Expr]:
-    # nodes that do not depend on the symbol have no entry
-    d: dict[Expr, Expr] = {}
-    for node in reachable(roots):
-        if node.op == "sym":
-            if node.value == name:
-                d[node] = node.graph.one
-        elif any(a in d for a in node.args):
-            value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
-            if not value.is_zero:
-                d[node] = value
-    return [d.get(root, root.graph.zero) for root in roots]
+    return directional(roots, {name: roots[0].graph.one}) if roots else []
 
 
 def step(graph: Graph, node: Expr, d: list[Expr]) -> Expr:
@@ -83,3 +73,18 @@ def step(graph: Graph, node: Expr, d: list[Expr]) -> Expr:
     if op == "sign":
         return graph.zero
     return _OUTER[op](args[0], node) * d[0]
+
+
+def directional(roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
+    """Derivatives along a direction, in one walk: the sum of d root / d name times the expression ``seeds[name]``."""
+    # nodes that do not depend on the symbols have no entry and cost nothing
+    d: dict[Expr, Expr] = {}
+    for node in reachable(roots):
+        if node.op == "sym":
+            if str(node.value) in seeds:
+                d[node] = seeds[str(node.value)]
+        elif any(a in d for a in node.args):
+            value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
+            if not value.is_zero:
+                d[node] = value
+    return [d.get(root, root.graph.zero) for root in roots]
