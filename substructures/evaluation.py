@@ -112,7 +112,7 @@ def _result(quantity: Quantity, found: Mapping[str, Array]) -> Any:
         return {field: found[name] for field, name in zip(quantity.fields, quantity.outputs, strict=True)}
     result = found[quantity.outputs[0]]
     for name in quantity.pivots:
-        # D_k / g_kk that is not positive to rounding
+        # D_k / |g_kk| that is not positive to rounding
         n = found[name].shape[1]
         usable = found[name].min(axis=1, initial=1) > 8 * n * np.finfo(np.float64).eps
         result = np.where(usable[:, None], result, np.nan)

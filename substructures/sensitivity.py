@@ -81,7 +81,7 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
 def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
     """q''^a from g q'' = Q - Gamma q' q', by g = L^T D L without exchange of rows: one program with two outputs.
 
-    ``forward_dynamics`` (n,) [rad/s^2, m/s^2]; ``pivots`` (n,): D_k / g_kk, between 0 (singular metric) and 1, all
+    ``forward_dynamics`` (n,) [rad/s^2, m/s^2]; ``pivots`` (n,): D_k / |g_kk|, between 0 (singular metric) and 1, all
     positive where the metric is positive definite. In a state with a singular metric the division by zero gives
     infinities and NaN. Raises TooLarge for more than ``max_nodes`` operations, SingularMetric where no state has
     accelerations.
@@ -108,7 +108,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
 
 
 def _factors(r: Replayed, max_nodes: int) -> tuple[Factors, list[Expr]]:
-    """L and D of the metric, and D_k / g_kk."""
+    """L and D of the metric, and D_k / |g_kk|."""
     size = factor_operations(r.n, r.model.program.outputs["metric"].index)
     if size > max_nodes:
         raise TooLarge("forward dynamics (in operations)", size, max_nodes)
@@ -117,7 +117,7 @@ def _factors(r: Replayed, max_nodes: int) -> tuple[Factors, list[Expr]]:
         factors = factorised(r.n, metric)
     except ZeroDivisionError:
         raise SingularMetric.at("", "singular-metric", SINGULAR) from None
-    return factors, [pivot / metric[k, k] for k, pivot in enumerate(factors.pivots)]
+    return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
 
 
 def _accelerations(r: Replayed, factors: Factors) -> list[Expr]:
