@@ -44,8 +44,12 @@ USED = (
     *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
+WITHOUT_CHRISTOFFEL = tuple(name for name in USED if name != "christoffel")
 FRAMES = ("frame.E", "frame.position")
 OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J", "armature")
+
+#: all lists of outputs that coupling asks a part for
+ASKED = (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED)
 
 #: the outputs of a part's stored program, by name, for the given values of its symbols
 Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
@@ -140,7 +144,7 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
     n = 0
     for part in mounted:
         part.first, n = n, n + part.part.dof
-    states, total = _pass_up(run, mounted)
+    states, total = _pass_up(run, mounted, USED if christoffel else WITHOUT_CHRISTOFFEL)
     result = Coupled({}, {}, [0] * n, [0] * n, -dot(gravity, total.s), states)
     for m, state in zip(mounted, states, strict=True):
         _place(m, state, mounted, states, gravity)
@@ -151,14 +155,14 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
     return result
 
 
-def _pass_up(run: Run, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
+def _pass_up(run: Run, mounted: Sequence[Mounted], names: Sequence[str]) -> tuple[list[State], Inertia]:
     """Runs every program with the inertia of what is mounted on it; the total is about the world's origin."""
     payload: list[dict[int, Inertia]] = [{} for _ in mounted]
     states: list[State] = []
     total = Inertia()
     for i in reversed(range(len(mounted))):
         m = mounted[i]
-        state = _state(run, m, payload[i])
+        state = _state(run, m, payload[i], names)
         states.insert(0, state)
         whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
         if m.host == WORLD:
@@ -182,14 +186,14 @@ def _pay(run: Run, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]]
     payload[m.host][carrier] = payload[m.host].get(carrier, Inertia()) + inertia
 
 
-def _state(run: Run, m: Mounted, payload: dict[int, Inertia]) -> State:
+def _state(run: Run, m: Mounted, payload: dict[int, Inertia], names: Sequence[str]) -> State:
     own = run(m.part, m.bindings, OWN)
     bindings = dict(m.bindings)
     for k, symbols in m.part.inertia_symbols.items():
         carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
         values = (carried_here.m, *carried_here.s, *carried_here.J)
         bindings |= zip(symbols, values, strict=True)
-    stored = run(m.part, bindings, USED)
+    stored = run(m.part, bindings, names)
     joints = m.part.skeleton.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
     momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]

@@ -20,7 +20,7 @@ U, Omega               frames n 3   partial velocities of the origin, partial an
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -31,7 +31,7 @@ from substructures.coupling import Coupled, Mounted, State, couple_parts, frame_
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.base_functions import Twist, carried
-from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, transpose
+from substructures.mechanics.linear3 import Matrix, S, Vector, add, apply, cross, transpose
 from substructures.mounting import Assembly, assemble, joint_parents
 from substructures.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.skeleton import INTERFACE, christoffel_entries
@@ -39,6 +39,7 @@ from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
+MOMENTUM = ("linear_momentum", "angular_momentum")
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
     try:
         coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
-        outputs = model_outputs(assembly, coupled)
+        outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
     except ZeroDivisionError:
         raise InvalidDocument.at(
             "/instances", "division-by-zero", "with these bindings a formula divides by zero"
@@ -116,9 +117,19 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate)
 
 
-def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
-    """The table above."""
-    n = len(coupled.gravity)
+def model_outputs(
+    assembly: Assembly,
+    coupled: Coupled,
+    rates: Sequence[S],
+    accelerations: Sequence[S],
+    names: frozenset[str] | None = None,
+) -> dict[str, Formulas]:
+    """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""
+    n, mounted, states = len(coupled.gravity), assembly.mounted, coupled.states
+
+    def wanted(*some: str) -> bool:
+        return names is None or not names.isdisjoint(some)
+
     outputs = {
         "metric": Formulas((n, n), coupled.metric, "symmetric"),
         "christoffel": Formulas((n, n, n), coupled.christoffel, "christoffel"),
@@ -126,11 +137,15 @@ def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
-    rates, accelerations = rate_symbols(assembly)
-    bias = bias_forces(assembly.mounted, coupled.states, rates)
-    inverse = inverse_dynamics(assembly.mounted, coupled.states, rates, accelerations)
-    outputs |= {"bias": array((n,), lambda a: bias[a]), "inverse_dynamics": array((n,), lambda a: inverse[a])}
-    return outputs | _momentum(assembly, coupled) | _kinematics(assembly, coupled)
+    if wanted("bias"):
+        bias = bias_forces(mounted, states, rates)
+        outputs["bias"] = array((n,), lambda a: bias[a])
+    if wanted("inverse_dynamics"):
+        inverse = inverse_dynamics(mounted, states, rates, accelerations)
+        outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
+    if wanted(*MOMENTUM):
+        outputs |= _momentum(assembly, coupled)
+    return outputs | (_kinematics(assembly, coupled) if wanted(*KINEMATICS) else {})
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
