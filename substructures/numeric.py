@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,10 @@ from numpy.typing import NDArray
 
 from substructures.compile import Kernel, compile_program
 from substructures.coupling import ASKED, Mounted, Run, couple_parts
+from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
+from substructures.lanes import Lanes, Supports, is_array, lanes, plain
 from substructures.mechanics.linear3 import S
 from substructures.model import model_outputs
 from substructures.mounting import assemble
@@ -75,15 +78,20 @@ class NumericTree:
         pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
         self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)
         self._constants = self._constant_program()
+        # inputs, velocities and accelerations are zero where nothing is given
+        self._rest = {name: 0.0 for name, s in self.assembly.scope.symbols.items() if s.kind == "input"} | {"t": 0.0}
+        self._rest |= {f"{name}{primes}": 0.0 for name in self.coordinates for primes in ("'", "''")}
         self._layouts: dict[str, _Layout] = {}
+        self._supports: dict[str, Supports] = {}
 
     def _constant_program(self) -> Program:
-        """Placements, gravity and bindings of the tree as one small program."""
+        """Placements, gravity and bindings of the tree as one small program of its parameters."""
         outputs = {"gravity": array((3,), lambda i: self.assembly.gravity[i])}
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
-            outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in m.bindings.items()}
+            bound = {name: x for name, x in m.bindings.items() if getattr(x, "op", "") != "sym"}
+            outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in bound.items()}
         return program(self.assembly.scope.graph, outputs, self.assembly.scope.symbols)
 
     def evaluate(self, values: Mapping[str, Any], quantities: Sequence[str] = EQUATIONS) -> dict[str, Array]:
@@ -104,24 +112,41 @@ class NumericTree:
         return result
 
     def _block(self, values: Mapping[str, Any], batch: tuple[int, ...], quantities: Sequence[str]) -> dict[str, Array]:
-        inputs = {name: 0.0 for name, s in self.assembly.scope.symbols.items() if s.kind == "input"}
-        rates = {f"{name}{primes}": 0.0 for name in self.coordinates for primes in ("'", "''")}
-        given = {**inputs, **rates, "t": 0.0, **values}
-        constants = interpret_entries(self._constants, given, self._constants.outputs)
-        numbers = {name: _filled(self._constants.outputs[name], constants[name]) for name in constants}
-        mounted = [_numeric(m, k, numbers) for k, m in enumerate(self.assembly.mounted)]
+        given = {**self._rest, **values}
+        found = interpret_entries(self._constants, given, self._constants.outputs)
+        numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
+        mounted = [_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted)]
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]))
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
-        qd, qdd = ([given[f"{name}{primes}"] for name in self.coordinates] for primes in ("'", "''"))
+        qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
         return {name: self._dense(name, outputs[name], batch) for name in quantities}
 
     def _run(self) -> Run:
         def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
-            found, outputs = self.engine(part.program, bindings, names), part.program.outputs
+            values = {name: plain(x) for name, x in bindings.items()}
+            found, outputs = self.engine(part.program, values, names), part.program.outputs
+            if any(map(is_array, values.values())):
+                found = self._in_lanes(part.program, values, found)
             return Stored({n: _formulas(outputs[n], found[n]) for n in names})
 
         return run
+
+    def _in_lanes(
+        self, program: Program, values: Mapping[str, Any], found: Mapping[str, Scalars]
+    ) -> dict[str, Scalars]:
+        """Elements that are the same for all states as numbers, the others as lanes."""
+        supports = self._supports.get(program.digest)
+        if supports is None:
+            supports = self._supports[program.digest] = Supports(program)
+        varying = supports.varying(values)
+        return {
+            name: [
+                Lanes(x) if varies else lanes(x.item(0) if is_array(x) else x)
+                for x, varies in zip(some, varying(name), strict=True)
+            ]
+            for name, some in found.items()
+        }
 
     def _dense(self, name: str, formulas: Formulas, batch: tuple[int, ...]) -> Array:
         """All elements of an output; where they come from is remembered."""
@@ -148,7 +173,7 @@ class _Layout:
         """Array batch + shape."""
         elements = np.zeros((*batch, len(values)))
         for k, value in enumerate(values):
-            elements[..., k] = value
+            elements[..., k] = plain(value)
         result: Array = np.zeros((*batch, int(np.prod(self.shape))))
         result[..., self.place] = elements[..., self.source] * self.sign
         return result.reshape((*batch, *self.shape))
@@ -165,15 +190,23 @@ def _formulas(output: Output, values: Scalars) -> Formulas:
 
 def _filled(output: Output, values: Scalars) -> Scalars:
     """All elements of a vector, matrix or scalar in a row, zeros included."""
-    known = dict(zip(output.index, values, strict=True))
-    return [known.get(index, 0.0) for index in np.ndindex(output.shape)]
+    if not output.shape:
+        return [lanes(x) for x in values] or [0]
+    known = {index: lanes(x) for index, x in zip(output.index, values, strict=True)}
+    return [known.get(index, 0) for index in product(*map(range, output.shape))]
 
 
-def _numeric(m: Mounted, k: int, numbers: Mapping[str, Scalars]) -> Mounted:
+def _numeric(m: Mounted, k: int, numbers: Mapping[str, Scalars], given: Mapping[str, Any]) -> Mounted:
     """A mounted part with numbers in place of the expressions of the tree; exact integers stay what they are."""
     E = [_kept(x, number) for x, number in zip(sum(m.E, ()), numbers[f"E.{k}"], strict=True)]
     x, y, z = (_kept(*pair) for pair in zip(m.position, numbers[f"position.{k}"], strict=True))
-    bindings = {name: numbers[f"{k}:{name}"][0] for name in m.bindings}
+    try:
+        bindings = {
+            name: numbers[f"{k}:{name}"][0] if f"{k}:{name}" in numbers else lanes(given[x.value])
+            for name, x in m.bindings.items()
+        }
+    except KeyError as error:
+        raise MissingValue(str(error.args[0])) from None
     return Mounted(
         m.part, m.host, m.frame, ((E[0], E[1], E[2]), (E[3], E[4], E[5]), (E[6], E[7], E[8])), (x, y, z), bindings
     )

@@ -63,7 +63,7 @@ def interpret_entries(program: Program, values: Mapping[str, Any], names: Iterab
     names = list(names)
     results = operations(program, values, names)
     wanted = {entry for name in names for entry in program.outputs[name].entries}
-    plain = {entry: results[entry] if np.ndim(results[entry]) else float(results[entry]) for entry in wanted}
+    plain = {e: results[e] if getattr(results[e], "ndim", 0) else float(results[e]) for e in wanted}
     return {name: [plain[entry] for entry in program.outputs[name].entries] for name in names}
 
 
