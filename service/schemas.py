@@ -226,6 +226,30 @@ class EvaluationResult(BaseModel):
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
 
 
+class KernelsRequest(Shape):
+    """Quantities that will be evaluated together."""
+
+    quantities: list[str]
+
+
+class KernelView(Shape):
+    """A program compiled for some of its outputs."""
+
+    program: str = Field(description="model, or the derived quantity")
+    outputs: list[str]
+    operations: int
+    new: bool = Field(description="compiled now, or read from the folder of kernels")
+    machine_code: bool = Field(description="false where the interpreter has to do")
+    seconds: float
+
+
+class KernelsView(Shape):
+    """What a tree is compiled for."""
+
+    digest: Digest
+    kernels: list[KernelView]
+
+
 class LimitsView(BaseModel):
     """Every limit with its value."""
 

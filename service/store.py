@@ -17,6 +17,7 @@ from substructures.documents import read_json
 from substructures.errors import TooLarge
 from substructures.expr.program import Program
 from substructures.model import Model, couple
+from substructures.numeric import NumericTree
 from substructures.part import Part
 from substructures.regressor import RegressorModel
 from substructures.tree import TreeSpec
@@ -33,6 +34,7 @@ class Store:
         self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
         self._derived: Cache[Program] = Cache(settings.cache_nodes // 2, len)
         self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 2, lambda found: len(found.program))
+        self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 2, NumericTree.weight)
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
 

@@ -17,7 +17,17 @@ from substructures.sensitivity import FD, SINGULAR
 from substructures.solve import cholesky_solve
 from substructures.states import Array, States, known_values, read_states, require
 
-__all__ = ["QUANTITIES", "REGRESSOR", "Engine", "Sources", "cost", "evaluate", "interpreted", "read_quantities"]
+__all__ = [
+    "QUANTITIES",
+    "REGRESSOR",
+    "Engine",
+    "Sources",
+    "cost",
+    "evaluate",
+    "interpreted",
+    "read_quantities",
+    "steps",
+]
 
 #: numbers of a block where an intermediate result is larger than the result
 BLOCK = 2_000_000

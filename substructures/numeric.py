@@ -26,6 +26,7 @@ from substructures.mechanics.linear3 import S
 from substructures.model import model_outputs
 from substructures.mounting import assemble
 from substructures.part import Part
+from substructures.states import default_number
 from substructures.stored import Stored
 from substructures.tree import TreeSpec
 
@@ -78,11 +79,17 @@ class NumericTree:
         pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
         self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)
         self._constants = self._constant_program()
-        # inputs, velocities and accelerations are zero where nothing is given
+        # where nothing is given: parameters have their defaults, inputs, velocities and accelerations are zero
         self._rest = {name: 0.0 for name, s in self.assembly.scope.symbols.items() if s.kind == "input"} | {"t": 0.0}
+        defaults = {name: p["value"] for name, p in self.assembly.parameters.items() if p["value"] is not None}
+        self._rest |= {name: default_number(value) for name, value in defaults.items()}
         self._rest |= {f"{name}{primes}": 0.0 for name in self.coordinates for primes in ("'", "''")}
         self._layouts: dict[str, _Layout] = {}
         self._supports: dict[str, Supports] = {}
+
+    def weight(self) -> int:
+        """Operations of the programs that are kept with it."""
+        return len(self._constants) + sum(len(m.part.program) for m in self.assembly.mounted)
 
     def _constant_program(self) -> Program:
         """Placements, gravity and bindings of the tree as one small program of its parameters."""
@@ -110,6 +117,13 @@ class NumericTree:
             for name, x in self._block(some, (size,), quantities).items():
                 result.setdefault(name, np.empty((*batch, *x.shape[1:])))[part] = x
         return result
+
+    def answer(self, values: Mapping[str, Any], names: Sequence[str], states: int) -> dict[str, Array]:
+        """:meth:`evaluate` with the axis of states always first; values are numbers or arrays (states,)."""
+        if states == 1:
+            values = {name: float(np.asarray(x).reshape(())) for name, x in values.items()}
+        found = self.evaluate(values, names)
+        return {name: x[None] for name, x in found.items()} if states == 1 else found
 
     def _block(self, values: Mapping[str, Any], batch: tuple[int, ...], quantities: Sequence[str]) -> dict[str, Array]:
         given = {**self._rest, **values}

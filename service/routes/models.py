@@ -10,7 +10,7 @@ from service.answers import Answer, etag, json_answer
 from service.negotiation import MEDIA_TYPES
 from service.once import OnceOf
 from service.operations import evaluations, models, trees
-from service.operations.sources import sources_of
+from service.operations.sources import engine_of, sources_of
 from service.problems import Refused
 from service.requests import NPZ, RawBody, StoreOf, conditional, media_type, needs, require_json
 from service.routes.bodies import binary, body_of, printed
@@ -35,7 +35,9 @@ def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: Onc
 
     def work() -> Answer:
         wanted = _request(request, raw, store)
-        result = evaluations.compute(model, wanted, limits, store.kernels, sources_of(store, tree, model))
+        result = evaluations.compute(
+            model, wanted, limits, engine_of(store, tree, model), sources_of(store, tree, model)
+        )
         result["digest"] = tree.digest
         if _wants_npz(request):
             return Answer(200, evaluations.as_npz(result), {"Content-Type": NPZ})
