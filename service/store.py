@@ -30,11 +30,11 @@ class Store:
 
     def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
         self.settings, self.database, self.metrics = settings, database, metrics
-        self._parts: Cache[Part] = Cache(settings.cache_nodes // 2, lambda part: len(part.program))
-        self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
-        self._derived: Cache[Program] = Cache(settings.cache_nodes // 2, len)
-        self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 2, lambda found: len(found.program))
-        self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 2, NumericTree.weight)
+        self._parts: Cache[Part] = Cache(settings.cache_nodes // 4, lambda part: len(part.program))
+        self._models: Cache[Model] = Cache(settings.cache_nodes // 4, lambda model: len(model.program))
+        self._derived: Cache[Program] = Cache(settings.cache_nodes // 4, len)
+        self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 8, lambda found: len(found.program))
+        self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 8, NumericTree.weight)
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
 

@@ -139,7 +139,7 @@ def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
         arrays = value.values() if isinstance(value, dict) else (value,)
         bad = np.zeros(0, dtype=np.int64)
         for some in arrays:
-            finite = np.isfinite(some).reshape(len(some), -1).all(axis=1)
+            finite = np.isfinite(some).all(axis=tuple(range(1, some.ndim)))
             bad = np.union1d(bad, np.flatnonzero(~finite))
         message = SINGULAR if QUANTITIES[name].pivots else "the result is not finite"
         failures += [{"state": int(i), "quantity": name, "code": "not-finite", "message": message} for i in bad]

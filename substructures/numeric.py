@@ -106,16 +106,15 @@ class NumericTree:
         length N, in blocks of states. Arrays with the axis N first, without it for floats. Raises MissingValue.
         """
         batch = np.broadcast_shapes(*(np.shape(x) for x in values.values())) if values else ()
-        if not batch or batch[0] <= BLOCK:
-            return self._block(values, batch, quantities)
-        arrays = {name: np.asarray(x) for name, x in values.items()}
         result: dict[str, Array] = {}
-        for start in range(0, batch[0], BLOCK):
+        if not batch:
+            self._block(values, batch, slice(None), quantities, result)
+            return result
+        arrays = {name: np.asarray(x) for name, x in values.items()}
+        for start in range(0, max(1, batch[0]), BLOCK):
             part = slice(start, start + BLOCK)
             some = {name: x[part] if x.shape == batch else x for name, x in arrays.items()}
-            size = min(BLOCK, batch[0] - start)
-            for name, x in self._block(some, (size,), quantities).items():
-                result.setdefault(name, np.empty((*batch, *x.shape[1:])))[part] = x
+            self._block(some, batch, part, quantities, result)
         return result
 
     def answer(self, values: Mapping[str, Any], names: Sequence[str], states: int) -> dict[str, Array]:
@@ -125,7 +124,15 @@ class NumericTree:
         found = self.evaluate(values, names)
         return {name: x[None] for name, x in found.items()} if states == 1 else found
 
-    def _block(self, values: Mapping[str, Any], batch: tuple[int, ...], quantities: Sequence[str]) -> dict[str, Array]:
+    def _block(
+        self,
+        values: Mapping[str, Any],
+        batch: tuple[int, ...],
+        part: slice,
+        quantities: Sequence[str],
+        result: dict[str, Array],
+    ) -> None:
+        """Fills a part of the batch in the results, which are made by the first one."""
         given = {**self._rest, **values}
         found = interpret_entries(self._constants, given, self._constants.outputs)
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
@@ -134,7 +141,11 @@ class NumericTree:
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
-        return {name: self._dense(name, outputs[name], batch) for name in quantities}
+        for name in quantities:
+            if name not in result:
+                result[name] = np.zeros((*batch, *outputs[name].shape))
+            values_of, layout = list(outputs[name].entries.values()), self._layout(name, outputs[name])
+            layout.fill(values_of, result[name][part] if batch else result[name])
 
     def _run(self) -> Run:
         def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
@@ -162,13 +173,12 @@ class NumericTree:
             for name, some in found.items()
         }
 
-    def _dense(self, name: str, formulas: Formulas, batch: tuple[int, ...]) -> Array:
-        """All elements of an output; where they come from is remembered."""
-        layout = self._layouts.get(name)
-        index = tuple(formulas.entries)
+    def _layout(self, name: str, formulas: Formulas) -> _Layout:
+        """Where the elements of an output come from; remembered."""
+        layout, index = self._layouts.get(name), tuple(formulas.entries)
         if layout is None or layout.index != index:
             layout = self._layouts[name] = _Layout(index, formulas)
-        return layout.dense(list(formulas.entries.values()), batch)
+        return layout
 
 
 class _Layout:
@@ -183,14 +193,15 @@ class _Layout:
         self.source = np.array([k for _, k, _ in rows], dtype=np.int64)
         self.sign = np.array([sign for _, _, sign in rows], dtype=np.float64)
 
-    def dense(self, values: Scalars, batch: tuple[int, ...]) -> Array:
-        """Array batch + shape."""
-        elements = np.zeros((*batch, len(values)))
+    def fill(self, values: Scalars, out: Array) -> None:
+        """Writes the non-zero elements of an array batch + shape."""
+        batch = out.shape[: out.ndim - len(self.shape)]
+        elements = np.empty((*batch, len(values)))
         for k, value in enumerate(values):
             elements[..., k] = plain(value)
-        result: Array = np.zeros((*batch, int(np.prod(self.shape))))
-        result[..., self.place] = elements[..., self.source] * self.sign
-        return result.reshape((*batch, *self.shape))
+        if out.size:
+            # a view: the array is contiguous
+            out.reshape((*batch, -1))[..., self.place] = elements[..., self.source] * self.sign
 
 
 def _scalars(x: Array) -> Scalars:

@@ -10,6 +10,7 @@ import pytest
 
 from substructures import Definition, MissingValue, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
+from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
 from substructures.numeric import EQUATIONS, CompiledParts, NumericTree
 
@@ -112,3 +113,15 @@ def test_missing_value_is_named() -> None:
     spec = TREES["springs"]
     with pytest.raises(MissingValue, match="has no value"):
         NumericTree(spec, parts_of(spec)).evaluate({})
+
+
+def test_answers_have_the_axis_of_states() -> None:
+    """Also for one state and for none; parameters that are not given have their defaults."""
+    parts, model = pair("arm on arm")
+    evaluator = NumericTree(TREES["arm on arm"], parts)
+    q = np.random.default_rng(0).uniform(-1, 1, (2, model.dof))
+    for states in (2, 1, 0):
+        values = {name: q[:states, a] for a, name in enumerate(model.coordinates)}
+        found = evaluator.answer(values, ["metric", "gravity"], states)
+        expected = evaluate(model, {"q": q[:states], "quantities": ["metric", "gravity"]})
+        compare(found, {name: expected[name] for name in ("metric", "gravity")})

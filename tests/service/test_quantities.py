@@ -159,3 +159,13 @@ def test_the_size_of_an_answer_is_limited(double: TestClient) -> None:
     columns = {"arm.q": [0] * 250_000, "hand.q": [0] * 250_000}
     answer = double.post(URL, json={"quantities": ["regressor"], "q": columns, "qdd": {"arm.q": 0, "hand.q": 0}})
     assert answer.status_code in (413, 422), answer.text[:200]
+
+
+def test_no_states(double: TestClient) -> None:
+    """From the interpreter, then from kernels."""
+    names, none = list(QUANTITIES), {"arm.q": [], "hand.q": []}
+    for _ in range(2):
+        answer = double.post(URL, json={"quantities": names, "q": none, "qdd": none, "along": {"q": [1, 0]}})
+        assert answer.status_code == 200, answer.text
+        assert (answer.json()["count"], answer.json()["metric"]) == (0, [])
+        assert double.post("/v1/trees/cell/kernels", json={"quantities": names}).status_code in (200, 201)
