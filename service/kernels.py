@@ -41,7 +41,7 @@ class Kernels:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
         self._kernels: Cache[Kernel] = Cache(CAPACITY, _weight)
-        self._waiting: set[Key] = set()
+        self._waiting: dict[Key, int] = {}  # states that were answered without the kernel
         self._lock = Lock()
         self._compiler = ThreadPoolExecutor(1, thread_name_prefix="compiler")
 
@@ -97,23 +97,28 @@ class Kernels:
 
     def _ready(self, program: Program, names: Sequence[str], states: int) -> Kernel | None:
         """The kernel if it is there or worth waiting for; otherwise it is compiled in the background."""
-        kernel = self._kernels.get((program.digest, tuple(names)))
-        if kernel is None and quickest(states, coupled=True, warm=False) is Way.KERNEL:
-            kernel, _ = self.compiled(program, names)
-        if kernel is None:
-            self._compile_later((program.digest, tuple(names)), program)
-        return kernel
-
-    def _compile_later(self, key: Key, program: Program) -> None:
+        key = program.digest, tuple(names)
+        kernel = self._kernels.get(key)
+        if kernel is not None:
+            return kernel
         with self._lock:
-            if key in self._waiting:
-                return
-            self._waiting.add(key)
-        self._compiler.submit(self._work, key, program)
+            # a large batch may come in pieces
+            so_far = self._waiting.get(key, 0) + states
+        if quickest(so_far, coupled=True, warm=False) is Way.KERNEL:
+            return self.compiled(program, names)[0]
+        self._compile_later(key, program, so_far)
+        return None
+
+    def _compile_later(self, key: Key, program: Program, states: int) -> None:
+        with self._lock:
+            is_new = key not in self._waiting
+            self._waiting[key] = states
+        if is_new:
+            self._compiler.submit(self._work, key, program)
 
     def _work(self, key: Key, program: Program) -> None:
         try:
             self.compiled(program, key[1])
         finally:
             with self._lock:
-                self._waiting.discard(key)
+                self._waiting.pop(key, None)

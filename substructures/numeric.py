@@ -144,8 +144,8 @@ class NumericTree:
         for name in quantities:
             if name not in result:
                 result[name] = np.zeros((*batch, *outputs[name].shape))
-            values_of, layout = list(outputs[name].entries.values()), self._layout(name, outputs[name])
-            layout.fill(values_of, result[name][part] if batch else result[name])
+            out = result[name][part] if batch else result[name]
+            self._layout(name, outputs[name]).fill(list(outputs[name].entries.values()), out)
 
     def _run(self) -> Run:
         def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
@@ -167,7 +167,7 @@ class NumericTree:
         varying = supports.varying(values)
         return {
             name: [
-                Lanes(x) if varies else lanes(x.item(0) if is_array(x) else x)
+                Lanes(x) if varies else lanes(x.item(0) if is_array(x) and x.size else x)
                 for x, varies in zip(some, varying(name), strict=True)
             ]
             for name, some in found.items()

@@ -170,3 +170,17 @@ def test_shipped_arm_is_cheaper_as_formulas() -> None:
     elimination = factor_operations(6, model.program.outputs["metric"].index)
     direct = model.program.count(["metric", "bias", "forces"])["total"] + elimination
     assert derived(model, "forward_dynamics").count(["forward_dynamics"])["total"] < direct
+
+
+def test_models_stored_before_inverse_dynamics_was_an_output() -> None:
+    """It follows from metric, bias and forces then; all that is formed from it as well."""
+    model = random_model(4)
+    kept = [name for name in model.program.outputs if name != "inverse_dynamics"]
+    older = Model.load(model.summary(), model.program.select(kept).to_bytes())
+    x = random_states(np.random.default_rng(4), N, model.dof)
+    names = ["inverse_dynamics", "forward_dynamics", "inverse_dynamics_derivative", "forward_dynamics_derivative"]
+    request = x | {"quantities": names, "along": {"q": x["qd"]}, "t": 0.3}
+    found, expected = evaluate(older, request), evaluate(model, request)
+    for name in names:
+        atol = 1e-9 * max(1, np.abs(expected[name]).max())
+        np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=atol)

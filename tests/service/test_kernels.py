@@ -57,6 +57,19 @@ def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkey
     wait_for(tmp_path)
 
 
+def test_large_batches_may_come_in_pieces(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The background is too busy to compile; the third piece is more than is worth interpreting."""
+    monkeypatch.setattr(ways, "AT_ONCE", 10)
+    engine = Kernels(tmp_path)
+    monkeypatch.setattr(engine._compiler, "submit", lambda *_: None)
+    for _ in range(2):
+        agree(model, engine, 4)
+        assert not list(tmp_path.iterdir())
+    agree(model, engine, 4)
+    assert list(tmp_path.iterdir())
+    engine.close()
+
+
 def test_damaged_files_are_made_anew(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ways, "AT_ONCE", 1)
     for _ in range(2):
@@ -89,7 +102,7 @@ def test_one_state_comes_from_warm_parts(tmp_path: Path, monkeypatch: pytest.Mon
         sleep(0.02)
     asked: list[str] = []
     tree = NumericTree(spec, parts, engine.of_part)
-    monkeypatch.setattr(engine, "_compile_later", lambda key, _: asked.append(key[0]))
+    monkeypatch.setattr(engine, "_compile_later", lambda key, *_: asked.append(key[0]))
     monkeypatch.setattr("service.kernels.interpreted", None)
     monkeypatch.setattr("service.kernels.interpret_entries", None)
     q = np.random.default_rng(1).uniform(-1, 1, 4)
