@@ -14,7 +14,6 @@ from service.settings import Settings
 from substructures.definition import Definition
 from substructures.derived import derived
 from substructures.documents import read_json
-from substructures.errors import TooLarge
 from substructures.expr.program import Program
 from substructures.model import Model, couple
 from substructures.numeric import NumericTree
@@ -74,14 +73,12 @@ class Store:
         return model
 
     def derived(self, model: Model, quantity: str) -> Program:
-        """A program of :data:`substructures.derived.DERIVED`. Raises as ``derived`` does, and TooLarge."""
+        """A program of :data:`substructures.derived.DERIVED`. Raises as ``derived`` does."""
         key = model.program.digest, model.coordinates, quantity
         program = self._derived.get(key)
         self.metrics.cache("derived", program is not None)
         if program is None:
-            program, limit = derived(model, quantity), self.settings.limits.program_nodes
-            if len(program) > limit:
-                raise TooLarge(f"the program of '{quantity}' (in operations)", len(program), limit)
+            program = derived(model, quantity, self.settings.limits.program_nodes)
             self._derived.put(key, program)
         return program
 

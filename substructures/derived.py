@@ -5,25 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from substructures import sensitivity
+from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program
 from substructures.model import Model
+from substructures.part import MAX_NODES
 from substructures.replayed import ID, Entries, Replayed, vector
 
 
-def _coriolis(model: Model) -> Program:
+def _coriolis(model: Model, max_nodes: int) -> Program:
     """C_ab = Gamma_abc q'^c."""
+    products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
+    if products > max_nodes:
+        raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
     r, entries = Replayed(model), Entries()
     for (a, b, c), gamma in r.elements("christoffel").items():
         entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.rate(c, "'")
     return r.program({"coriolis": Formulas((r.n, r.n), entries)})
 
 
-def _inverse_dynamics(model: Model) -> Program:
+def _inverse_dynamics(model: Model, _: int) -> Program:
     r = Replayed(model)
     return r.program({ID: vector(r.inverse_dynamics())})
 
 
-def _kinetic_energy(model: Model) -> Program:
+def _kinetic_energy(model: Model, _: int) -> Program:
     """1/2 g_ab q'^a q'^b."""
     r = Replayed(model)
     momentum = r.product(r.elements("metric"), "'")
@@ -31,7 +36,7 @@ def _kinetic_energy(model: Model) -> Program:
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
 
-def _total_momentum(model: Model) -> Program:
+def _total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
     r, outputs = Replayed(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
@@ -42,19 +47,19 @@ def _total_momentum(model: Model) -> Program:
     return r.program(outputs)
 
 
-_FORMULAS: dict[str, Callable[[Model], Program]] = {
+_FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "coriolis": _coriolis,
     "inverse_dynamics": _inverse_dynamics,
     "forward_dynamics": sensitivity.forward_dynamics,
     "kinetic_energy": _kinetic_energy,
     "total_momentum": _total_momentum,
-    "inverse_dynamics_derivative": sensitivity.inverse_dynamics_derivative,
+    "inverse_dynamics_derivative": lambda model, _: sensitivity.inverse_dynamics_derivative(model),
     "forward_dynamics_derivative": sensitivity.forward_dynamics_derivative,
 }
 DERIVED = tuple(_FORMULAS)
 
 
-def derived(model: Model, quantity: str) -> Program:
+def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7).
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
@@ -63,10 +68,13 @@ def derived(model: Model, quantity: str) -> Program:
     total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
     inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
     see :mod:`substructures.sensitivity`.
-    Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge, SingularMetric for a
-    metric that is singular in every state, ZeroDivisionError for a derivative that is infinite in every state.
+    Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
+    ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
     """
-    return _FORMULAS[quantity](model)
+    result = _FORMULAS[quantity](model, max_nodes)
+    if len(result) > max_nodes:
+        raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
+    return result
 
 
 def kept(model: Model, quantity: str) -> Program:

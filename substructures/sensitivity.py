@@ -52,8 +52,8 @@ def inverse_dynamics_derivative(model: Model) -> Program:
     """Inverse dynamics and its directional derivative, one program with two outputs.
 
     ``inverse_dynamics`` (n,) [N m, N]; ``inverse_dynamics_derivative`` (n,): its derivative along the symbols ``d.*``
-    of the module's table (only those appear that the dynamics depend on). Raises ZeroDivisionError where a load has an
-    infinite derivative for every value of the symbols.
+    of the module's table (only those appear that the dynamics depend on). Where a load has an infinite derivative its
+    value is not finite.
     """
     r = Replayed(model)
     rows = r.inverse_dynamics()
@@ -65,7 +65,7 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
 
     ``inverse_dynamics`` (n,); ``inverse_dynamics_q`` (n, n): dID_a/dq^b [N m/rad, N/m, ...] and
     ``inverse_dynamics_qd`` (n, n): dID_a/dq'^b = 2 Gamma_abc q'^c - dQ_a/dq'^b, both at [a, b]. The derivative by q''
-    is the metric. One walk for every column, each over what depends on it. Raises as inverse_dynamics_derivative.
+    is the metric. One walk for every column, each over what depends on it.
     """
     r = Replayed(model)
     rows = r.inverse_dynamics()
@@ -95,7 +95,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     """Forward dynamics and its directional derivative: ``forward_dynamics``, ``pivots``, both as above, and
 
     ``forward_dynamics_derivative`` (n,): g d(q'') = -dID at q'' = FD with dq'' = 0, along the symbols ``d.*`` of
-    coordinates, velocities and inputs. Raises as forward_dynamics and inverse_dynamics_derivative.
+    coordinates, velocities and inputs. Raises as forward_dynamics.
     """
     r = Replayed(model)
     factors, pivots = _factors(r, max_nodes)
