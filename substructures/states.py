@@ -146,10 +146,9 @@ def input_names(model: Model) -> list[str]:
 
 def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:
     """Raises MissingValue for the first symbol without a value that the outputs depend on."""
-    operations = program.operations
-    for i in program.reachable(names):
-        if operations[i][0] == "sym" and program.symbols[operations[i][1]].name not in values:
-            raise MissingValue(program.symbols[operations[i][1]].name)
+    for name in program.needs(names):
+        if name not in values:
+            raise MissingValue(name)
 
 
 def _given(request: Mapping[str, Any], field: str, count: int, known: Container[str]) -> dict[str, Any]:
