@@ -1,41 +1,47 @@
-"""What a kind of job sees of the store while a submission is resolved, and how stored content is handed to workers."""
+"""What the kinds of jobs need to know of the store before an item is queued: references become digests."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 
-@dataclass(frozen=True, slots=True)
-class PinnedTree:
-    """A revision of a tree: ``reference`` is ``name@revision``, ``spec`` its document with references pinned."""
+@dataclass(frozen=True)
+class StoredVersion:
+    """A version of a substructure: its name, the digest of its definition, and that of its program.
 
-    reference: str
+    The blob of ``digest`` is the canonical definition (:meth:`substructures.definition.Definition.canonical`), the
+    blob of ``program`` the canonical program.
+    """
+
+    name: str
     digest: str
-    spec: Mapping[str, Any]
-    coordinates: tuple[str, ...]
+    program: str
+
+
+@dataclass(frozen=True)
+class StoredTree:
+    """A revision of a tree: name, digest, the digest of its program (a blob), ``spec`` and ``summary`` as JSON."""
+
+    name: str
+    digest: str
+    program: str
+    spec: str
+    summary: str
 
 
 class Library(Protocol):
-    """The store, for reading. The digests that it gives name what workers are handed in ``Work.blobs``.
+    """Read access to the store while a submission is being resolved; answers are expected to be cached."""
 
-    ============================  ========================================================
-    ``Work.blobs`` of a part      ``<digest>/definition``, ``<digest>/program``, ``<digest>/certificate``
-    ``Work.blobs`` of a tree      ``<digest>/spec``, ``<digest>/program``, ``<digest>/summary``
-    ============================  ========================================================
+    def version(self, reference: str) -> StoredVersion | None:
+        """The version that a reference means (``name``, ``name@3``, ``name@alias``, ``name@sha256:...``)."""
 
-    All are JSON as stored; programs are in the stored format (``Part.load``, ``Model.load``).
-    """
-
-    def part(self, reference: str) -> str | None:
-        """The digest of the definition that ``name``, ``name@3``, ``name@alias`` or ``name@sha256:...`` means."""
-
-    def is_stored(self, digest: str) -> bool:
-        """Whether there is a stored part with this definition."""
-
-    def tree(self, reference: str) -> PinnedTree | None:
+    def tree(self, reference: str) -> StoredTree | None:
         """The revision of a tree that a reference means."""
 
-    def catalogue(self) -> list[str]:
-        """``name@sha256:...`` of every version that is not withdrawn."""
+    def catalogue(self) -> Sequence[str]:
+        """References ``name@3`` to all versions that are not yanked."""
+
+    def blob(self, digest: str) -> bytes | None:
+        """The content of a definition or program."""
