@@ -2,66 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import orjson
 
 from service.answers import Answer
-from service.negotiation import JSON, MEDIA_TYPES
-from service.problems import not_found, unprocessable
+from service.negotiation import MEDIA_TYPES
+from service.printing import Style, bound, check_quantity, model_quantity, quantities, text_of
+from service.problems import unprocessable
 from service.queries.content import FormulaRow
-from substructures.derived import DERIVED, derived
-from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.bind import bind
 from substructures.expr.program import Output, Program
-from substructures.model import Model
-from substructures.printers import entries, render
-from substructures.printers.symmetry import symmetry_rule
 
-#: quantities that consist of several outputs
-GROUPS = {
-    "kinematics": ("position", "rotation", "U", "Omega"),
-    "momentum": ("linear_momentum", "angular_momentum"),
-    "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
-}
-CHRISTOFFEL = "christoffel"
-
-
-@dataclass(frozen=True, slots=True)
-class Style:
-    """How formulas are printed: format, form (compact or expanded) and the text of ``bind=``."""
-
-    format: str
-    form: str
-    bind: str = ""
-
-    @property
-    def identity(self) -> tuple[str, ...]:
-        """What an ETag depends on beside the content."""
-        return self.format, self.form, self.bind
-
-
-def quantities(name: str) -> tuple[str, ...]:
-    """The quantities that a name stands for."""
-    return GROUPS.get(name, (name,))
-
-
-def check_quantity(model: Model, quantity: str) -> None:
-    """Raise Refused 404 unless the model has the quantity."""
-    if quantity in DERIVED or any(name in model.program.outputs for name in quantities(quantity)):
-        return
-    known = ", ".join([*model.program.outputs, *DERIVED, "kinematics", "momentum"])
-    raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
-
-
-def model_quantity(model: Model, quantity: str) -> Program:
-    """The program of one quantity of a model."""
-    if quantity in DERIVED:
-        return derived(model, quantity)
-    wanted = quantities(quantity)
-    return model.program.select([name for name in model.program.outputs if name in wanted])
+__all__ = [
+    "Style",
+    "bound",
+    "check_quantity",
+    "model_quantity",
+    "part_entries",
+    "part_quantity",
+    "printed",
+    "quantities",
+]
 
 
 def part_quantity(program: Program, rows: Sequence[FormulaRow]) -> Program:
@@ -113,51 +74,6 @@ def _slice(whole: Output, lead: tuple[int, ...], negated: Callable[[int], int]) 
     return Output(whole.shape[len(lead) :], tuple(sorted(kept)), tuple(kept[index] for index in sorted(kept)))
 
 
-def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: str) -> Program:
-    """The program with numbers in place of parameters; ``text`` is ``name:value,...`` and may contain ``defaults``.
-
-    Raises Refused 422 naming the parameter.
-    """
-    values: dict[str, Any] = {}
-    for item in filter(None, (item.strip() for item in text.split(","))):
-        name, colon, value = item.partition(":")
-        if item == "defaults":
-            given = {n: p["value"] for n, p in parameters.items() if p.get("value") is not None}
-            values = {**given, **values}
-        elif not colon:
-            raise unprocessable("bind", f"'{item[:80]}' is not name:value", "/query/bind")
-        elif name not in parameters:
-            raise unprocessable("unknown-parameter", f"there is no parameter '{name[:80]}'", "/query/bind")
-        else:
-            values[name] = value
-    used = {symbol.name for symbol in program.symbols}
-    chosen = {name: value for name, value in values.items() if name in used}
-    if not chosen:
-        return program
-    try:
-        return bind(program, chosen)
-    except InvalidDocument as error:
-        message = "; ".join(fault.message for fault in error.faults)
-        raise unprocessable("bind", message, "/query/bind") from None
-
-
 def printed(program: Program, style: Style, coordinates: Sequence[str] = ()) -> Answer:
     """The program in the format chosen. Raises TooLarge."""
-    text = render(program, style.format, style.form)
-    if style.format == JSON and CHRISTOFFEL in program.outputs:
-        text = _with_entries(text, program, style, coordinates)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
-
-
-def _with_entries(text: str, program: Program, style: Style, coordinates: Sequence[str]) -> str:
-    """The JSON program with the sparse list of Christoffel symbols; formulas too long to stand alone are null."""
-    try:
-        listed = entries(program, CHRISTOFFEL, "text", style.form)
-    except TooLarge:
-        listed = [{"index": list(index), "formula": None} for index in program.outputs[CHRISTOFFEL].index]
-    members = {
-        "coordinates": list(coordinates),
-        "symmetry_rule": symmetry_rule(CHRISTOFFEL, "Gamma"),
-        "entries": [dict(zip("abc", e["index"], strict=True)) | {"formula": e["formula"]} for e in listed],
-    }
-    return orjson.dumps(members).decode()[:-1] + "," + text[1:]
+    return Answer(200, text_of(program, style, coordinates).encode(), {"Content-Type": MEDIA_TYPES[style.format]})
