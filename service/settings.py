@@ -33,6 +33,11 @@ class Limits(BaseModel):
     evaluation_operations: int = Field(2 * 10**9, gt=0, description="most states times operations of one evaluation")
     page_size: int = Field(1000, gt=0, description="most items of a page")
     idempotency_hours: float = Field(24.0, gt=0, description="how long an Idempotency-Key is remembered, hours")
+    job_items: int = Field(20_000, gt=0, description="most items of one job")
+    job_states: int = Field(10_000, gt=0, description="most states of one item; larger sets are split into items")
+    job_nodes: int = Field(1_000_000, gt=0, description="most operations of a program derived or coupled by a job")
+    job_cpu_seconds: float = Field(600.0, gt=0, description="CPU time of one item of a job, seconds")
+    job_memory_bytes: int = Field(2 * 2**30, gt=0, description="memory of the process that computes an item, bytes")
 
 
 class Settings(BaseModel):
