@@ -70,3 +70,10 @@ def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
         elif item is not None:
             result[prefix + name] = item
     return result
+
+
+def as_npz(result: Mapping[str, Any]) -> bytes:
+    """The answer of an evaluation as npz; nested names are joined by dots, ``failures`` become parallel arrays."""
+    failures = result["failures"]
+    columns = {key: [str(f[key]) for f in failures] for key in ("quantity", "code", "message")}
+    return write_npz(flat({**result, "failures": {"state": [f["state"] for f in failures], **columns}}))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -76,6 +76,23 @@ QUANTITIES: dict[str, Quantity] = {
     "momentum": Quantity(("linear_momentum", "angular_momentum"), _momentum),
 }
 
+# dimensions of the answer for one state; what is not listed has one
+_DIMENSIONS = {
+    "metric": 2,
+    "coriolis": 2,
+    "christoffel": 3,
+    "kinetic_energy": 0,
+    "potential_energy": 0,
+}
+
+
+def numbers_per_state(quantities: Iterable[str], dof: int, frames: int) -> int:
+    """How many numbers the answer holds for one state of a model with so many coordinates and frames."""
+    n = max(1, dof)
+    sizes = {"kinematics": frames * (12 + 6 * n)} | {name: n**k for name, k in _DIMENSIONS.items()}
+    return sum(sizes.get(name, n) for name in quantities)
+
+
 ADVICE = {
     "forward_dynamics": "the metric is singular or not positive definite: check masses, inertias and coordinates",
 }
@@ -99,7 +116,7 @@ def evaluate(
     leading axis N dropped if ``q`` was (n,); ``failures`` lists states with a result that is not finite.
     Raises InvalidDocument (with pointers) and MissingValue (a parameter without a value).
     """
-    quantities = _quantities(request)
+    quantities = read_quantities(request)
     states = read_states(model, request, limit)
     needs = sorted({name for q in quantities for name in QUANTITIES[q].needs})
     values = symbol_values(model, request, states, needs)
@@ -133,7 +150,8 @@ def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
     return failures
 
 
-def _quantities(request: Mapping[str, Any]) -> list[str]:
+def read_quantities(request: Mapping[str, Any]) -> list[str]:
+    """The quantities that a request asks for, each once. Raises InvalidDocument, also for unknown fields."""
     faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key}'") for key in request if key not in FIELDS]
     names = request.get("quantities")
     if not isinstance(names, (list, tuple)) or not names:

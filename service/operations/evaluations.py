@@ -8,20 +8,12 @@ from typing import Any
 import numpy as np
 import orjson
 
-from service.arrays import flat, read_npz, write_npz
+from service.arrays import read_npz
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES, Engine, evaluate
+from substructures.evaluation import QUANTITIES, Engine, evaluate, numbers_per_state
 from substructures.model import Model
 
-# dimensions of the answer for one state; what is not listed has one
-_DIMENSIONS = {
-    "metric": 2,
-    "coriolis": 2,
-    "christoffel": 3,
-    "kinetic_energy": 0,
-    "potential_energy": 0,
-}
 _FLAT_INPUTS = ("inputs", "parameters")
 
 
@@ -42,9 +34,7 @@ def check_size(model: Model, request: Mapping[str, Any], limits: Limits) -> None
     work = states * len(model.program.reachable(needs))
     if work > limits.evaluation_operations:
         raise TooLarge("the evaluation (states times operations)", work, limits.evaluation_operations)
-    n, frames = max(1, len(model.coordinates)), len(model.frames)
-    sizes = {"kinematics": frames * (12 + 6 * n)} | {name: n**k for name, k in _DIMENSIONS.items()}
-    size = 8 * states * sum(sizes.get(name, n) for name in names)
+    size = 8 * states * numbers_per_state(names, len(model.coordinates), len(model.frames))
     if size > limits.binary_bytes:
         raise TooLarge("the answer (in bytes)", size, limits.binary_bytes)
 
@@ -71,13 +61,6 @@ def read_npz_request(data: bytes, limits: Limits) -> dict[str, Any]:
         else:
             request[name] = array
     return request
-
-
-def as_npz(result: Mapping[str, Any]) -> bytes:
-    """The answer as npz; nested names are joined by dots, ``failures`` become parallel arrays."""
-    failures = result["failures"]
-    columns = {key: [str(f[key]) for f in failures] for key in ("quantity", "code", "message")}
-    return write_npz(flat({**result, "failures": {"state": [f["state"] for f in failures], **columns}}))
 
 
 def as_json(result: Mapping[str, Any], request: Mapping[str, Any]) -> bytes:

@@ -14,7 +14,8 @@ from service.queries import catalogue as versions
 from service.queries import content, trees
 from service.references import Reference, parse_reference
 from service.store import Store
-from substructures.documents import read_json, write_json
+from service.summaries import tree_summary
+from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model, couple
 from substructures.part import Part, derive
@@ -158,8 +159,6 @@ def _write(connection: Connection, revision: Revision, number: int) -> None:
         if instance.definition is not None:
             catalogue.store_part(connection, revision.parts[instance.name])
     content.put_program(connection, program.digest, program.to_bytes(), len(program))
-    given = read_json(spec.canonical())
-    shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
     row = {
         "name": spec.name,
         "revision": number,
@@ -167,7 +166,7 @@ def _write(connection: Connection, revision: Revision, number: int) -> None:
         "spec": spec.canonical().decode(),
         "program": program.digest,
         "dof": len(revision.model.coordinates),
-        "summary": write_json({**revision.model.summary(), **shown}).decode(),
+        "summary": tree_summary(spec, revision.model).decode(),
         "based_on": revision.base.revision if revision.base else None,
     }
     digests = {name: part.definition.digest for name, part in revision.parts.items()}

@@ -7,6 +7,7 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 
 from service.answers import Answer, etag, json_answer
+from service.arrays import as_npz
 from service.negotiation import MEDIA_TYPES
 from service.once import OnceOf
 from service.operations import evaluations, models, trees
@@ -36,7 +37,7 @@ def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: Onc
         wanted = _request(request, raw, store)
         result = {**evaluations.compute(model, wanted, limits, store.kernels), "digest": tree.digest}
         if _wants_npz(request):
-            return Answer(200, evaluations.as_npz(result), {"Content-Type": NPZ})
+            return Answer(200, as_npz(result), {"Content-Type": NPZ})
         return json_answer(evaluations.as_json(result, wanted))
 
     return once.compute(work)
