@@ -158,7 +158,7 @@ def read_quantities(request: Mapping[str, Any]) -> list[str]:
         faults.append(Fault("/quantities", "missing", "a list of quantities is needed"))
         names = []
     for i, name in enumerate(names):
-        if name not in QUANTITIES:
+        if not isinstance(name, str) or name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             faults.append(
                 Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {known}")
