@@ -35,6 +35,11 @@ class LocalEngine:
         """Works that can be started now: runners that are ready and idle."""
         return sum(1 for process in self._processes if process.is_ready and process.current is None)
 
+    @property
+    def processes(self) -> list[int]:
+        """The ids of the runners' processes."""
+        return [process.pid for process in self._processes]
+
     def start(self, work: Work) -> None:
         """Start to compute; raises RuntimeError when nothing is free."""
         idle = [process for process in self._processes if process.is_ready and process.current is None]

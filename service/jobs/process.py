@@ -71,6 +71,11 @@ class Process:
         self.is_ready = self.is_last = False
 
     @property
+    def pid(self) -> int:
+        """The id of the process."""
+        return self._child.pid
+
+    @property
     def is_sending(self) -> bool:
         """Whether something waits to be written."""
         return bool(self._outgoing)
@@ -155,10 +160,6 @@ class Process:
         """End it at once, with whatever it started."""
         if self._child.poll() is None:
             os.killpg(self._child.pid, signal.SIGKILL)
-
-    def end(self) -> None:
-        """Let it end when it has nothing to do."""
-        self._input.close()
 
     def seen(self, work: Work) -> Report:
         """The last report about the work of a process that has ended: its own failure, or what was seen."""

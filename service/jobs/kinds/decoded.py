@@ -12,7 +12,7 @@ from substructures.documents import read_json
 from substructures.model import Model
 from substructures.part import Part
 
-CAPACITY = 1_000_000  # operations
+CAPACITY = 300_000  # operations
 
 _parts: Cache[Part] = Cache(CAPACITY, lambda part: len(part.program))
 _models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.program))

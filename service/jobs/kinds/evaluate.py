@@ -144,8 +144,7 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
 
 def _columns(item: Item) -> dict[str, Array]:
     if "grid" in item:
-        axes = {name: [float(x) for x in axis] for name, axis in item["grid"].items()}
-        return grid_states(axes, *item["range"])
+        return grid_states(item["grid"], *item["range"])
     return sample_states(item["sample"], *item["range"]) if "sample" in item else {}
 
 

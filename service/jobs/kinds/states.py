@@ -6,7 +6,7 @@ Columns are named as in a tree: coordinates, velocities (``arm.q1'``), parameter
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,18 +16,21 @@ from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 
 Array = NDArray[np.float64]
-Axis = list[float]
+Axis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
 DRAWS = 4
 MAX_AXIS = 10_000
 
 
-def read_grid(given: Any, known: set[str]) -> dict[str, Axis]:
-    """The values along every axis: a list, one number, or ``{"from", "to", "count"}``. Raises InvalidDocument."""
+def read_grid(given: Any, known: set[str]) -> list[Axis]:
+    """Name and values of every axis, which may be a list, one number, or ``{"from", "to", "count"}``.
+
+    Raises InvalidDocument.
+    """
     if not isinstance(given, Mapping) or not given:
         raise InvalidDocument.at("/grid", "object-expected", "an object of axes by name is needed")
     _check_names("/grid", given, known)
-    return {name: _axis(axis, "/grid" + pointer_step(name)) for name, axis in given.items()}
+    return [(name, _axis(axis, "/grid" + pointer_step(name))) for name, axis in given.items()]
 
 
 def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> None:
@@ -40,7 +43,7 @@ def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> Non
         raise InvalidDocument(faults)
 
 
-def _axis(given: Any, pointer: str) -> Axis:
+def _axis(given: Any, pointer: str) -> list[float]:
     if isinstance(given, Mapping):
         if given.keys() != {"from", "to", "count"}:
             raise InvalidDocument.at(pointer, "axis", "an axis has 'from', 'to' and 'count'")
@@ -69,15 +72,17 @@ def _count(given: Any, pointer: str, limit: int) -> int:
     return given
 
 
-def grid_size(axes: Mapping[str, Axis]) -> int:
+def grid_size(axes: Sequence[Axis]) -> int:
     """How many states a grid has."""
-    return math.prod(map(len, axes.values()))
+    return math.prod(len(values) for _, values in axes)
 
 
-def grid_states(axes: Mapping[str, Axis], start: int, stop: int) -> dict[str, Array]:
+def grid_states(axes: Sequence[Axis], start: int, stop: int) -> dict[str, Array]:
     """The columns of a part of the grid; the last axis varies fastest."""
-    indices = np.unravel_index(np.arange(start, stop), [len(axis) for axis in axes.values()])
-    return {name: np.asarray(axis)[index] for (name, axis), index in zip(axes.items(), indices, strict=True)}
+    indices = np.unravel_index(np.arange(start, stop), [len(values) for _, values in axes])
+    return {
+        name: np.asarray(values, dtype=np.float64)[index] for (name, values), index in zip(axes, indices, strict=True)
+    }
 
 
 def read_sample(given: Any, known: set[str], limits: Mapping[str, tuple[float, float] | None]) -> dict[str, Any]:

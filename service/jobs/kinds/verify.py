@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields
 from service.jobs.kinds.library import Library
 from service.settings import Limits
-from substructures.documents import write_json
+from substructures.definition import Definition
+from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument, InvalidProgram
-from substructures.part import recheck
+from substructures.part import Part, recheck
 
 ALL = "*"
 
@@ -33,7 +33,8 @@ def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
 
 def _run(item: Item, blobs: Blobs, _progress: Progress) -> Outcome:
     """File ``certificate``. Raises VerificationFailed, InvalidProgram."""
-    part = part_of(item["substructure"].partition("@")[2], item["program"], blobs)
+    definition = Definition.read(read_json(blobs[item["substructure"].partition("@")[2]]))
+    part = Part.load(definition, blobs[item["program"]], {})  # never one that was decoded before
     if part.program.digest != item["program"]:
         raise InvalidProgram(f"the stored program has the digest {part.program.digest}, not {item['program']}")
     certificate = recheck(part)
