@@ -14,6 +14,7 @@ from service.store import Store
 from substructures.documents import read_json
 
 NPZ = "application/x-npz"
+SUBMISSIONS = "/v1/jobs"  # longer bodies
 
 
 async def get_store(request: Request) -> Store:
@@ -40,6 +41,8 @@ async def raw_body(request: Request, store: StoreOf) -> bytes:
     """The request body, refused with 413 as soon as it exceeds its limit."""
     limits = store.settings.limits
     limit = limits.binary_bytes if media_type(request) == NPZ else limits.json_bytes
+    if request.url.path == SUBMISSIONS:
+        limit = limits.job_bytes
     declared = request.headers.get("content-length", "0")
     if declared.isdigit() and int(declared) > limit:
         raise _too_long(limit)

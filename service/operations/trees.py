@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +36,22 @@ class Revision:
     parts: Mapping[str, Part]
     base: trees.Tree | None = None
     is_exact: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Coupled:
+    """What is stored of a coupled tree: canonical program, its operations, degrees of freedom, the summary as JSON.
+
+    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
+    """
+
+    spec: TreeSpec
+    program: bytes
+    nodes: int
+    dof: int
+    summary: bytes
+    parts: Mapping[str, str]
+    inline: Sequence[Part] = ()
 
 
 def prepare(store: Store, data: Any) -> Revision:
@@ -137,40 +154,50 @@ def _pin(instance: Instance, part: Part) -> Instance:
 
 
 def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool]:
-    """Store a revision; the tree, and whether it is new (creating the same tree again is not).
+    """Store a revision; as :func:`store`."""
+    spec, model = revision.spec, revision.model
+    inline = [revision.parts[each.name] for each in spec.instances if each.definition is not None]
+    digests = {name: part.definition.digest for name, part in revision.parts.items()}
+    program = model.program.to_bytes()
+    coupled = Coupled(spec, program, len(model.program), model.dof, tree_summary(spec, model), digests, inline)
+    return store(connection, coupled, revision.base.revision if revision.base else None, revision.is_exact)
 
-    Raises StaleError when the latest revision is no longer the one that was changed, unless that one was pinned.
+
+def store(
+    connection: Connection, coupled: Coupled, base: int | None = None, is_exact: bool = False
+) -> tuple[trees.Tree, bool]:
+    """Store a coupled tree; the tree, and whether it is new (creating the same tree again is not).
+
+    Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned.
     """
-    spec, base = revision.spec, revision.base
+    spec = coupled.spec
     latest = trees.lock_name(connection, spec.name)
     if base is None and latest:
         current = trees.resolve(connection, Reference(spec.name))
         if current is not None and current.digest == spec.digest:
             return current, False
-    if base is not None and not revision.is_exact and latest != base.revision:
+    if base is not None and not is_exact and latest != base:
         raise StaleError(f"'{spec.name}' was changed meanwhile")
-    _write(connection, revision, latest + 1)
+    _write(connection, coupled, latest + 1, base)
     return find(connection, f"{spec.name}@{latest + 1}"), True
 
 
-def _write(connection: Connection, revision: Revision, number: int) -> None:
-    spec, program = revision.spec, revision.model.program
-    for instance in spec.instances:
-        if instance.definition is not None:
-            catalogue.store_part(connection, revision.parts[instance.name])
-    content.put_program(connection, program.digest, program.to_bytes(), len(program))
+def _write(connection: Connection, coupled: Coupled, number: int, base: int | None) -> None:
+    for part in coupled.inline:
+        catalogue.store_part(connection, part)
+    spec, digest = coupled.spec, "sha256:" + hashlib.sha256(coupled.program).hexdigest()
+    content.put_program(connection, digest, coupled.program, coupled.nodes)
     row = {
         "name": spec.name,
         "revision": number,
         "digest": spec.digest,
         "spec": spec.canonical().decode(),
-        "program": program.digest,
-        "dof": len(revision.model.coordinates),
-        "summary": tree_summary(spec, revision.model).decode(),
-        "based_on": revision.base.revision if revision.base else None,
+        "program": digest,
+        "dof": coupled.dof,
+        "summary": coupled.summary.decode(),
+        "based_on": base,
     }
-    digests = {name: part.definition.digest for name, part in revision.parts.items()}
-    trees.add_revision(connection, row, digests)
+    trees.add_revision(connection, row, coupled.parts)
 
 
 def find(connection: Connection, text: str) -> trees.Tree:

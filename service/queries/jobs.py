@@ -5,11 +5,11 @@ from __future__ import annotations
 import secrets
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from time import time_ns
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, and_, case, delete, exists, func, insert, or_, select, update
+from sqlalchemy import Connection, and_, case, delete, exists, func, insert, or_, select, update
 
 from service.job_tables import job_events, job_items, jobs, result_files, results
 from service.queries.common import now
@@ -160,16 +160,13 @@ def page_jobs(connection: Connection, state: str | None, kind: str | None, befor
 def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[Item]:
     """Up to ``size`` items that follow the position ``after``."""
     names = [name for name in Item.__slots__ if name != "summary"]
-    columns = select(*(job_items.c[name] for name in names), _summary())
-    query = columns.select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
+    summary = case((job_items.c.state == "succeeded", results.c.summary))
+    columns: list[Any] = [*(job_items.c[name] for name in names), summary]
+    query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
     query = query.where(job_items.c.job == job, job_items.c.position > after)
     if state is not None:
         query = query.where(job_items.c.state == state)
-    return [Item(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size))]
-
-
-def _summary() -> ColumnElement[Any]:
-    return case((job_items.c.state == "succeeded", results.c.summary))
+    return [Item(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
 
 
 def finished_since(connection: Connection, job: str, seconds: float) -> int:
@@ -177,6 +174,11 @@ def finished_since(connection: Connection, job: str, seconds: float) -> int:
     since = now(-timedelta(seconds=seconds))
     query = select(func.count()).where(job_items.c.job == job, job_items.c.finished > since)
     return connection.execute(query).scalar_one()
+
+
+def seconds_since(time: str) -> float:
+    """The age of a time of the store."""
+    return (datetime.now(UTC) - datetime.fromisoformat(time)).total_seconds()
 
 
 def partial_work(connection: Connection, job: str) -> float:
@@ -200,7 +202,7 @@ def counts(connection: Connection) -> dict[str, dict[str, int]]:
         name: connection.execute(select(func.count()).select_from(job_items).where(condition)).scalar_one()
         for name, condition in (("queued", QUEUED), ("running", RUNNING))
     }
-    return {"jobs": {state: number for state, number in states}, "items": items}
+    return {"jobs": {row[0]: row[1] for row in states}, "items": items}
 
 
 def cancel(connection: Connection, identifier: str) -> None:

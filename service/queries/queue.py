@@ -106,7 +106,7 @@ def _candidates(connection: Connection) -> list[tuple[str, str]]:
     query = select(jobs.c.id, jobs.c.kind).where(jobs.c.state.in_(("queued", "running")), has_queued)
     rows = connection.execute(query.order_by(jobs.c.id).limit(JOBS).with_for_update(skip_locked=True)).all()
     running = select(job_items.c.job, func.count()).where(RUNNING).group_by(job_items.c.job)
-    busy = {job: number for job, number in connection.execute(running)}
+    busy = {row[0]: row[1] for row in connection.execute(running)}
     return sorted(((job, kind) for job, kind in rows), key=lambda each: (busy.get(each[0], 0), each[0]))
 
 
@@ -214,7 +214,12 @@ def expired(connection: Connection, owner: str, alone: bool) -> list[Lost]:
 
 def unwanted(connection: Connection, owner: str) -> list[Lost]:
     """The owner's running items of jobs that are to be cancelled."""
-    return _lost(connection, RUNNING & (job_items.c.owner == owner) & (jobs.c.state == "cancelling"))
+    return [lost for lost in owned(connection, owner) if lost.is_cancelling]
+
+
+def owned(connection: Connection, owner: str) -> list[Lost]:
+    """All running items of an owner."""
+    return _lost(connection, RUNNING & (job_items.c.owner == owner))
 
 
 def _lost(connection: Connection, condition: ColumnElement[bool]) -> list[Lost]:

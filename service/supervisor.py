@@ -1,0 +1,237 @@
+"""The supervisor: a thread that hands queued items to an engine and keeps what comes back.
+
+::
+
+    reports of the engine --> ended attempts --.
+    the clock ---------------------------------+--> one transaction (a round) --> stop and start attempts
+    woken by submissions and cancellations ----'
+
+The database is the truth: whatever this process forgets, it or another one finds there when the lease ends. All ends of
+attempts since the last round share a transaction, since a transaction costs a write to the disk.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from time import monotonic
+
+from service.cache import Cache
+from service.jobs.engine import Budget, Engine, Outcome, Report, Work
+from service.jobs.local import LocalEngine
+from service.operations.job_rounds import Ended, Played, Round, play, put_back_all
+from service.queries import content, jobs, queue
+from service.queries.common import now
+from service.queries.queue import Attempt
+from service.refusals import Refused, problem
+from service.settings import Settings
+from service.store import Store
+from substructures.documents import read_json
+
+POLL = 0.5  # seconds between looks at the queue when nothing wakes us
+NEWS = 0.05  # seconds to wait for news of what runs
+BLOBS = 64 * 2**20  # bytes of definitions and programs kept at hand
+SWEEP = 60.0  # seconds between looks for jobs to be removed
+_log = logging.getLogger(__name__)
+
+
+class Supervisor:
+    """Runs the jobs of a store on an engine until it is closed."""
+
+    def __init__(self, store: Store, engine: Callable[[], Engine]) -> None:
+        """``engine`` is called in the thread, which alone uses what it makes."""
+        self._store, self._make_engine = store, engine
+        self._owner = secrets.token_hex(8)
+        self._limits = store.settings.limits
+        self._lease = timedelta(seconds=self._limits.lease_seconds)
+        self._running: dict[str, tuple[Attempt, float]] = {}  # by id, with the time of the start
+        self._ended: dict[str, Ended] = {}
+        self._fractions: dict[str, float] = {}
+        self._blobs: Cache[bytes] = Cache(BLOBS, len)
+        self._due: dict[str, float] = {}
+        self._take_over_at_once = store.database.is_sqlite  # whoever had items died: only one server can live
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="supervisor", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop all attempts, queue their items again and end the thread."""
+        self._stop.set()
+        self._store.wake.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        self._await_work()
+        engine = None
+        while not self._stop.is_set():
+            try:
+                engine = engine or self._make_engine()
+                self._step(engine)
+            except Exception:
+                _log.exception("a round failed; it is played again")
+                self._stop.wait(POLL)
+        if engine is not None:
+            engine.close()
+        self._hand_back()
+
+    def _await_work(self) -> None:
+        """No worker is started before there is something to do."""
+        is_needed = False
+        while not is_needed and not self._stop.is_set():
+            try:
+                with self._store.database.read() as connection:
+                    is_needed = jobs.waiting(connection) > 0
+                if not is_needed and self._is_due("sweep", SWEEP):
+                    self._sweep()
+            except Exception:
+                _log.exception("the queue cannot be read; it is tried again")
+            if not is_needed:
+                self._store.wake.wait(POLL)
+                self._store.wake.clear()
+
+    def _step(self, engine: Engine) -> None:
+        free = engine.free
+        if not self._running and not self._ended and free:
+            self._store.wake.wait(POLL)
+        for report in engine.reports(0.0 if self._ended or (not self._running and free) else NEWS):
+            self._hear(report)
+        self._check_times(engine)
+        is_woken = self._store.wake.is_set()
+        self._store.wake.clear()
+        if self._is_due("poll", POLL) or is_woken or self._ended or engine.free > free:
+            self._play(engine)
+        if self._is_due("renew", self._lease.total_seconds() / 4):
+            self._renew(engine)
+        if self._is_due("sweep", SWEEP):
+            self._sweep()
+
+    def _is_due(self, what: str, period: float) -> bool:
+        is_due = monotonic() >= self._due.get(what, 0.0)
+        if is_due:
+            self._due[what] = monotonic() + period
+        return is_due
+
+    def _hear(self, report: Report) -> None:
+        known = self._running.get(report.id)
+        if known is None:
+            return
+        if report.is_final:
+            self._end(known[0], report.outcome, report.death)
+        else:
+            self._fractions[report.id] = report.fraction
+
+    def _end(self, attempt: Attempt, outcome: Outcome | None, death: str = "") -> None:
+        self._running.pop(attempt.id, None)
+        self._fractions.pop(attempt.id, None)
+        self._ended[attempt.id] = Ended(attempt, outcome, death)
+
+    def _check_times(self, engine: Engine) -> None:
+        limit = self._limits.job_seconds
+        for attempt, started in list(self._running.values()):
+            if monotonic() - started > limit:
+                engine.stop(attempt.id)
+                detail = f"the item was not finished after {limit:g} s"
+                self._end(attempt, Outcome(problem=problem(Refused(503, "took-too-long", detail, limit=limit))))
+
+    def _play(self, engine: Engine) -> None:
+        ended = list(self._ended.values())
+        take_over = self._take_over_at_once or self._is_due("lost", self._lease.total_seconds() / 4)
+        wanted = max(0, engine.free)
+        round_ = Round(self._owner, self._lease, ended, wanted, take_over, self._store.database.is_sqlite)
+        with self._store.database.write() as connection:
+            played = play(self._store, connection, round_)
+        self._take_over_at_once = False
+        for each in ended:
+            del self._ended[each.attempt.id]
+        self._store.metrics.items(played.states)
+        self._follow(engine, played)
+
+    def _follow(self, engine: Engine, played: Played) -> None:
+        for identifier in played.stopped:
+            engine.stop(identifier)
+            self._forget(identifier)
+        for attempt in played.claimed:
+            self._running[attempt.id] = attempt, monotonic()
+            self._begin(engine, attempt)
+
+    def _begin(self, engine: Engine, attempt: Attempt) -> None:
+        limits = self._limits
+        try:
+            blobs = {digest: self._blob(digest) for digest in read_json(attempt.blobs.encode())}
+            budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
+            engine.start(Work(attempt.id, attempt.kind, read_json(attempt.item.encode()), blobs, budget))
+        except Exception as error:
+            _log.exception("attempt %s could not be started", attempt.id)
+            self._end(attempt, None, f"could not be started: {error}")
+
+    def _blob(self, digest: str) -> bytes:
+        blob = self._blobs.get(digest)
+        if blob is None:
+            with self._store.database.read() as connection:
+                blob = content.get_blob(connection, digest)
+            if blob is None:
+                raise LookupError(f"{digest} is not in the store")
+            self._blobs.put(digest, blob)
+        return blob
+
+    def _forget(self, identifier: str) -> None:
+        self._running.pop(identifier, None)
+        self._ended.pop(identifier, None)
+        self._fractions.pop(identifier, None)
+
+    def _renew(self, engine: Engine) -> None:
+        """Keep the leases. What was taken over by others is stopped; what a failed round left to us is put back."""
+        with self._store.database.write() as connection:
+            mine = queue.renew(connection, self._owner, self._lease)
+            known = [(self._running[i][0], fraction) for i, fraction in self._fractions.items() if i in self._running]
+            queue.note_fractions(connection, known)
+            put_back_all(connection, self._owner, mine - self._running.keys() - self._ended.keys())
+        for identifier in self._running.keys() - mine:
+            engine.stop(identifier)
+            self._forget(identifier)
+
+    def _sweep(self) -> None:
+        before = now(-timedelta(days=self._limits.job_days))
+        removed = 1
+        while removed and not self._stop.is_set():  # one job a transaction, so that nobody waits for long
+            with self._store.database.write() as connection:
+                removed = jobs.remove_finished(connection, before, 1)
+
+    def _hand_back(self) -> None:
+        try:
+            with self._store.database.write() as connection:
+                put_back_all(connection, self._owner, None)
+        except Exception:
+            _log.exception("items could not be handed back; they are taken over when their lease ends")
+
+
+def engine_of(settings: Settings) -> Callable[[], Engine] | None:
+    """What makes the engine that the settings name."""
+    workers = settings.workers or os.cpu_count() or 1
+    match settings.engine:
+        case "local":
+            return lambda: LocalEngine(workers)
+        case _:
+            return None
+
+
+@contextmanager
+def supervised(store: Store, engine: Callable[[], Engine] | None) -> Iterator[None]:
+    """Run the jobs of a store while the block lasts; None leaves them to another process."""
+    if engine is None:
+        yield
+        return
+    supervisor = Supervisor(store, engine)
+    supervisor.start()
+    try:
+        yield
+    finally:
+        supervisor.close()
