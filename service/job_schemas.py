@@ -25,6 +25,10 @@ class JobRequest(Shape):
     choices: dict[str, list[Any]] | None = Field(None, description="values by place in the template")
 
 
+class CancelRequest(Shape):
+    """Nothing needs to be said."""
+
+
 class JobProgress(Shape):
     """How far a job is."""
 

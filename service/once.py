@@ -28,6 +28,7 @@ from typing import Annotated, TypeVar
 import orjson
 from fastapi import Depends, Header, Request, Response
 
+from service import keys
 from service.answers import Answer
 from service.database import Connection
 from service.operations.trees import StaleError
@@ -83,7 +84,7 @@ class Once:
                 with self.store.database.write() as connection:
                     answer = commit(connection)
                     self._keep(connection, answer, answer.body)
-                return answer
+                return self._told(answer)
             except StaleError:
                 continue
         raise Refused(409, "conflict", "others keep changing this resource; try again", headers={"Retry-After": "1"})
@@ -127,7 +128,18 @@ class Once:
         except BaseException:
             self._release()
             raise
-        return answer.response()
+        return self._told(answer).response()
+
+    def require(self, scope: str) -> None:
+        """Raise Refused 403 unless whoever asks has this scope too."""
+        with self.store.database.read() as connection:
+            keys.authorise(connection, self._request.headers.get("authorization"), scope)
+
+    def _told(self, answer: Answer) -> Answer:
+        """The answer; a job does not wait until somebody looks for one."""
+        if answer.status == 202:
+            self.store.wake.set()
+        return answer
 
     def _claim(self) -> idempotency.Entry | None:
         limits = self.store.settings.limits

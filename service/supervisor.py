@@ -84,18 +84,19 @@ class Supervisor:
 
     def _await_work(self) -> None:
         """No worker is started before there is something to do."""
-        is_needed = False
-        while not is_needed and not self._stop.is_set():
+        while not self._stop.is_set():
+            self._store.wake.clear()
             try:
                 with self._store.database.read() as connection:
                     is_needed = jobs.waiting(connection) > 0
-                if not is_needed and self._is_due("sweep", SWEEP):
+                if is_needed:
+                    self._store.wake.set()
+                    return
+                if self._is_due("sweep", SWEEP):
                     self._sweep()
             except Exception:
                 _log.exception("the queue cannot be read; it is tried again")
-            if not is_needed:
-                self._store.wake.wait(POLL)
-                self._store.wake.clear()
+            self._store.wake.wait(POLL)
 
     def _step(self, engine: Engine) -> None:
         free = engine.free

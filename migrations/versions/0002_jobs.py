@@ -62,7 +62,8 @@ BEGIN
   INSERT INTO job_events (job, seq, time, type, data) VALUES (
     NEW.id, (SELECT coalesce(max(seq), 0) + 1 FROM job_events WHERE job = NEW.id),
     to_char(clock_timestamp() AT TIME ZONE 'utc', 'YYYY-MM-DD"T"HH24:MI:SS.US"Z"'), 'state',
-    json_build_object('state', NEW.state, 'was', was, 'done', NEW.done, 'failed', NEW.failed, 'total', NEW.total)::text);
+    json_build_object('state', NEW.state, 'was', was, 'done', NEW.done, 'failed', NEW.failed,
+      'total', NEW.total)::text);
   RETURN NULL;
 END $$;
 CREATE TRIGGER jobs_change BEFORE INSERT OR UPDATE OF state ON jobs

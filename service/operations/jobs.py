@@ -57,6 +57,18 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
         return Submission(kind, [_new_item(kind, {**item, **(members or {})}, blobs) for item, blobs in items])
 
 
+def prepare_one(
+    store: Store, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
+) -> Submission:
+    """A job of one item in place of a request; ``step`` is where the body of the request is in the item. Raises as
+    :func:`prepare`, with pointers into that body."""
+    place = f"/items/0{step}"
+    try:
+        return prepare(store, {"kind": kind, "items": [item]}, members)
+    except (InvalidDocument, Refused) as error:
+        raise InvalidDocument(Fault(f.pointer.removeprefix(place), f.code, f.message) for f in error.faults) from None
+
+
 def _places(body: Mapping[str, Any], count: int) -> Iterator[tuple[str, str]]:
     """For every item where in the request its faults are, and what to say before the message."""
     given = body.get("items")

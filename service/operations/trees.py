@@ -54,24 +54,31 @@ class Coupled:
     inline: Sequence[Part] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a tree shall become; ``is_exact``: ``base`` was named by number; ``step``: where the request's body is."""
+
+    document: dict[str, Any]
+    base: trees.Tree
+    is_exact: bool
+    step: str
+
+
 def prepare(store: Store, data: Any) -> Revision:
     """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge."""
     return _coupled(store, TreeSpec.read(data))
 
 
-def prepare_coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Revision:
-    """Couple one more instance onto an existing tree. Raises InvalidDocument, TooLarge, Refused 404 or 412."""
+def coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Change:
+    """One more instance on an existing tree. Raises Refused 404 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
-    grown, step = {**spec, "instances": [*instances, data]}, f"/instances/{len(instances)}"
-    try:
-        return _coupled(store, TreeSpec.read(grown), base, _is_pinned(text))
-    except InvalidDocument as error:
-        raise InvalidDocument(_within(fault, step) for fault in error.faults) from None
+    grown = {**spec, "instances": [*instances, data]}
+    return Change(grown, base, _is_pinned(text), f"/instances/{len(instances)}")
 
 
-def prepare_removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Revision:
-    """Remove one instance that carries no other. Raises Refused 404, 409 or 412."""
+def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Change:
+    """One instance less, which must not carry another. Raises Refused 404, 409 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
     if all(each["name"] != instance for each in instances):
@@ -80,7 +87,15 @@ def prepare_removal(store: Store, text: str, instance: str, if_match: str | None
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
     kept = [each for each in instances if each["name"] != instance]
-    return _coupled(store, TreeSpec.read({**spec, "instances": kept}), base, _is_pinned(text))
+    return Change({**spec, "instances": kept}, base, _is_pinned(text), "")
+
+
+def prepare_change(store: Store, change: Change) -> Revision:
+    """Couple a changed tree. Raises InvalidDocument, TooLarge."""
+    try:
+        return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
+    except InvalidDocument as error:
+        raise InvalidDocument(_within(fault, change.step) for fault in error.faults) from None
 
 
 def _within(fault: Fault, step: str) -> Fault:

@@ -6,55 +6,35 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service import keys
 from service.answers import Answer, json_answer
 from service.database import Connection
-from service.job_schemas import ItemPage, ItemState, JobPage, JobState, JobView
-from service.job_views import BINARY, item_view, job_path, job_view, media_type
-from service.once import Commit, OnceOf
+from service.job_schemas import CancelRequest, ItemPage, ItemState, JobPage, JobState, JobView
+from service.job_views import BINARY, item_view, job_view, media_type
+from service.once import OnceOf
 from service.operations import jobs
 from service.paging import limited, link_header, next_link, read_token, write_token
 from service.queries import jobs as rows
 from service.queries import results
 from service.refusals import not_found
-from service.requests import JsonBody, StoreOf, needs
+from service.requests import JsonBody, OptionalJsonBody, StoreOf, needs
 from service.routes.bodies import binary, body_of
-from service.store import Store
+from service.routes.deferred import FRESH, answer, committed
 from service.views import dump
+from substructures.definition import read_model
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 READ, JOBS = [needs("read")], [needs("jobs")]
 PageSize = Annotated[int, Query(ge=1)]
 Token = Annotated[str | None, Query(max_length=2000)]
 FILE: dict[int | str, Any] = {200: {"description": "The file", "content": {BINARY: binary()}}}
-FRESH = {"Cache-Control": "no-store"}
-
-
-def answer(connection: Connection, job: rows.Job, status: int = 200) -> Answer:
-    """A job with its progress."""
-    view = job_view(job, jobs.progress(connection, job))
-    headers = {**FRESH, "Location": job_path(job.id)} if status == 202 else FRESH
-    return json_answer(dump(view), status, headers)
-
-
-def committed(store: Store, submission: jobs.Submission, principal: str) -> Commit:
-    """What queues a submission and answers 202."""
-
-    def commit(connection: Connection) -> Answer:
-        return answer(connection, jobs.submit(connection, submission, principal, store.settings.limits), 202)
-
-    return commit
 
 
 @router.post("", status_code=202, response_model=JobView, dependencies=JOBS, openapi_extra=body_of("JobRequest"))
-def submit(body: JsonBody, request: Request, store: StoreOf, once: OnceOf) -> Response:
+def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Queue a job. 202 when it is on the disk; before that every item has been checked."""
     if isinstance(body, dict) and body.get("kind") in jobs.STORING:
-        with store.database.read() as connection:
-            keys.authorise(connection, request.headers.get("authorization"), "write")
-    response = once.submit(lambda: committed(store, jobs.prepare(store, body), once.principal))
-    store.wake.set()
-    return response
+        once.require("write")
+    return once.submit(lambda: committed(store, jobs.prepare(store, body), once.principal))
 
 
 @router.get("", response_model=JobPage, dependencies=READ)
@@ -85,13 +65,14 @@ def get_job(job: str, store: StoreOf) -> Response:
         return answer(connection, jobs.find(connection, job)).response()
 
 
-@router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS)
-def cancel(job: str, request: Request, store: StoreOf, once: OnceOf) -> Response:
+@router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
+def cancel(job: str, body: OptionalJsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
+    read_model(CancelRequest, body)
 
     def commit(connection: Connection) -> Answer:
         if jobs.find(connection, job).principal != once.principal:
-            keys.authorise(connection, request.headers.get("authorization"), "admin")
+            once.require("admin")
         return answer(connection, jobs.cancel(connection, job))
 
     response = once.submit(lambda: commit)

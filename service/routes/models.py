@@ -14,6 +14,7 @@ from service.operations import evaluations, models, trees
 from service.problems import Refused
 from service.requests import NPZ, RawBody, StoreOf, conditional, media_type, needs, require_json
 from service.routes.bodies import binary, body_of, printed
+from service.routes.deferred import ACCEPTED, deferred
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
 from service.schemas import EvaluationResult
@@ -22,7 +23,7 @@ from substructures.documents import read_json
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
 READ = [needs("read")]
 BODY: dict[str, Any] = body_of("EvaluationRequest", others={NPZ: binary()})
-RESULT: dict[int | str, dict[str, Any]] = {200: {"content": {NPZ: binary()}}}
+RESULT: dict[int | str, dict[str, Any]] = {200: {"content": {NPZ: binary()}}, **ACCEPTED}
 
 
 @router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
@@ -40,7 +41,11 @@ def evaluate(ref: str, request: Request, raw: RawBody, store: StoreOf, once: Onc
             return Answer(200, as_npz(result), {"Content-Type": NPZ})
         return json_answer(evaluations.as_json(result, wanted))
 
-    return once.compute(work)
+    if media_type(request) == NPZ:  # arrays stay out of the queue
+        return once.compute(work)
+    return once.compute(
+        work, lambda: deferred(once, "evaluate", {"tree": ref, "request": read_json(raw)}, "/request")()
+    )
 
 
 def _request(request: Request, raw: bytes, store: StoreOf) -> Any:
