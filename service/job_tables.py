@@ -117,6 +117,6 @@ state_changes = Table(
     "state_changes",
     metadata,
     Column("entity", Text, primary_key=True),
-    Column("old", Text, primary_key=True),
-    Column("new", Text, primary_key=True),
+    Column("source", Text, primary_key=True),
+    Column("target", Text, primary_key=True),
 )

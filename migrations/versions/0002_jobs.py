@@ -24,7 +24,7 @@ TABLES = {"job": "jobs", "item": "job_items"}
 SQLITE_GUARD = """
 CREATE TRIGGER {table}_change BEFORE UPDATE OF state ON {table}
 WHEN OLD.state <> NEW.state AND NOT EXISTS
-  (SELECT 1 FROM state_changes WHERE entity = '{entity}' AND old = OLD.state AND new = NEW.state)
+  (SELECT 1 FROM state_changes WHERE entity = '{entity}' AND source = OLD.state AND target = NEW.state)
 BEGIN SELECT RAISE(ABORT, 'impossible change of state: {entity}'); END
 """
 SQLITE_BIRTH = """
@@ -47,7 +47,7 @@ BEGIN
     IF NEW.state <> 'queued' THEN RAISE EXCEPTION 'impossible first state: %', TG_ARGV[0]
       USING ERRCODE = 'check_violation'; END IF;
   ELSIF OLD.state <> NEW.state AND NOT EXISTS
-    (SELECT 1 FROM state_changes WHERE entity = TG_ARGV[0] AND old = OLD.state AND new = NEW.state) THEN
+    (SELECT 1 FROM state_changes WHERE entity = TG_ARGV[0] AND source = OLD.state AND target = NEW.state) THEN
     RAISE EXCEPTION 'impossible change of state: %', TG_ARGV[0] USING ERRCODE = 'check_violation';
   END IF;
   RETURN NEW;
@@ -82,15 +82,15 @@ def upgrade() -> None:
     changes = op.create_table(
         "state_changes",
         sa.Column("entity", sa.Text(), nullable=False),
-        sa.Column("old", sa.Text(), nullable=False),
-        sa.Column("new", sa.Text(), nullable=False),
-        sa.PrimaryKeyConstraint("entity", "old", "new", name=op.f("pk_state_changes")),
+        sa.Column("source", sa.Text(), nullable=False),
+        sa.Column("target", sa.Text(), nullable=False),
+        sa.PrimaryKeyConstraint("entity", "source", "target", name=op.f("pk_state_changes")),
     )
     rows = [
-        {"entity": entity, "old": old, "new": new}
+        {"entity": entity, "source": source, "target": target}
         for entity, following in CHANGES.items()
-        for old, states in following.items()
-        for new in states
+        for source, states in following.items()
+        for target in states
     ]
     op.bulk_insert(changes, rows)
     if op.get_bind().dialect.name == "sqlite":
