@@ -19,6 +19,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
+from importlib import import_module
 from time import monotonic
 
 from service.cache import Cache
@@ -29,7 +30,7 @@ from service.queries import content, jobs, queue
 from service.queries.common import now
 from service.queries.queue import Attempt
 from service.refusals import Refused, problem
-from service.settings import Settings
+from service.settings import Settings, SettingsError
 from service.store import Store
 from substructures.documents import read_json
 
@@ -215,13 +216,24 @@ class Supervisor:
 
 
 def engine_of(settings: Settings) -> Callable[[], Engine] | None:
-    """What makes the engine that the settings name."""
+    """What makes the engine that the settings name; None: no engine. Raises SettingsError."""
     workers = settings.workers or os.cpu_count() or 1
     match settings.engine:
         case "local":
             return lambda: LocalEngine(workers)
-        case _:
-            return None
+        case "dask":
+            return _dask(settings.engine_address)
+    return None
+
+
+def _dask(address: str) -> Callable[[], Engine]:
+    if not address:
+        raise SettingsError("the engine dask needs the address of its scheduler: --engine-address tcp://...")
+    try:
+        module = import_module("service.jobs.dask")  # an extra; it takes long to load
+    except ImportError:
+        raise SettingsError("the engine dask needs the extra: pip install 'substructures[dask]'") from None
+    return lambda: module.DaskEngine(address)
 
 
 @contextmanager
