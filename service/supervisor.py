@@ -16,16 +16,18 @@ import logging
 import os
 import secrets
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from importlib import import_module
+from statistics import median
 from time import monotonic
 
 from service.cache import Cache
 from service.jobs.engine import Budget, Engine, Outcome, Report, Work
 from service.jobs.local import LocalEngine
-from service.operations.job_rounds import Ended, Played, Round, play, put_back_all
+from service.operations.job_rounds import Ended, Round, play, put_back_all
 from service.queries import content, jobs, queue
 from service.queries.common import now
 from service.queries.queue import Attempt
@@ -35,6 +37,8 @@ from service.store import Store
 from substructures.documents import read_json
 
 POLL = 0.5  # seconds between looks at the queue when nothing wakes us
+GATHER = 0.05  # seconds for which ends are gathered while there is work to go on with
+AHEAD = 200  # items claimed ahead at most
 NEWS = 0.05  # seconds to wait for news of what runs
 BLOBS = 64 * 2**20  # bytes of definitions and programs kept at hand
 SWEEP = 60.0  # seconds between looks for jobs to be removed
@@ -52,7 +56,10 @@ class Supervisor:
         self._lease = timedelta(seconds=self._limits.lease_seconds)
         self._running: dict[str, tuple[Attempt, float]] = {}  # by id, with the time of the start
         self._ended: dict[str, Ended] = {}
+        self._backlog: deque[Attempt] = deque()  # claimed, so that short items need not wait for a round each
         self._fractions: dict[str, float] = {}
+        self._durations: deque[float] = deque(maxlen=32)  # of late, s
+        self._played = 0.0
         self._blobs: Cache[bytes] = Cache(BLOBS, len)
         self._due: dict[str, float] = {}
         self._take_over_at_once = store.database.is_sqlite  # whoever had items died: only one server can live
@@ -101,19 +108,31 @@ class Supervisor:
 
     def _step(self, engine: Engine) -> None:
         free = engine.free
-        if not self._running and not self._ended and free:
+        is_idle = not (self._running or self._ended or self._backlog)
+        if is_idle and free:
             self._store.wake.wait(POLL)
-        for report in engine.reports(0.0 if self._ended or (not self._running and free) else NEWS):
+        for report in engine.reports(NEWS if self._running or not free else 0.0):
             self._hear(report)
         self._check_times(engine)
-        is_woken = self._store.wake.is_set()
-        self._store.wake.clear()
-        if self._is_due("poll", POLL) or is_woken or self._ended or engine.free > free:
+        self._feed(engine)
+        if self._is_round_due(engine.free, free):
             self._play(engine)
         if self._is_due("renew", self._lease.total_seconds() / 4):
             self._renew(engine)
         if self._is_due("sweep", SWEEP):
             self._sweep()
+
+    def _is_round_due(self, free: int, before: int) -> bool:
+        """At once when somebody waits; otherwise ends are gathered for a moment."""
+        is_woken = self._store.wake.is_set()
+        self._store.wake.clear()
+        if self._is_due("poll", POLL) or is_woken or (free > 0 and (self._ended or free > before)):
+            return True
+        return bool(self._ended) and monotonic() - self._played > GATHER
+
+    def _feed(self, engine: Engine) -> None:
+        while self._backlog and engine.free > 0:
+            self._begin(engine, self._backlog.popleft())
 
     def _is_due(self, what: str, period: float) -> bool:
         is_due = monotonic() >= self._due.get(what, 0.0)
@@ -131,7 +150,8 @@ class Supervisor:
             self._fractions[report.id] = report.fraction
 
     def _end(self, attempt: Attempt, outcome: Outcome | None, death: str = "") -> None:
-        self._running.pop(attempt.id, None)
+        started = self._running.pop(attempt.id, (attempt, monotonic()))[1]
+        self._durations.append(monotonic() - started)
         self._fractions.pop(attempt.id, None)
         self._ended[attempt.id] = Ended(attempt, outcome, death)
 
@@ -146,26 +166,30 @@ class Supervisor:
     def _play(self, engine: Engine) -> None:
         ended = list(self._ended.values())
         take_over = self._take_over_at_once or self._is_due("lost", self._lease.total_seconds() / 4)
-        wanted = max(0, engine.free)
+        free = engine.free
+        wanted = max(0, free + self._ahead(free + len(self._running)) - len(self._backlog))
         round_ = Round(self._owner, self._lease, ended, wanted, take_over, self._store.database.is_sqlite)
         with self._store.database.write() as connection:
-            played = play(self._store, connection, round_)
-        self._take_over_at_once = False
+            played = play(connection, round_)
+        self._take_over_at_once, self._played = False, monotonic()
         for each in ended:
             del self._ended[each.attempt.id]
         self._store.metrics.items(played.states)
-        self._follow(engine, played)
-
-    def _follow(self, engine: Engine, played: Played) -> None:
         for identifier in played.stopped:
             engine.stop(identifier)
             self._forget(identifier)
-        for attempt in played.claimed:
-            self._running[attempt.id] = attempt, monotonic()
-            self._begin(engine, attempt)
+        self._backlog.extend(played.claimed)
+        self._feed(engine)
+
+    def _ahead(self, slots: int) -> int:
+        """How many items to claim beyond those that can start now: what ends while ends are gathered, twice over."""
+        if not self._durations:
+            return 0
+        return min(AHEAD, int(2 * GATHER * slots / max(median(self._durations), 1e-4)))
 
     def _begin(self, engine: Engine, attempt: Attempt) -> None:
         limits = self._limits
+        self._running[attempt.id] = attempt, monotonic()
         try:
             blobs = {digest: self._blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
@@ -188,6 +212,7 @@ class Supervisor:
         self._running.pop(identifier, None)
         self._ended.pop(identifier, None)
         self._fractions.pop(identifier, None)
+        self._backlog = deque(attempt for attempt in self._backlog if attempt.id != identifier)
 
     def _renew(self, engine: Engine) -> None:
         """Keep the leases. What was taken over by others is stopped; what a failed round left to us is put back."""
@@ -195,8 +220,9 @@ class Supervisor:
             mine = queue.renew(connection, self._owner, self._lease)
             known = [(self._running[i][0], fraction) for i, fraction in self._fractions.items() if i in self._running]
             queue.note_fractions(connection, known)
-            put_back_all(connection, self._owner, mine - self._running.keys() - self._ended.keys())
-        for identifier in self._running.keys() - mine:
+            known_ids = self._running.keys() | self._ended.keys() | {attempt.id for attempt in self._backlog}
+            put_back_all(connection, self._owner, mine - known_ids)
+        for identifier in known_ids - mine:
             engine.stop(identifier)
             self._forget(identifier)
 

@@ -18,7 +18,6 @@ from service.queries import job_events, jobs, queue
 from service.queries.common import is_outage
 from service.queries.queue import Attempt, Changes, Lost
 from service.refusals import Refused, problem
-from service.store import Store
 from substructures.documents import write_json
 
 #: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers
@@ -57,14 +56,14 @@ class Played:
     states: Mapping[str, int]
 
 
-def play(store: Store, connection: Connection, round_: Round) -> Played:
+def play(connection: Connection, round_: Round) -> Played:
     """Play one round inside of a write transaction."""
     changes = Changes()
     touched = _lock(connection, round_)
     stopped = _drop_unwanted(connection, round_.owner, touched, changes)
     _take_over(connection, round_, touched, changes)
     if round_.ended:
-        _end(store, connection, round_, touched, changes)
+        _end(connection, round_, touched, changes)
     claimed = queue.claim(connection, round_.owner, round_.lease, round_.wanted, changes) if round_.wanted else []
     _close(connection, changes)
     return Played(claimed, stopped, changes.total())
@@ -94,6 +93,8 @@ def _lock(connection: Connection, round_: Round) -> set[str]:
 
 
 def _drop_unwanted(connection: Connection, owner: str, touched: set[str], changes: Changes) -> list[str]:
+    if not touched:
+        return []
     dropped = [lost for lost in queue.unwanted(connection, owner) if lost.job in touched]
     for lost in dropped:
         queue.drop(connection, lost.job, lost.position)
@@ -129,37 +130,52 @@ def _given_up(number: int, deaths: Sequence[str]) -> dict[str, Any]:
     return problem(Refused(500, "worker-died", detail, attempts=number, deaths=list(deaths)))
 
 
-def _end(store: Store, connection: Connection, round_: Round, touched: set[str], changes: Changes) -> None:
+def _end(connection: Connection, round_: Round, touched: set[str], changes: Changes) -> None:
     """Keep what ended. An attempt that is no longer its item's latest, or no longer the owner's, changes nothing."""
     held = {lost.id: lost for lost in queue.held(connection, round_.owner, [each.attempt for each in round_.ended])}
-    keys: list[str] = []
-    for each in round_.ended:
-        lost = held.get(each.attempt.id)
-        if lost is None:
-            continue
+    valid = [each for each in round_.ended if each.attempt.id in held]
+    for each in valid:
         if each.outcome is None:
+            lost = held[each.attempt.id]
             _again(connection, lost, (*lost.deaths, each.death), changes)
-            continue
-        fault = each.outcome.problem or _kept(store, connection, each.attempt, each.outcome)
-        state = queue.finish(connection, each.attempt, _dump(fault) if fault else None)
-        changes.add(each.attempt.job, state, [each.attempt.position])
-        keys += [each.attempt.key] if fault is None else []
+    outcomes = [(each.attempt, each.outcome) for each in valid if each.outcome is not None]
+    good = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None]
+    problems = {attempt.id: outcome.problem for attempt, outcome in outcomes if outcome.problem is not None}
+    problems |= _keep(connection, good)
+    finished = [(a, _dump(problems[a.id]) if a.id in problems else None) for a, _ in outcomes]
+    queue.finish(connection, finished)
+    for attempt, problem_text in finished:
+        changes.add(attempt.job, "succeeded" if problem_text is None else "failed", [attempt.position])
+    keys = [attempt.key for attempt, problem_text in finished if problem_text is None]
     if keys:
         for job, positions in jobs.succeed_known(connection, touched, keys).items():
             changes.add(job, "succeeded", positions)
 
 
-def _kept(store: Store, connection: Connection, attempt: Attempt, outcome: Outcome) -> dict[str, Any] | None:
-    """Keep an outcome; the problem when it cannot be kept."""
+def _keep(connection: Connection, good: Sequence[tuple[Attempt, Outcome]]) -> dict[str, Mapping[str, Any]]:
+    """Keep outcomes, together or, when one of them cannot be kept, each for itself: the problems by attempt."""
+    fault = _fault(connection, good)
+    if fault is None:
+        return {}
+    if len(good) == 1:
+        return {good[0][0].id: fault}
+    faults = {each[0].id: _fault(connection, [each]) for each in good}
+    return {identifier: each for identifier, each in faults.items() if each is not None}
+
+
+def _fault(connection: Connection, good: Sequence[tuple[Attempt, Outcome]]) -> Mapping[str, Any] | None:
+    """Keep outcomes, all or none; the problem when they cannot be kept."""
+    if not good:
+        return None
     try:
         with connection.begin_nested():
-            job_results.keep(store, connection, attempt, outcome)
+            job_results.keep(connection, good)
     except trees.StaleError as error:
         return problem(Refused(409, "conflict", str(error)))
     except Exception as error:
         if is_outage(error):  # the database, not the item
             raise
-        _log.exception("the outcome of %s cannot be kept", attempt.id)
+        _log.exception("outcomes cannot be kept: %s", ", ".join(attempt.id for attempt, _ in good))
         return problem(Refused(500, "internal-error", "the result cannot be stored; the log says why"))
     return None
 

@@ -15,7 +15,7 @@ from service.queries import catalogue as versions
 from service.queries import content, trees
 from service.references import Reference, parse_reference
 from service.store import Store
-from service.summaries import tree_summary
+from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model, couple
@@ -51,7 +51,7 @@ class Coupled:
     dof: int
     summary: bytes
     parts: Mapping[str, str]
-    inline: Sequence[Part] = ()
+    inline: Sequence[PartContent] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +171,7 @@ def _pin(instance: Instance, part: Part) -> Instance:
 def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool]:
     """Store a revision; as :func:`store`."""
     spec, model = revision.spec, revision.model
-    inline = [revision.parts[each.name] for each in spec.instances if each.definition is not None]
+    inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
     digests = {name: part.definition.digest for name, part in revision.parts.items()}
     program = model.program.to_bytes()
     coupled = Coupled(spec, program, len(model.program), model.dof, tree_summary(spec, model), digests, inline)

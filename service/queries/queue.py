@@ -11,13 +11,25 @@ from datetime import timedelta
 from typing import Any
 
 import orjson
-from sqlalchemy import ColumnElement, Connection, and_, exists, func, select, tuple_, update
+from sqlalchemy import ColumnElement, Connection, and_, bindparam, exists, func, select, tuple_, update
 
 from service.job_tables import job_items, jobs, results
 from service.queries import jobs as job_queries
 from service.queries.common import now
 from service.queries.states import QUEUED, RUNNING
 
+_FINISH = (
+    update(job_items)
+    .where(job_items.c.job == bindparam("of_job"), job_items.c.position == bindparam("at"), RUNNING)
+    .values(
+        state=bindparam("state"),
+        problem=bindparam("problem"),
+        finished=bindparam("finished"),
+        fraction=1.0,
+        owner=None,
+        lease_until=None,
+    )
+)
 JOBS = 64  # jobs that share what is free, the oldest first
 
 
@@ -163,11 +175,21 @@ def twins(connection: Connection, keys: Sequence[str]) -> set[str]:
     return set(connection.execute(query).scalars())
 
 
-def finish(connection: Connection, attempt: Attempt, problem: str | None) -> str:
-    """End an attempt that is held: without a problem it has succeeded. The new state."""
-    state = "succeeded" if problem is None else "failed"
-    _end(connection, attempt.job, attempt.position, {"state": state, "problem": problem, "finished": now()})
-    return state
+def finish(connection: Connection, ended: Sequence[tuple[Attempt, str | None]]) -> None:
+    """End attempts that are held: without a problem they have succeeded."""
+    finished = now()
+    rows = [
+        {
+            "of_job": attempt.job,
+            "at": attempt.position,
+            "state": "succeeded" if problem is None else "failed",
+            "problem": problem,
+            "finished": finished,
+        }
+        for attempt, problem in ended
+    ]
+    if rows:
+        connection.execute(_FINISH, rows)
 
 
 def put_back(connection: Connection, job: str, position: int, deaths: Sequence[str]) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import Connection, select
 
 from service.job_tables import result_files, results
-from service.queries.common import insert_missing, now
+from service.queries.common import now, put_all
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,12 +20,30 @@ class File:
     size: int
 
 
-def put_result(connection: Connection, key: str, kind: str, summary: str, files: Mapping[str, bytes]) -> None:
-    """Keep a result unless there is one of this key."""
-    row = {"key": key, "kind": kind, "summary": summary, "created": now()}
-    if insert_missing(connection, results, [row]):
-        rows = [{"key": key, "name": name, "size": len(data), "content": data} for name, data in files.items()]
-        insert_missing(connection, result_files, rows)
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of an item; ``summary`` is JSON."""
+
+    key: str
+    kind: str
+    summary: str
+    files: Mapping[str, bytes]
+
+
+def put_results(connection: Connection, found: Sequence[Result]) -> None:
+    """Keep results; of equal ones the first stays."""
+    created = now()
+    put_all(connection, results, [{**_row(each), "created": created} for each in found])
+    files = [
+        {"key": each.key, "name": name, "size": len(data), "content": data}
+        for each in found
+        for name, data in each.files.items()
+    ]
+    put_all(connection, result_files, files)
+
+
+def _row(result: Result) -> dict[str, str]:
+    return {"key": result.key, "kind": result.kind, "summary": result.summary}
 
 
 def get_summary(connection: Connection, key: str) -> str | None:
