@@ -13,6 +13,7 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds import KINDS, expand, run
 from service.jobs.kinds.states import DRAWS, sample_states
 from service.settings import Limits
+from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 from substructures.evaluation import evaluate
@@ -83,8 +84,9 @@ def test_assemble_brings_inline_definitions_along(library: MemoryLibrary) -> Non
     inline = {"name": "x", "definition": {**SLIDER, "name": "mine"}, "at": "arm.tip"}
     (outcome,) = outcomes(library, "assemble", {"items": [{**TREE, "instances": [*TREE["instances"], inline]}]})
     part = derive(TreeSpec.read(read_json(outcome.files["spec"])).instances[1].definition or pytest.fail("inline"))
-    assert outcome.files["x.definition"] == part.definition.canonical()
-    assert outcome.files["x.program"] == part.program.to_bytes()
+    content = PartContent.of_files(outcome.files, "x.")
+    assert content.row["definition"].encode() == part.definition.canonical()
+    assert content.program == part.program.to_bytes()
     assert outcome.summary["parts"]["x"] == part.definition.digest
 
 
@@ -112,8 +114,12 @@ def test_template_gives_every_combination_with_names(library: MemoryLibrary) -> 
 def test_derive_gives_what_deriving_gives(library: MemoryLibrary) -> None:
     (outcome,) = outcomes(library, "derive", {"items": [PENDULUM]})
     part = library.parts["pendulum"]
-    assert outcome.files["definition"] == part.definition.canonical()
-    assert outcome.files["program"] == part.program.to_bytes()
+    content, expected = PartContent.of_files(outcome.files), part_content(part)
+    timed = {"certificate": ""}
+    assert {**content.row, **timed} == {**expected.row, **timed}
+    assert [tuple(row) for row in content.formulas] == expected.formulas
+    assert (content.program, content.nodes) == (expected.program, expected.nodes)
+    assert (content.name, content.digest) == (part.name, part.definition.digest)
     assert outcome.summary["digest"] == part.definition.digest
     limits = Limits(job_nodes=20)
     (outcome,) = outcomes(library, "derive", {"items": [PENDULUM]}, limits)

@@ -7,8 +7,8 @@ from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library, StoredVersion
 from service.settings import Limits
-from service.summaries import tree_summary
-from substructures.documents import read_json, write_json
+from service.summaries import part_content, tree_summary
+from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import couple
 from substructures.part import Part, derive
@@ -48,8 +48,10 @@ def _pin(instance: Instance, version: StoredVersion | None) -> Instance:
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
-    """Files ``program``, ``spec``, ``summary``; of every inline definition ``<instance>.definition``, ``.program``,
-    ``.certificate``. Raises InvalidDocument, TooLarge."""
+    """Files ``program``, ``spec``, ``summary``; of every inline definition ``<instance>.program``, ``.content``.
+
+    Raises InvalidDocument, TooLarge.
+    """
     spec = TreeSpec.read(item["tree"])
     parts = {i.name: _part(k, i, item, blobs) for k, i in enumerate(spec.instances)}
     progress(0.1)
@@ -58,7 +60,8 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     files = {"program": model.program.to_bytes(), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
     for instance in spec.instances:
         if instance.definition is not None:
-            files |= {f"{instance.name}.{name}": data for name, data in part_files(parts[instance.name]).items()}
+            content = part_content(parts[instance.name]).files()
+            files |= {f"{instance.name}.{name}": data for name, data in content.items()}
     summary = {
         "name": spec.name,
         "digest": spec.digest,
@@ -80,15 +83,6 @@ def _part(index: int, instance: Instance, item: Item, blobs: Blobs) -> Part:
     except InvalidDocument as error:
         step = f"/instances/{index}/definition"
         raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
-
-
-def part_files(part: Part) -> dict[str, bytes]:
-    """What is stored of a part: canonical definition and program, and the certificate as JSON."""
-    return {
-        "definition": part.definition.canonical(),
-        "program": part.program.to_bytes(),
-        "certificate": write_json(dict(part.certificate)),
-    }
 
 
 ASSEMBLE = Kind(_spread, _resolve, _run)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.assemble import part_files
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library
 from service.settings import Limits
+from service.summaries import part_content
 from substructures.definition import Definition
 from substructures.documents import read_json
 from substructures.part import derive
@@ -22,7 +22,7 @@ def _resolve(item: Item, _library: Library) -> tuple[Item, tuple[str, ...]]:
 
 
 def _run(item: Item, _blobs: Blobs, _progress: Progress) -> Outcome:
-    """Files ``definition``, ``program``, ``certificate``. Raises InvalidDocument, TooLarge."""
+    """Files ``program``, ``content``. Raises InvalidDocument, TooLarge."""
     part = derive(Definition.read(item["definition"]), item["nodes"])
     summary = {
         "name": part.name,
@@ -33,7 +33,7 @@ def _run(item: Item, _blobs: Blobs, _progress: Progress) -> Outcome:
         "operations": part.operations["total"],
         "warnings": part.certificate["warnings"],
     }
-    return Outcome(summary, part_files(part))
+    return Outcome(summary, part_content(part).files())
 
 
 DERIVE = Kind(_spread, _resolve, _run)
