@@ -60,11 +60,12 @@ def _serve(work: Work, reports: int) -> bool:
 def _computed(work: Work, progress: Callable[[float], None]) -> tuple[Outcome, bool]:
     _limit(work.budget)
     try:
-        return run(work.kind, dict(work.item), work.blobs, progress), True
+        try:
+            return run(work.kind, dict(work.item), work.blobs, progress), True
+        finally:
+            _limit(None)  # before anything else is done: even that would need memory
     except MemoryError:
         return failed(out_of_memory(work.budget)), False
-    finally:
-        _limit(None)
 
 
 def _limit(budget: Budget | None) -> None:
