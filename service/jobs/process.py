@@ -6,12 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections import OrderedDict, deque
 from dataclasses import replace
 from pathlib import Path
-from time import monotonic
 
-from service.jobs.engine import Budget, Report, Work
+from service.jobs.engine import Report, Work
 from service.jobs.kinds import failed
 from service.jobs.wire import Frame, Reader, WireError, read_report, work_frame
 from service.refusals import Refused
@@ -26,6 +26,10 @@ BLOBS = 64 * 2**20  # bytes of blobs that a runner keeps
 ITEMS = 2000  # after so many items a runner is replaced
 #: wall-clock time that an item may take: so much, and so many times its CPU time
 GRACE, SLOWNESS = 60.0, 10.0
+PATIENCE = 0.1  # seconds
+UNIT = 1 if sys.platform == "darwin" else 1024  # of ru_maxrss
+#: Where memory runs out, libraries crash in many ways: a crash of a process that had so much of its budget is that.
+CLOSE = 0.7
 
 
 def environment() -> dict[str, str]:
@@ -65,7 +69,7 @@ class Process:
         self._outgoing: deque[memoryview] = deque()
         self._blobs: OrderedDict[str, int] = OrderedDict()
         self._printed = ""
-        self._items, self._resident = 0, 0
+        self._items, self._peak, self._first_peak = 0, 0, 0
         self.current: Work | None = None
         self.deadline = float("inf")
         self.is_ready = self.is_last = False
@@ -88,7 +92,7 @@ class Process:
     def start(self, work: Work) -> None:
         """Let it compute a work."""
         self.current, self._printed = replace(work, blobs={}), ""
-        self.deadline = monotonic() + GRACE + SLOWNESS * work.budget.cpu_seconds
+        self.deadline = time.monotonic() + GRACE + SLOWNESS * work.budget.cpu_seconds
         known = frozenset(self._blobs)
         forget = self._remember(work)
         self._outgoing.append(memoryview(work_frame(work, known, forget).to_bytes()))
@@ -140,14 +144,15 @@ class Process:
 
     def _news(self, frame: Frame) -> list[Report]:
         if "ready" in frame.head:
-            self.is_ready = True
+            self.is_ready, self._first_peak = True, frame.head["peak"]
             return []
         report = read_report(frame)
         if self.current is None or report.id != self.current.id:
             raise WireError(f"a report about {report.id[:80]}, which is not being computed")
         if report.is_final:
             self._items += 1
-            self.is_last = bool(frame.head.get("last")) or frame.head.get("resident", 0) > _worn(self.current.budget)
+            is_large = frame.head["resident"] > self.current.budget.memory_bytes // 2
+            self.is_last = is_large or bool(frame.head["last"])
             self.current, self.deadline = None, float("inf")
         return [report]
 
@@ -158,40 +163,44 @@ class Process:
 
     def kill(self) -> None:
         """End it at once, with whatever it started."""
-        if self._child.poll() is None:
+        if not self._has_ended():
             os.killpg(self._child.pid, signal.SIGKILL)
+
+    def _has_ended(self, options: int = os.WNOHANG) -> bool:
+        """Whether it has ended; with other options, wait for that."""
+        if self._child.returncode is None:
+            pid, status, usage = os.wait4(self._child.pid, options)
+            if pid:
+                self._child.returncode = os.waitstatus_to_exitcode(status)
+                self._peak = usage.ru_maxrss * UNIT
+        return self._child.returncode is not None
 
     def seen(self, work: Work) -> Report:
         """The last report about the work of a process that has ended: its own failure, or what was seen."""
-        self.kill_after(1.0)
+        if not self._has_ended():
+            time.sleep(PATIENCE)  # it closed its pipe a moment before
+        self.kill()
+        self._has_ended(0)
         self.listen()
         code = self._child.returncode
-        if code == -signal.SIGPROF:
-            limit = work.budget.cpu_seconds
-            refused = Refused(422, "cpu-limit", f"the item needs more than {limit:g} s of CPU time", limit=limit)
-            return Report(work.id, 1.0, failed(refused))
         what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
+        if code == -signal.SIGPROF:
+            return _problem(work, "cpu-limit", f"{work.budget.cpu_seconds:g} s of CPU time")
+        if code != -signal.SIGKILL and self._peak > max(CLOSE * work.budget.memory_bytes, self._first_peak):
+            return _problem(work, "memory-limit", f"{work.budget.memory_bytes:,} bytes of memory ({what})")
         what = what if self.is_ready else f"{what} before it was ready"
         printed = f"; it printed: {self.printed}" if self.printed else ""
         return Report(work.id, death=f"the process ended: {what}{printed}")
 
-    def kill_after(self, seconds: float) -> None:
-        """Wait for the end, kill it then."""
-        try:
-            self._child.wait(seconds)
-        except subprocess.TimeoutExpired:
-            self.kill()
-            self._child.wait()
-
     def close(self) -> None:
         """Kill it, wait for the end and release everything."""
         self.kill()
-        self._child.wait()
+        self._has_ended(0)
         self._outgoing.clear()
         for stream in (self._input, self._output):
             stream.close()
         os.close(self.reports)
 
 
-def _worn(budget: Budget) -> int:
-    return budget.memory_bytes // 2
+def _problem(work: Work, code: str, limit: str) -> Report:
+    return Report(work.id, 1.0, failed(Refused(422, code, f"the item needs more than {limit}")))

@@ -13,6 +13,7 @@ import resource
 import signal
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from time import monotonic
 
 from service.jobs.engine import Budget, Outcome, Report, Work
@@ -31,7 +32,7 @@ def main(arguments: list[str]) -> int:
     reports, parent = map(int, arguments)
     _end_with(parent)
     os.nice(NICE)
-    _send(reports, Frame({"ready": os.getpid()}))
+    _send(reports, Frame({"ready": os.getpid(), "peak": peak()}))
     reader = Reader()
     blobs: dict[str, bytes] = {}
     while data := os.read(sys.stdin.fileno(), CHUNK):
@@ -52,9 +53,21 @@ def _end_with(parent: int) -> None:
 def _serve(work: Work, reports: int) -> bool:
     """Compute and report; False when the process should not be used again."""
     outcome, is_sound = _computed(work, _throttled(lambda fraction: _send(reports, _progress(work, fraction))))
-    resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    _send(reports, report_frame(Report(work.id, 1.0, outcome), resident=resident, last=not is_sound))
+    _send(reports, report_frame(Report(work.id, 1.0, outcome), resident=_resident(), last=not is_sound))
     return is_sound
+
+
+def peak() -> int:
+    """The most memory that was resident, bytes. Linux counts from the process that started this one, if it had more."""
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+
+
+def _resident() -> int:
+    """The memory that is resident, bytes."""
+    if sys.platform != "linux":
+        return peak()
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
 
 
 def _computed(work: Work, progress: Callable[[float], None]) -> tuple[Outcome, bool]:
