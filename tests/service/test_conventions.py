@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.arrays import write_npz
 from service.app import open_store
+from service.arrays import write_npz
 from service.schemas import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store import Store
 
-from .conftest import HAND, PENDULUM, TREE, make_client
+from .conftest import PENDULUM, TREE, make_client
 
 JSON = {"Content-Type": "application/json"}
 

@@ -60,10 +60,12 @@ def fresh(kind: str, folder: Path) -> Iterator[str]:
     engine = sa.create_engine(base, isolation_level="AUTOCOMMIT")
     with engine.connect() as connection:
         connection.exec_driver_sql(f'CREATE DATABASE "{name}"')
-    yield make_url(base).set(database=name).render_as_string(hide_password=False)
-    with engine.connect() as connection:
-        connection.exec_driver_sql(f'DROP DATABASE "{name}" WITH (FORCE)')
-    engine.dispose()
+    try:
+        yield make_url(base).set(database=name).render_as_string(hide_password=False)
+    finally:
+        with engine.connect() as connection:
+            connection.exec_driver_sql(f'DROP DATABASE "{name}" WITH (FORCE)')
+        engine.dispose()
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])
@@ -92,7 +94,7 @@ def add(store: Store, *keys: str) -> str:
 
 def round_of(store: Store, owner: str, *ended: Ended, wanted: int = 0, lease: timedelta = LEASE, **more: Any) -> Played:
     with store.database.write() as connection:
-        return play(store, connection, Round(owner, lease, ended, wanted, **more))
+        return play(connection, Round(owner, lease, ended, wanted, **more))
 
 
 def job_of(store: Store, identifier: str) -> queries.Job:
