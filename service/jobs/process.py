@@ -166,10 +166,10 @@ class Process:
         if not self._has_ended():
             os.killpg(self._child.pid, signal.SIGKILL)
 
-    def _has_ended(self, options: int = os.WNOHANG) -> bool:
-        """Whether it has ended; with other options, wait for that."""
+    def _has_ended(self, wait: bool = False) -> bool:
+        """Whether it has ended; ``wait`` until it has."""
         if self._child.returncode is None:
-            pid, status, usage = os.wait4(self._child.pid, options)
+            pid, status, usage = os.wait4(self._child.pid, 0 if wait else os.WNOHANG)
             if pid:
                 self._child.returncode = os.waitstatus_to_exitcode(status)
                 self._peak = usage.ru_maxrss * UNIT
@@ -180,7 +180,7 @@ class Process:
         if not self._has_ended():
             time.sleep(PATIENCE)  # it closed its pipe a moment before
         self.kill()
-        self._has_ended(0)
+        self._has_ended(wait=True)
         self.listen()
         code = self._child.returncode
         what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
@@ -195,7 +195,7 @@ class Process:
     def close(self) -> None:
         """Kill it, wait for the end and release everything."""
         self.kill()
-        self._has_ended(0)
+        self._has_ended(wait=True)
         self._outgoing.clear()
         for stream in (self._input, self._output):
             stream.close()
