@@ -27,6 +27,11 @@ def _known(name: str, states: tuple[str, ...]) -> CheckConstraint:
     return CheckConstraint(f"state IN ({', '.join(map(repr, states))})", name=name)
 
 
+def _index_of(state: str, name: str, *columns: str, unique: bool = False) -> Index:
+    where = text(f"state = '{state}'")
+    return Index(name, *columns, unique=unique, sqlite_where=where, postgresql_where=where)
+
+
 jobs = Table(
     "jobs",
     metadata,
@@ -69,20 +74,9 @@ job_items = Table(
     CheckConstraint("(state = 'running') = (owner IS NOT NULL)", name="ck_job_items_owner"),
     Index(None, "key"),
     Index(None, "job", "finished"),
-    Index(
-        "ix_job_items_queued",
-        "job",
-        "position",
-        sqlite_where=text("state = 'queued'"),
-        postgresql_where=text("state = 'queued'"),
-    ),
-    Index(  # the same is never computed twice at a time
-        "uq_job_items_running",
-        "key",
-        unique=True,
-        sqlite_where=text("state = 'running'"),
-        postgresql_where=text("state = 'running'"),
-    ),
+    _index_of("queued", "ix_job_items_queued", "job", "position"),
+    _index_of("running", "ix_job_items_running", "job", "position"),
+    _index_of("running", "uq_job_items_running", "key", unique=True),  # the same is never computed twice at a time
 )
 
 results = Table(

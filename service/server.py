@@ -11,10 +11,11 @@ from contextlib import contextmanager
 import uvicorn
 
 from service.app import create_app, open_store
+from service.engines import engine_of
 from service.queries.keys import any_key
 from service.settings import Settings, SettingsError
 from service.store import Store
-from service.supervisor import engine_of, supervised
+from service.supervisor import supervised
 
 
 def serve(settings: Settings) -> None:

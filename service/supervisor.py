@@ -13,26 +13,22 @@ attempts since the last round share a transaction, since a transaction costs a w
 from __future__ import annotations
 
 import logging
-import os
 import secrets
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
-from importlib import import_module
 from statistics import median
 from time import monotonic
 
 from service.cache import Cache
 from service.jobs.engine import Budget, Engine, Outcome, Report, Work
-from service.jobs.local import LocalEngine
 from service.operations.job_rounds import Ended, Round, play, put_back_all
 from service.queries import content, jobs, queue
+from service.queries.attempts import Attempt
 from service.queries.common import now
-from service.queries.queue import Attempt
 from service.refusals import Refused, problem
-from service.settings import Settings, SettingsError
 from service.store import Store
 from substructures.documents import read_json
 
@@ -239,27 +235,6 @@ class Supervisor:
                 put_back_all(connection, self._owner, None)
         except Exception:
             _log.exception("items could not be handed back; they are taken over when their lease ends")
-
-
-def engine_of(settings: Settings) -> Callable[[], Engine] | None:
-    """What makes the engine that the settings name; None: no engine. Raises SettingsError."""
-    workers = settings.workers or os.cpu_count() or 1
-    match settings.engine:
-        case "local":
-            return lambda: LocalEngine(workers)
-        case "dask":
-            return _dask(settings.engine_address)
-    return None
-
-
-def _dask(address: str) -> Callable[[], Engine]:
-    if not address:
-        raise SettingsError("the engine dask needs the address of its scheduler: --engine-address tcp://...")
-    try:
-        module = import_module("service.jobs.dask")  # an extra; it takes long to load
-    except ImportError:
-        raise SettingsError("the engine dask needs the extra: pip install 'substructures[dask]'") from None
-    return lambda: module.DaskEngine(address)
 
 
 @contextmanager

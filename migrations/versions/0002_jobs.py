@@ -162,11 +162,12 @@ def _create_items() -> None:
     op.create_index(op.f("ix_job_items_job_finished"), "job_items", ["job", "finished"], unique=False)
     for name, columns, state in (
         ("ix_job_items_queued", ["job", "position"], "queued"),
+        ("ix_job_items_running", ["job", "position"], "running"),
         ("uq_job_items_running", ["key"], "running"),
     ):
         where = sa.text(f"state = '{state}'")
         op.create_index(
-            name, "job_items", columns, unique=state == "running", sqlite_where=where, postgresql_where=where
+            name, "job_items", columns, unique=name.startswith("uq"), sqlite_where=where, postgresql_where=where
         )
 
 

@@ -10,7 +10,7 @@ from service.jobs.engine import Outcome
 from service.operations import catalogue, trees
 from service.operations.catalogue import Submission
 from service.queries import results
-from service.queries.queue import Attempt
+from service.queries.attempts import Attempt
 from service.summaries import PartContent
 from service.views import tree_path, version_path
 from substructures.documents import read_json, write_json

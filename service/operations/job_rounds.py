@@ -15,8 +15,8 @@ from service.database import Connection
 from service.jobs.engine import Outcome
 from service.operations import job_results, trees
 from service.queries import job_events, jobs, queue
+from service.queries.attempts import Attempt, Changes, Lost
 from service.queries.common import is_outage
-from service.queries.queue import Attempt, Changes, Lost
 from service.refusals import Refused, problem
 from substructures.documents import write_json
 
@@ -148,7 +148,7 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
         changes.add(attempt.job, "succeeded" if problem_text is None else "failed", [attempt.position])
     keys = [attempt.key for attempt, problem_text in finished if problem_text is None]
     if keys:
-        for job, positions in jobs.succeed_known(connection, touched, keys).items():
+        for job, positions in jobs.succeed_equal(connection, touched, keys).items():
             changes.add(job, "succeeded", positions)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from time import time_ns
 from typing import Any
 
-from sqlalchemy import Connection, and_, case, delete, exists, func, insert, or_, select, update
+from sqlalchemy import Connection, and_, bindparam, case, delete, exists, func, insert, or_, select, update
 
 from service.job_tables import job_events, job_items, jobs, result_files, results
 from service.queries.common import now
@@ -82,8 +82,7 @@ def add_job(connection: Connection, kind: str, principal: str, items: Sequence[N
         for k, item in enumerate(items)
     ]
     connection.execute(insert(job_items), rows)
-    known = succeed_known(connection, [identifier])
-    count(connection, {job: (len(positions), 0) for job, positions in known.items()})
+    count(connection, {identifier: (succeed_known(connection, identifier), 0)})
     settle(connection, [identifier])
     return identifier
 
@@ -95,16 +94,25 @@ def _share_results(connection: Connection, exclusive: bool = False) -> None:
         connection.exec_driver_sql(f"SELECT {kind}(7305512)")
 
 
-def succeed_known(
-    connection: Connection, ids: Iterable[str], keys: Sequence[str] | None = None
-) -> dict[str, list[int]]:
-    """Queued items (of these keys) whose result is there succeed: their positions by job. The jobs are locked."""
-    known = select(results.c.key) if keys is None else select(results.c.key).where(results.c.key.in_(keys))
-    chosen = and_(job_items.c.job.in_(list(ids)), QUEUED, job_items.c.key.in_(known))
-    statement = update(job_items).where(chosen).values(state="succeeded", fraction=1.0, finished=now())
+def succeed_known(connection: Connection, job: str) -> int:
+    """Queued items of a locked job whose result is there succeed: how many."""
+    chosen = and_(job_items.c.job == job, QUEUED, job_items.c.key.in_(select(results.c.key)))
+    done = update(job_items).where(chosen).values(state="succeeded", fraction=1.0, finished=now())
+    return connection.execute(done).rowcount
+
+
+def succeed_equal(connection: Connection, ids: Collection[str], keys: Sequence[str]) -> dict[str, list[int]]:
+    """Queued items of these keys, whose results are there, succeed in the locked jobs: their positions by job."""
+    equal = select(job_items.c.job, job_items.c.position).where(QUEUED, job_items.c.key.in_(keys))
     done: dict[str, list[int]] = {}
-    for job, position in connection.execute(statement.returning(job_items.c.job, job_items.c.position)):
-        done.setdefault(job, []).append(position)
+    for job, position in connection.execute(equal):
+        if job in ids:
+            done.setdefault(job, []).append(position)
+    rows = [{"of_job": job, "at": position} for job, positions in done.items() for position in positions]
+    if rows:
+        these = and_(job_items.c.job == bindparam("of_job"), job_items.c.position == bindparam("at"), QUEUED)
+        values = {"state": "succeeded", "fraction": 1.0, "finished": now()}
+        connection.execute(update(job_items).where(these).values(**values), rows)
     return done
 
 

@@ -21,10 +21,10 @@ from service.jobs.engine import Outcome
 from service.operations.job_rounds import Ended, Played, Round, play
 from service.queries import jobs as queries
 from service.queries import queue
+from service.queries.attempts import Attempt
 from service.queries.common import now
 from service.queries.job_events import events_after
 from service.queries.jobs import NewItem
-from service.queries.queue import Attempt
 from service.settings import Settings
 from service.store import Store
 from service.tables import metadata

@@ -22,6 +22,7 @@ from service.cli import main
 from service.client import Client
 from service.jobs.engine import Outcome, Work
 from service.settings import Settings
+from service.supervisor import Supervisor
 
 from .conftest import PENDULUM, TREE, make_client
 from .fake_engine import FakeEngine, export, finished, running, submitted
@@ -119,10 +120,11 @@ def test_a_stopped_supervisor_hands_its_items_back(settings: Settings) -> None:
         client.post("/v1/substructures", json=PENDULUM)
         client.post("/v1/trees", json=TREE)
         engine = FakeEngine(slots=2, is_open=False)
-        with running(store, engine):
-            job = submitted(client, export("cell", "metric", "gravity", "forces"))
-            until(lambda: len(engine.started) == 2)
-            engine.open = lambda: None  # type: ignore[method-assign]
+        supervisor = Supervisor(store, lambda: engine)
+        supervisor.start()
+        job = submitted(client, export("cell", "metric", "gravity", "forces"))
+        until(lambda: len(engine.started) == 2)
+        supervisor.close()
         assert engine.is_closed
         states = [item["state"] for item in client.get(f"/v1/jobs/{job}/items").json()["items"]]
         assert states == ["queued"] * 3
