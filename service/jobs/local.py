@@ -14,6 +14,7 @@ from service.jobs.wire import WireError
 LONGEST_PAUSE = 30.0
 #: seconds for a runner to import what it needs; one that takes longer is killed
 START = 120.0
+WATCH = 0.1  # seconds between looks at the memory of runners
 _log = logging.getLogger(__name__)
 
 
@@ -67,14 +68,14 @@ class LocalEngine:
             pause = 0.0 if self._news else max(0.0, self._wake(end) - monotonic())
             for key, _ in self._selector.select(pause):
                 self._handle(key.data, key.fd)
-            self._check_deadlines()
+            self._check_limits()
             if self._news or self.free > free or monotonic() >= end:
                 news, self._news = list(self._news), deque()
                 return news
 
     def _wake(self, end: float) -> float:
         """When to look again although nothing was heard."""
-        times = [end, *(process.deadline for process in self._processes)]
+        times = [end, monotonic() + WATCH, *(process.deadline for process in self._processes)]
         return min(times if len(self._processes) >= self.workers else [*times, self._not_before])
 
     def _fill(self) -> None:
@@ -140,14 +141,15 @@ class LocalEngine:
             _log.error("a runner did not start; the next in %.1f s. It printed: %s", pause, process.printed)
         self._remove(process)
 
-    def _check_deadlines(self) -> None:
-        now = monotonic()
-        for process in [p for p in self._processes if now >= p.deadline]:
-            if process.current is not None:
-                del self._running[process.current.id]
-                death = "the process was killed: it took far longer than its CPU time allows"
-                self._news.append(Report(process.current.id, death=death))
-            self._remove(process)
+    def _check_limits(self) -> None:
+        """Kill what takes too much or too long, also to start."""
+        for process in list(self._processes):
+            report = process.excess()
+            if report is not None:
+                del self._running[report.id]
+                self._news.append(report)
+            if report is not None or (not process.is_ready and monotonic() >= process.deadline):
+                self._remove(process)
 
     def _remove(self, process: Process) -> None:
         self._processes.discard(process)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -27,7 +28,6 @@ ITEMS = 2000  # after so many items a runner is replaced
 #: wall-clock time that an item may take: so much, and so many times its CPU time
 GRACE, SLOWNESS = 60.0, 10.0
 PATIENCE = 0.1  # seconds
-UNIT = 1 if sys.platform == "darwin" else 1024  # of ru_maxrss
 #: Where memory runs out, libraries crash in many ways: a crash of a process that had so much of its budget is that.
 CLOSE = 0.7
 
@@ -69,7 +69,7 @@ class Process:
         self._outgoing: deque[memoryview] = deque()
         self._blobs: OrderedDict[str, int] = OrderedDict()
         self._printed = ""
-        self._items, self._peak, self._first_peak = 0, 0, 0
+        self._items, self._resident = 0, 0
         self.current: Work | None = None
         self.deadline = float("inf")
         self.is_ready = self.is_last = False
@@ -91,6 +91,7 @@ class Process:
 
     def start(self, work: Work) -> None:
         """Let it compute a work."""
+        self.measure()
         self.current, self._printed = replace(work, blobs={}), ""
         self.deadline = time.monotonic() + GRACE + SLOWNESS * work.budget.cpu_seconds
         known = frozenset(self._blobs)
@@ -144,14 +145,15 @@ class Process:
 
     def _news(self, frame: Frame) -> list[Report]:
         if "ready" in frame.head:
-            self.is_ready, self._first_peak = True, frame.head["peak"]
+            self.is_ready = True
             return []
         report = read_report(frame)
         if self.current is None or report.id != self.current.id:
             raise WireError(f"a report about {report.id[:80]}, which is not being computed")
         if report.is_final:
             self._items += 1
-            is_large = frame.head["resident"] > self.current.budget.memory_bytes // 2
+            self.measure()
+            is_large = self._resident > self.current.budget.memory_bytes // 2
             self.is_last = is_large or bool(frame.head["last"])
             self.current, self.deadline = None, float("inf")
         return [report]
@@ -161,33 +163,44 @@ class Process:
         """The end of what it printed since its work began."""
         return self._printed.strip()
 
+    def measure(self) -> None:
+        """Note how much memory is resident, where the system says so."""
+        with contextlib.suppress(OSError, IndexError, ValueError):
+            pages = Path(f"/proc/{self.pid}/statm").read_text().split()[1]
+            self._resident = int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+    def excess(self) -> Report | None:
+        """The last report about a work that takes more than it may: memory, or far too long."""
+        if self.current is None:
+            return None
+        self.measure()
+        if self._resident > self.current.budget.memory_bytes:
+            return self._out_of_memory(self.current)
+        if time.monotonic() >= self.deadline:
+            return Report(self.current.id, death="the process was killed: it took far longer than its CPU time allows")
+        return None
+
+    def _out_of_memory(self, work: Work) -> Report:
+        return _problem(work, "memory-limit", f"{work.budget.memory_bytes:,} bytes of memory")
+
     def kill(self) -> None:
         """End it at once, with whatever it started."""
-        if not self._has_ended():
-            os.killpg(self._child.pid, signal.SIGKILL)
-
-    def _has_ended(self, wait: bool = False) -> bool:
-        """Whether it has ended; ``wait`` until it has."""
-        if self._child.returncode is None:
-            pid, status, usage = os.wait4(self._child.pid, 0 if wait else os.WNOHANG)
-            if pid:
-                self._child.returncode = os.waitstatus_to_exitcode(status)
-                self._peak = usage.ru_maxrss * UNIT
-        return self._child.returncode is not None
+        if self._child.poll() is None:
+            os.killpg(self.pid, signal.SIGKILL)
 
     def seen(self, work: Work) -> Report:
         """The last report about the work of a process that has ended: its own failure, or what was seen."""
-        if not self._has_ended():
-            time.sleep(PATIENCE)  # it closed its pipe a moment before
-        self.kill()
-        self._has_ended(wait=True)
+        try:
+            code = self._child.wait(PATIENCE)  # it closed its pipe a moment before
+        except subprocess.TimeoutExpired:
+            self.kill()
+            code = self._child.wait()
         self.listen()
-        code = self._child.returncode
-        what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
         if code == -signal.SIGPROF:
             return _problem(work, "cpu-limit", f"{work.budget.cpu_seconds:g} s of CPU time")
-        if code != -signal.SIGKILL and self._peak > max(CLOSE * work.budget.memory_bytes, self._first_peak):
-            return _problem(work, "memory-limit", f"{work.budget.memory_bytes:,} bytes of memory ({what})")
+        if code != -signal.SIGKILL and self._resident > CLOSE * work.budget.memory_bytes:
+            return self._out_of_memory(work)
+        what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
         what = what if self.is_ready else f"{what} before it was ready"
         printed = f"; it printed: {self.printed}" if self.printed else ""
         return Report(work.id, death=f"the process ended: {what}{printed}")
@@ -195,7 +208,7 @@ class Process:
     def close(self) -> None:
         """Kill it, wait for the end and release everything."""
         self.kill()
-        self._has_ended(wait=True)
+        self._child.wait()
         self._outgoing.clear()
         for stream in (self._input, self._output):
             stream.close()

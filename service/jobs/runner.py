@@ -13,7 +13,6 @@ import resource
 import signal
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from time import monotonic
 
 from service.jobs.engine import Budget, Outcome, Report, Work
@@ -32,7 +31,7 @@ def main(arguments: list[str]) -> int:
     reports, parent = map(int, arguments)
     _end_with(parent)
     os.nice(NICE)
-    _send(reports, Frame({"ready": os.getpid(), "peak": peak()}))
+    _send(reports, Frame({"ready": os.getpid()}))
     reader = Reader()
     blobs: dict[str, bytes] = {}
     while data := os.read(sys.stdin.fileno(), CHUNK):
@@ -53,21 +52,8 @@ def _end_with(parent: int) -> None:
 def _serve(work: Work, reports: int) -> bool:
     """Compute and report; False when the process should not be used again."""
     outcome, is_sound = _computed(work, _throttled(lambda fraction: _send(reports, _progress(work, fraction))))
-    _send(reports, report_frame(Report(work.id, 1.0, outcome), resident=_resident(), last=not is_sound))
+    _send(reports, report_frame(Report(work.id, 1.0, outcome), last=not is_sound))
     return is_sound
-
-
-def peak() -> int:
-    """The most memory that was resident, bytes. Linux counts from the process that started this one, if it had more."""
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-
-
-def _resident() -> int:
-    """The memory that is resident, bytes."""
-    if sys.platform != "linux":
-        return peak()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
 
 
 def _computed(work: Work, progress: Callable[[float], None]) -> tuple[Outcome, bool]:

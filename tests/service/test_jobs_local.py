@@ -112,9 +112,10 @@ def test_cpu_limit_is_a_problem_of_the_item(pool: LocalEngine, library: MemoryLi
 
 
 @linux
-def test_memory_limit_is_a_problem_of_the_item(pool: LocalEngine) -> None:
+@pytest.mark.parametrize("megabytes", [100, 140])
+def test_memory_limit_is_a_problem_of_the_item(pool: LocalEngine, megabytes: int) -> None:
     before = process_of(pool)
-    report = compute(pool, [long_work(budget=Budget(60.0, 100 * 2**20))])["derive-0"]
+    report = compute(pool, [long_work(budget=Budget(60.0, megabytes * 2**20))])["derive-0"]
     assert report.outcome is not None
     assert report.outcome.problem is not None
     assert report.outcome.problem["code"] == "memory-limit"
