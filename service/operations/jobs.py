@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from time import sleep
 from typing import Any
 
 from service.database import Connection
@@ -84,6 +85,7 @@ def _resolved(
     faults: list[Fault] = []
     bad = 0
     for item, (place, note) in zip(items, places, strict=True):
+        sleep(0)  # other requests need not wait until all items are done
         try:
             resolved.append(kinds.resolve(kind, dict(item), library))
         except InvalidDocument as error:
