@@ -184,15 +184,18 @@ class Supervisor:
         return min(AHEAD, int(2 * GATHER * slots / max(median(self._durations), 1e-4)))
 
     def _begin(self, engine: Engine, attempt: Attempt) -> None:
+        """Start an attempt. One that cannot be started is no longer known here: the next renewal puts it back."""
         limits = self._limits
-        self._running[attempt.id] = attempt, monotonic()
         try:
             blobs = {digest: self._blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
             engine.start(Work(attempt.id, attempt.kind, read_json(attempt.item.encode()), blobs, budget))
-        except Exception as error:
+        except LookupError as error:
+            self._end(attempt, Outcome(problem=problem(Refused(500, "missing-content", str(error)))))
+        except Exception:
             _log.exception("attempt %s could not be started", attempt.id)
-            self._end(attempt, None, f"could not be started: {error}")
+        else:
+            self._running[attempt.id] = attempt, monotonic()
 
     def _blob(self, digest: str) -> bytes:
         blob = self._blobs.get(digest)

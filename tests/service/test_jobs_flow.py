@@ -153,6 +153,35 @@ def test_dead_workers_are_replaced_three_times(filled: TestClient, store: Store)
     assert 'substructures_queue{state="succeeded",what="jobs"} 1.0' in text
 
 
+def test_attempts_that_cannot_start_are_no_deaths(filled: TestClient, store: Store) -> None:
+    class Shy(FakeEngine):
+        refusals = 2
+
+        def start(self, work: Work) -> None:
+            self.refusals -= 1
+            if self.refusals >= 0:
+                raise ConnectionError("nobody there")
+            super().start(work)
+
+    limits = store.settings.limits.model_copy(update={"lease_seconds": 0.2})
+    store.settings = store.settings.model_copy(update={"limits": limits})
+    with running(store, Shy(slots=1)):
+        job = submitted(filled, export("cell", "metric"))
+        assert finished(filled, job)["state"] == "succeeded"
+        (item,) = items(filled, job)
+        assert (item["attempts"], item["deaths"]) == (3, [])
+
+
+def test_items_that_take_too_long_are_stopped(filled: TestClient, store: Store) -> None:
+    limits = store.settings.limits.model_copy(update={"job_seconds": 0.1})
+    store.settings = store.settings.model_copy(update={"limits": limits})
+    with running(store, FakeEngine(slots=1, is_open=False)) as engine:
+        job = submitted(filled, export("cell", "metric"))
+        assert finished(filled, job)["state"] == "failed"
+        assert engine.stopped == [engine.started[0].id]
+    assert items(filled, job)[0]["problem"]["code"] == "took-too-long"
+
+
 def test_cancel(filled: TestClient, store: Store) -> None:
     with running(store, FakeEngine(slots=1, is_open=False)) as engine:
         job = submitted(filled, export("cell", "metric", "gravity", "forces"))
