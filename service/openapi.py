@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 
+from service.job_schemas import CancelRequest, JobRequest
 from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
@@ -20,7 +21,8 @@ PROBLEM: dict[int | str, dict[str, Any]] = {
         "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
     }
 }
-_READ_BY_US = (Definition, TreeSpec, Instance, AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, Problem)
+_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
+_READ_BY_US = (Definition, TreeSpec, Instance, *_REQUESTS, Problem)
 
 
 def document(app: FastAPI) -> dict[str, Any]:
