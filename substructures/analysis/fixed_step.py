@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.integrate import Function, Motion, Progress
-from substructures.analysis.requests import FixedStep
+from substructures.analysis.request_fields import FixedStep
 
 Array = NDArray[np.float64]
 Step = Callable[[Function, float, Array, float], Array]

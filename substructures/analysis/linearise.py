@@ -12,7 +12,7 @@ from pydantic import Field
 
 from substructures.analysis.expressions import read_expressions
 from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.formulas import require_motion
+from substructures.analysis.formulas import require_tree
 from substructures.analysis.perturbation import inputs_of, perturbation, require_inputs
 from substructures.analysis.vibrations import Mode, Stability, first_order, modes, stability
 from substructures.definition import Model as Document
@@ -101,7 +101,7 @@ def linearise(model: Model, request: Mapping[str, Any]) -> Linearisation:
     ``q`` (n,) or (N, n): arrays of the result have the leading axis N in the second case. Raises InvalidDocument
     (pointers; ``not-smooth`` for forces without derivative) and MissingValue.
     """
-    require_motion(model)
+    require_tree(model)
     read = read_model(LinearisationRequest, request)
     states = read_states(model, {"q": read.q, "qd": read.qd, "qdd": read.qdd}, None)
     chosen = inputs_of(model) if read.of_inputs is None else read.of_inputs

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.closed_requests import LoopRequest
 from substructures.analysis.constrained import (
     RANK,
     SINGULAR,
@@ -20,8 +19,8 @@ from substructures.analysis.constrained import (
     Singular,
     rank_of,
 )
-from substructures.analysis.given import check_fixed, read_state
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
+from substructures.analysis.requests import LoopRequest
 from substructures.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
@@ -94,9 +93,8 @@ def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None 
     result.
     """
     asked = LoopRequest.read(request)
-    check_fixed(model, asked.fixed)
-    s, (q, qd), t = Constrained(model, asked, folder), read_state(model, asked), asked.t
-    state = consistent_state(s, t, q, qd, asked.fixed)
+    s, t = Constrained(model, asked, folder), asked.t
+    state = consistent_state(s, t, s.along.q, s.along.qd, asked.fixed)
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)

@@ -169,4 +169,4 @@ class Partitioned(Reduction):
         return True
 
 
-METHODS: dict[str, type[Reduction]] = {"projection": Projected, "partitioning": Partitioned}
+REDUCTIONS: dict[str, type[Reduction]] = {"projection": Projected, "partitioning": Partitioned}

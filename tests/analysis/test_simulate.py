@@ -255,7 +255,7 @@ def test_a_motion_that_cannot_go_on_fails_with_advice(method: str) -> None:
     motion = simulate(model_of(definition, (0, 0, 0)), {"q": [0], "span": [0, 2], "step": 0.1, "method": method})
     assert motion.status == "failed"
     assert "the integrator could not go on" in motion.message
-    assert 10 <= len(motion.t) <= 16
+    assert 10 <= len(motion.t) <= 17
     # LSODA keeps its tolerance less strictly
     np.testing.assert_allclose(motion.qd[:15, 0], np.tan(motion.t[:15]), rtol=1e-4)
 
@@ -298,7 +298,7 @@ def test_steps_are_limited() -> None:
         ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9"),
         ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1"),
         ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1"),
+        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1/values"),
         ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity"),
         ({"series": {"a": "nothing"}}, "/series/a"),
         ({"series": {"energy": "x.q1"}}, "/series/energy"),
