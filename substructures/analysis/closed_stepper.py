@@ -1,7 +1,8 @@
 """Steps of a motion with closures: an integrator of reduced states that lands on the closures after every step.
 
-A singular position between two states is noticed by the sign of det(G_new G_old^T) over independent rows: along a
-smooth motion it is positive at first and changes its sign where a singular value of G passes through zero.
+A singular position between two states is looked for where one may be: along a smooth motion det(G_new G_old^T) over
+independent rows changes its sign where a singular value of G passes through zero, and a motion that leaves a branching
+on another branch has a kink. There the smallest singular value is minimised along the step.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import svdvals
-from scipy.optimize import brentq
+from scipy.optimize import minimize_scalar
 
 from substructures.analysis.constrained import SINGULAR, Array, Singular
 from substructures.analysis.integrate import Stepper
@@ -22,8 +23,11 @@ RETRIES = 10
 #: a step along the closures is longer than this many times speed * time, and than LENGTH [rad, m], only if it has
 #: leapt to another branch
 LEAP, LENGTH = 10, 1e-6
-#: singular values below this part of the largest one, where the sign changes, are a singular position
+#: a step is searched for singular positions when velocities change by more than this share of the largest
+KINK = 0.3
+#: singular values below this part of their best share along the motion, in between, are a singular position
 NEAR = 1e-4
+SAMPLES = 8
 
 
 class ClosedStepper:
@@ -37,7 +41,7 @@ class ClosedStepper:
         self.s.move(t, *self._state())
         reduction.choose()
         self.inner = self._begun(None)
-        self.fresh = True
+        self.fresh, self._message = True, ""
 
     @property
     def nfev(self) -> int:
@@ -56,6 +60,9 @@ class ClosedStepper:
 
     def step(self) -> str | None:
         """Advance by one step, at most to the end; a message when that failed. Raises Singular."""
+        if self._message:
+            self.status = "failed"
+            return self._message
         self._prepare()
         before = self.s.G.copy()
         self.t_old = self.t
@@ -67,13 +74,19 @@ class ClosedStepper:
             self.status = "failed"
             return message
         q, qd = self.s.q, self.s.qd
-        crossed = self._crossed(before)
-        if crossed is not None:
-            self.status = "failed"
-            return f"a singular position is passed at t = {crossed:.9g} s: {SINGULAR}"
+        time = self._passed() if self._suspicious(before) else None
+        if time is not None:
+            self._stop_before(time)
+            return None
         self.t, self.y = float(self.inner.t), np.concatenate((q, qd, self.inner.y[-1:]))
         self.status = self.inner.status
         return None
+
+    def _stop_before(self, time: float) -> None:
+        """End this step a little before a singular position; the next one fails."""
+        self._message = f"a singular position is passed at t = {time:.9g} s: {SINGULAR}"
+        state, end = self.dense_output(), self.t + 0.999 * (time - self.t)
+        self.t, self.y = end, state(end)
 
     def _prepare(self) -> None:
         """Where s is on the closures: the reduction is chosen anew if it is worn, and the integrator begins there."""
@@ -117,26 +130,31 @@ class ClosedStepper:
                     raise
         return None
 
-    def _crossed(self, before: Array) -> float | None:
-        """When a singular position was passed in the last step [s]."""
+    def _suspicious(self, before: Array) -> bool:
+        """Whether a singular position may lie between the last two states."""
         rows = self.reduction.rows
-        old = before[rows]
+        if not len(rows):
+            return False
+        if np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0:
+            return True
+        old, new = self._state()[1], self.s.qd
+        fastest = max(float(np.abs(old).max()), float(np.abs(new).max()))
+        return bool(np.abs(new - old).max() > KINK * fastest)
 
-        def orientation() -> float:
-            return float(np.linalg.det(self.s.G[rows] @ old.T))
+    def _passed(self) -> float | None:
+        """When the smallest singular value comes near zero within the last step [s]."""
+        state, start, h = self.dense_output(), self.t, self.inner.t - self.t
+        rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
-        if not len(rows) or orientation() > 0:
-            return None
-        dense = self.inner.dense_output()
+        def share(part: float) -> float:
+            state(start + part * h)
+            values = svdvals(self.s.G[rows])
+            return float(values[-1] / values[0])
 
-        def at(t: float) -> float:
-            self.reduction.land(t, dense(t))
-            return orientation()
-
-        time = float(brentq(at, self.t_old, self.inner.t, xtol=1e-9 * (self.inner.t - self.t_old)))
-        values = svdvals(self.s.G[rows])
-        self.reduction.land(self.inner.t, self.inner.y)
-        return time if values[-1] <= NEAR * values[0] else None
+        k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
+        bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
+        found = minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
+        return float(start + found.x * h) if found.fun < least else None
 
     def dense_output(self) -> Callable[[float], Array]:
         """States within the last step, on the closures."""
