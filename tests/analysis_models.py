@@ -5,12 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from random_trees import Kind, model_of, random_definition, with_parameters
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.states import default_number
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
+
+
+def seeds(quick: int, count: int) -> list[Any]:
+    """``count`` seeds, of which the first ``quick`` are in the default tests."""
+    return [*range(quick), *(pytest.param(k, marks=pytest.mark.deep) for k in range(quick, count))]
 
 
 def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81), **parameters: Any) -> Model:

@@ -14,9 +14,10 @@ import numpy as np
 from scipy.linalg import svdvals
 from scipy.optimize import minimize_scalar
 
-from substructures.analysis.constrained import SINGULAR, Array, Singular
+from substructures.analysis.constrained import SINGULAR, Singular
 from substructures.analysis.integrate import Stepper
 from substructures.analysis.reductions import Reduction
+from substructures.states import Array
 
 #: how often a step that ran into a singular position is begun again, each time a quarter as long
 RETRIES = 10

@@ -25,8 +25,8 @@ from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
 #: singular values of the Jacobian below this part of the largest one count as zero

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import least_squares
 
@@ -20,9 +19,8 @@ from substructures.definition import Model as Document
 from substructures.definition import read_model
 from substructures.errors import InvalidDocument
 from substructures.model import Model
-from substructures.states import numeric, read_states, symbol_values
+from substructures.states import Array, numeric, read_states, symbol_values
 
-Array = NDArray[np.float64]
 #: two equilibria closer than this are one [rad, m]
 SAME = 1e-6
 #: singular values of K below this share of the largest leave a direction undetermined

@@ -24,6 +24,11 @@ def require_tree(model: Model) -> None:
     require_open(model)
 
 
+def inputs_of(model: Model) -> tuple[str, ...]:
+    """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
+    return tuple(s.name for s in model.program.symbols if s.kind == "input")
+
+
 def require_open(model: Model) -> None:
     """Raises InvalidDocument (``has-closures``) for a model with closed loops: its coordinates are not independent."""
     if model.closures:

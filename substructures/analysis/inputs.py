@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from substructures.analysis.expressions import Given, read_expressions
@@ -21,9 +20,8 @@ from substructures.errors import Fault, InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.model import Model
-from substructures.states import read_states, symbol_values
+from substructures.states import Array, read_states, symbol_values
 
-Array = NDArray[np.float64]
 DIRECTION = {"rising": 1, "falling": -1, "both": 0}
 #: names of series and arrays that trajectories have by themselves
 RESERVED = frozenset(

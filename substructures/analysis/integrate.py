@@ -11,11 +11,11 @@ from functools import partial
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 from scipy.optimize import brentq
 
-Array = NDArray[np.float64]
+from substructures.states import Array
+
 Function = Callable[[float, Array], Array]
 #: told the time reached; False stops
 Progress = Callable[[float], bool | None]

@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.first_integrals import FirstIntegrals, Integral
 from substructures.analysis.trajectory import Check, Rule
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 #: of a sum, relative to its value
 ROUNDING = 1e-14
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")

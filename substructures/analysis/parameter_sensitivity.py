@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
 from substructures.analysis.inputs import Along, VaryingInputs, state_names
@@ -31,8 +30,8 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 QUANTITIES = ("metric", "christoffel", "forces")
 
 

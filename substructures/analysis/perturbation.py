@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from substructures.analysis.expressions import read_expressions
-from substructures.analysis.formulas import ModelFormulas, require_open
+from substructures.analysis.formulas import ModelFormulas, inputs_of, require_open
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import gradient
@@ -27,11 +27,6 @@ from substructures.sensitivity import ID, inverse_dynamics_jacobians
 #: operations without a derivative at a zero of their argument
 JUMPS = ("abs", "sign")
 SMOOTHER = "replace |x| by sqrt(x^2 + e^2) and sign(x) by x/sqrt(x^2 + e^2) with a small e, or leave the load out"
-
-
-def inputs_of(model: Model) -> tuple[str, ...]:
-    """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
-    return tuple(s.name for s in model.program.symbols if s.kind == "input")
 
 
 def require_smooth(model: Model) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PPoly, make_interp_spline
 
 from substructures.analysis.inputs import require_covered
@@ -17,8 +16,8 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol, array, program
 from substructures.model import Model
 from substructures.scope import Scope
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 TIME = Symbol("t", "time", "s")
 
 

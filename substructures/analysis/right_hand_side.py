@@ -11,7 +11,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
 from substructures.analysis.inputs import Along, VaryingInputs, state_names
@@ -19,8 +18,8 @@ from substructures.analysis.known import Known
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
 
 

@@ -17,8 +17,8 @@ from substructures.definition import Model as Document
 from substructures.definition import read_model
 from substructures.errors import InvalidDocument
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.closed_stepper import ClosedStepper
-from substructures.analysis.constrained import SINGULAR, Array, Constrained, Singular
+from substructures.analysis.constrained import SINGULAR, Constrained, Singular
 from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
 from substructures.analysis.judges import energy_balance
 from substructures.analysis.loops import least_multipliers, mobility
@@ -19,6 +19,7 @@ from substructures.analysis.reductions import REDUCTIONS, Reduction
 from substructures.analysis.requests import ClosedRequest
 from substructures.analysis.trajectory import Check, Trajectory, crossings
 from substructures.model import Model
+from substructures.states import Array
 
 #: largest residuals of positions [m, 1] and velocities [per s] along a right motion
 RESIDUAL = 1e-9

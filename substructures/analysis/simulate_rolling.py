@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from scipy.linalg import lapack
 
-from substructures.analysis.constrained import Array
 from substructures.analysis.inputs import Along, VaryingInputs, read_along
 from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
 from substructures.analysis.judges import energy_balance
@@ -22,7 +21,7 @@ from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
-from substructures.states import numeric
+from substructures.states import Array, numeric
 
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
 NEEDS = ("metric", "forces", "potential_energy")

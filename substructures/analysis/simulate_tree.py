@@ -8,7 +8,6 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.fixed_step import march
@@ -23,8 +22,8 @@ from substructures.analysis.taylor import require_taylor, taylor_stepper
 from substructures.analysis.trajectory import Trajectory, crossings
 from substructures.errors import InvalidDocument
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "

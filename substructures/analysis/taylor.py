@@ -13,21 +13,18 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from substructures.analysis.inputs import Along
 from substructures.analysis.right_hand_side import ACCELERATION, POWER, forward_dynamics
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.model import Model
+from substructures.states import Array
 
 try:
     import heyoka
 except ImportError:  # not installed: the method is refused
     heyoka = None
 
-Array = NDArray[np.float64]
 BINARY = {"add": "__add__", "sub": "__sub__", "mul": "__mul__", "div": "__truediv__"}
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")
 

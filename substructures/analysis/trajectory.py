@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.request_fields import Event
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 Rule = Literal["constant", "falling", "zero"]
 
 
