@@ -58,7 +58,7 @@ def requests(model: Model, name: str) -> dict[str, Any]:
 def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
     """Seconds for q'' at one state: compiled formulas and the linear equations."""
     state = analyse_loops(model, {k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
-    s = Constrained(model, LoopRequest())
+    s = Constrained(model, LoopRequest.read({"q": request["q"]}))
     s.move(0, state.q, state.qd)
     rows = s.independent_rows()
     start = perf_counter()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,12 @@ def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81),
     part = derive(Definition.read(catalogue.load(name)))
     one = {"name": "x", "substructure": name, "parameters": parameters}
     return couple(TreeSpec.read({"name": "t", "gravity": list(gravity), "instances": [one]}), {"x": part})
+
+
+@cache
+def shipped(name: str) -> Model:
+    """A catalogue entry alone at the world with gravity, exactly -9.81 m/s^2, and its parameters."""
+    return catalogue_model(name, (0, 0, "-9.81"))
 
 
 def random_model(number: int, **changes: Any) -> Model:

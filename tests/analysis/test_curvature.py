@@ -10,20 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
-from substructures import Definition, InvalidDocument, Model, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import InvalidDocument, Model, TooLarge
 from substructures.analysis.curvature import curvature, curvature_values, independent_elements
 from substructures.evaluation import evaluate
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
-
-
-def shipped(name: str) -> Model:
-    tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": name}]}
-    return couple(TreeSpec.read(tree), {"x": derive(Definition.read(catalogue.load(name)))})
 
 
 def symbolic(bodies: list[Plain], parameters: str) -> Model:
