@@ -45,7 +45,7 @@ def check_fixed(model: Model, fixed: Sequence[str]) -> None:
 
 def parameter_values(model: Model, request: StateRequest, needs: Sequence[str]) -> dict[str, float]:
     """Values of all symbols for outputs; states are zero. Raises InvalidDocument and MissingValue."""
-    nothing = States(np.zeros((1, model.dof)), np.zeros((1, model.dof)), None, True)
+    nothing = States(np.zeros((1, model.dof)), np.zeros((1, model.dof)), None, 1, True)
     found = symbol_values(model, {"parameters": request.parameters}, nothing, needs)
     return {name: float(np.reshape(x, -1)[0]) for name, x in found.items()}
 
