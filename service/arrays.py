@@ -6,8 +6,7 @@ import io
 import math
 import struct
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import IO, Any
 
 import numpy as np
@@ -93,45 +92,20 @@ def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
     return np.require(flat.reshape(shape, order="F" if fortran else "C"), requirements="A")
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
-    """An array of an npz file whose rows come in ``parts``."""
-
-    name: str
-    shape: tuple[int, ...]
-    dtype: np.dtype[Any]
-    parts: Iterable[np.ndarray[Any, Any]]
-
-
-def member(name: str, value: Any) -> Member:
-    """An array that is complete."""
-    array = np.asarray(value)
-    if array.dtype.kind not in KINDS:
-        raise TypeError(f"'{name}' is no array of numbers or texts")
-    return Member(name, array.shape, array.dtype, (array,))
-
-
-def npz_pieces(members: Iterable[Member]) -> Iterator[memoryview]:
-    """An uncompressed npz file, piece by piece; arrays are not copied. Sizes follow the data, as in any zip that is
-    written to a pipe.
+def npz_pieces(arrays: Mapping[str, Any]) -> list[memoryview]:
+    """An uncompressed npz file in pieces; arrays are not copied. Sizes follow the data, as in any zip that is written
+    to a pipe.
     """
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_STORED) as archive:
-        for each in members:
-            is_large = math.prod(each.shape) * each.dtype.itemsize >= zipfile.ZIP64_LIMIT
-            with archive.open(f"{each.name}.npy", "w", force_zip64=is_large) as file:
-                file.write(_npy_header(each))
-                for part in each.parts:
-                    file.write(np.ascontiguousarray(part).reshape(-1).view(np.uint8).data)
-                    yield from sink.taken()
-    yield from sink.taken()
-
-
-def _npy_header(each: Member) -> bytes:
-    header = io.BytesIO()
-    fields = {"descr": npy.dtype_to_descr(each.dtype), "fortran_order": False, "shape": each.shape}
-    npy.write_array_header_1_0(header, fields)
-    return header.getvalue()
+        for name, value in arrays.items():
+            array = np.asarray(value, order="C")
+            if array.dtype.kind not in KINDS:
+                raise TypeError(f"'{name}' is no array of numbers or texts")
+            with archive.open(f"{name}.npy", "w", force_zip64=array.nbytes >= zipfile.ZIP64_LIMIT) as file:
+                npy.write_array_header_1_0(file, npy.header_data_from_array_1_0(array))
+                file.write(array.reshape(-1).view(np.uint8).data)
+    return sink.taken()
 
 
 class _Sink(io.RawIOBase):
@@ -153,9 +127,8 @@ class _Sink(io.RawIOBase):
         return view.nbytes
 
     def taken(self) -> list[memoryview]:
-        """What was written since the last time."""
-        pieces, self._pieces = [*self._pieces, *self._gathered()], []
-        return pieces
+        """What was written."""
+        return [*self._pieces, *self._gathered()]
 
     def _gathered(self) -> list[memoryview]:
         small, self._small = self._small, bytearray()
