@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
-from collections.abc import AsyncIterator, Iterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 
@@ -78,12 +78,6 @@ def streamed(pieces: Iterator[bytes | memoryview], content_type: str) -> Answer 
     if sum(map(len, begun)) > AT_ONCE:
         return Stream(chain(begun, pieces), headers)
     return Answer(200, b"".join(begun), headers)
-
-
-def in_pieces(pieces: Sequence[memoryview], content_type: str) -> Stream:
-    """An answer that is complete: its length is told, and its pieces are not put together."""
-    size = sum(piece.nbytes for piece in pieces)
-    return Stream(iter(pieces), {"Content-Type": content_type, "Content-Length": str(size)})
 
 
 def json_answer(body: bytes, status: int = 200, headers: Mapping[str, str] | None = None) -> Answer:

@@ -6,7 +6,8 @@ import io
 import math
 import struct
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import IO, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 MAX_HEADER = 10_000  # bytes
 SMALL = 2**16  # bytes; shorter pieces are put together
+PIECE = 2**20  # bytes at a time: the check sum is taken, and the piece sent, while it is in the cache
 
 
 def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -92,20 +94,39 @@ def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
     return np.require(flat.reshape(shape, order="F" if fortran else "C"), requirements="A")
 
 
-def npz_pieces(arrays: Mapping[str, Any]) -> list[memoryview]:
-    """An uncompressed npz file in pieces; arrays are not copied. Sizes follow the data, as in any zip that is written
-    to a pipe.
+@dataclass(frozen=True, slots=True)
+class Npz:
+    """An uncompressed npz file to be sent: its length, and its pieces, which are made one after the other. Arrays are
+    not copied. Sizes and check sums follow the data, as in any zip that is written to a pipe.
     """
+
+    size: int
+    pieces: Iterator[memoryview]
+
+
+def write_npz(arrays: Mapping[str, Any]) -> Npz:
+    """Arrays of numbers and texts as npz. Raises TypeError for others, ValueError for 2 GiB and more."""
+    found = {name: np.asarray(value, order="C") for name, value in arrays.items()}
+    for name, array in found.items():
+        if array.dtype.kind not in KINDS:
+            raise TypeError(f"'{name}' is no array of numbers or texts")
+    data = sum(array.nbytes for array in found.values())
+    if data > zipfile.ZIP64_LIMIT:  # beyond it the directory has fields of other lengths
+        raise ValueError(f"{data} bytes are too many for an npz file to be sent")
+    return Npz(sum(map(len, _pieces(found, with_data=False))) + data, _pieces(found, with_data=True))
+
+
+def _pieces(arrays: Mapping[str, np.ndarray[Any, Any]], with_data: bool) -> Iterator[memoryview]:
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_STORED) as archive:
-        for name, value in arrays.items():
-            array = np.asarray(value, order="C")
-            if array.dtype.kind not in KINDS:
-                raise TypeError(f"'{name}' is no array of numbers or texts")
-            with archive.open(f"{name}.npy", "w", force_zip64=array.nbytes >= zipfile.ZIP64_LIMIT) as file:
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w") as file:
                 npy.write_array_header_1_0(file, npy.header_data_from_array_1_0(array))
-                file.write(array.reshape(-1).view(np.uint8).data)
-    return sink.taken()
+                data = array.reshape(-1).view(np.uint8).data
+                for start in range(0, array.nbytes if with_data else 0, PIECE):
+                    file.write(data[start : start + PIECE])
+                    yield from sink.taken()
+    yield from sink.taken()
 
 
 class _Sink(io.RawIOBase):
@@ -127,8 +148,9 @@ class _Sink(io.RawIOBase):
         return view.nbytes
 
     def taken(self) -> list[memoryview]:
-        """What was written."""
-        return [*self._pieces, *self._gathered()]
+        """What was written since the last time."""
+        pieces, self._pieces = [*self._pieces, *self._gathered()], []
+        return pieces
 
     def _gathered(self) -> list[memoryview]:
         small, self._small = self._small, bytearray()

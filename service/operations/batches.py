@@ -11,7 +11,7 @@ import orjson
 from numpy.typing import NDArray
 
 from service import arrow
-from service.arrays import flat, npz_pieces, read_npz
+from service.arrays import Npz, flat, read_npz, write_npz
 from service.operations import evaluations
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
@@ -140,12 +140,12 @@ def _cut(fields: Mapping[str, Any], some: slice, count: int, above: str) -> dict
     return part
 
 
-def as_npz(answer: Mapping[str, Any]) -> list[memoryview]:
+def as_npz(answer: Mapping[str, Any]) -> Npz:
     """The answer as npz: arrays by name, nested names joined by dots, ``failures`` as parallel arrays."""
     rows = answer["failures"]
     failures = {"state": np.array([row["state"] for row in rows], np.int64)}
     failures |= {key: np.array([row[key] for row in rows], np.str_) for key in ("quantity", "code", "message")}
-    return npz_pieces(flat({**answer, "failures": failures}))
+    return write_npz(flat({**answer, "failures": failures}))
 
 
 def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:

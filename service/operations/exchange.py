@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Any
 
 from service import arrays, arrow
-from service.answers import JSON, Answer, Stream, in_pieces, json_answer, streamed
+from service.answers import JSON, Answer, Stream, json_answer, streamed
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
 from service.operations.batches import Request
@@ -70,7 +70,8 @@ class Evaluation:
         request = batches.joined(requests, self.limits)
         evaluations.check_size(self.sources, request, self.limits)
         if wanted == arrays.MEDIA_TYPE:
-            return in_pieces(batches.as_npz(self._evaluated(request)), wanted)
+            file = batches.as_npz(self._evaluated(request))
+            return Stream(file.pieces, {"Content-Type": wanted, "Content-Length": str(file.size)})
         return json_answer(evaluations.as_json(self._evaluated(request), request))
 
     def _arrow(self, requests: Iterator[Any]) -> Iterator[memoryview | bytes]:
