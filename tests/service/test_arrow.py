@@ -128,7 +128,10 @@ def test_the_format_may_be_refused(double: TestClient) -> None:
 )
 def test_other_columns(double: TestClient, columns: dict[str, Any]) -> None:
     known = post(double, stream([{"q": lists(Q)}], {"quantities": ["metric"]}), JSON).json()
-    assert post(double, stream([columns], {"quantities": ["metric"]}), JSON).json() == known
+    found = post(double, stream([columns], {"quantities": ["metric"]}), JSON).json()
+    # the last bits differ when the kernel is compiled between the two
+    np.testing.assert_allclose(found.pop("metric"), known.pop("metric"), rtol=1e-14)
+    assert found == known
 
 
 def test_batches_without_rows_are_passed_over(double: TestClient) -> None:
