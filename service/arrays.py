@@ -6,7 +6,7 @@ import io
 import math
 import struct
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import IO, Any
 
@@ -21,6 +21,7 @@ KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 MAX_HEADER = 10_000  # bytes
 SMALL = 2**16  # bytes; shorter pieces are put together
+PIECE = 2**20  # bytes at a time: the check sum is taken, and the piece sent, while it is in the cache
 
 
 def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -94,44 +95,38 @@ def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
-    """An array of an npz file whose rows come in ``parts``."""
-
-    name: str
-    shape: tuple[int, ...]
-    dtype: np.dtype[Any]
-    parts: Iterable[np.ndarray[Any, Any]]
-
-
-def member(name: str, value: Any) -> Member:
-    """An array that is complete."""
-    array = np.asarray(value)
-    if array.dtype.kind not in KINDS:
-        raise TypeError(f"'{name}' is no array of numbers or texts")
-    return Member(name, array.shape, array.dtype, (array,))
-
-
-def npz_pieces(members: Iterable[Member]) -> Iterator[memoryview]:
-    """An uncompressed npz file, piece by piece; arrays are not copied. Sizes follow the data, as in any zip that is
-    written to a pipe.
+class Npz:
+    """An uncompressed npz file to be sent: its length, and its pieces, which are made one after the other. Arrays are
+    not copied. Sizes and check sums follow the data, as in any zip that is written to a pipe.
     """
+
+    size: int
+    pieces: Iterator[memoryview]
+
+
+def write_npz(arrays: Mapping[str, Any]) -> Npz:
+    """Arrays of numbers and texts as npz. Raises TypeError for others, ValueError for 2 GiB and more."""
+    found = {name: np.asarray(value, order="C") for name, value in arrays.items()}
+    for name, array in found.items():
+        if array.dtype.kind not in KINDS:
+            raise TypeError(f"'{name}' is no array of numbers or texts")
+    data = sum(array.nbytes for array in found.values())
+    if data > zipfile.ZIP64_LIMIT:  # beyond it the directory has fields of other lengths
+        raise ValueError(f"{data} bytes are too many for an npz file to be sent")
+    return Npz(sum(map(len, _pieces(found, with_data=False))) + data, _pieces(found, with_data=True))
+
+
+def _pieces(arrays: Mapping[str, np.ndarray[Any, Any]], with_data: bool) -> Iterator[memoryview]:
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_STORED) as archive:
-        for each in members:
-            is_large = math.prod(each.shape) * each.dtype.itemsize >= zipfile.ZIP64_LIMIT
-            with archive.open(f"{each.name}.npy", "w", force_zip64=is_large) as file:
-                file.write(_npy_header(each))
-                for part in each.parts:
-                    file.write(np.ascontiguousarray(part).reshape(-1).view(np.uint8).data)
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w") as file:
+                npy.write_array_header_1_0(file, npy.header_data_from_array_1_0(array))
+                data = array.reshape(-1).view(np.uint8).data
+                for start in range(0, array.nbytes if with_data else 0, PIECE):
+                    file.write(data[start : start + PIECE])
                     yield from sink.taken()
     yield from sink.taken()
-
-
-def _npy_header(each: Member) -> bytes:
-    header = io.BytesIO()
-    fields = {"descr": npy.dtype_to_descr(each.dtype), "fortran_order": False, "shape": each.shape}
-    npy.write_array_header_1_0(header, fields)
-    return header.getvalue()
 
 
 class _Sink(io.RawIOBase):
@@ -185,9 +180,9 @@ def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
     return result
 
 
-def as_npz(result: Mapping[str, Any]) -> bytes:
-    """The answer of an evaluation as npz; nested names are joined by dots, ``failures`` become parallel arrays."""
-    failures = result["failures"]
-    columns = {key: [str(f[key]) for f in failures] for key in ("quantity", "code", "message")}
-    values = flat({**result, "failures": {"state": [f["state"] for f in failures], **columns}})
-    return b"".join(npz_pieces(member(name, value) for name, value in values.items()))
+def as_npz(answer: Mapping[str, Any]) -> Npz:
+    """The answer as npz: arrays by name, nested names joined by dots, ``failures`` as parallel arrays."""
+    rows = answer["failures"]
+    failures = {"state": np.array([row["state"] for row in rows], np.int64)}
+    failures |= {key: np.array([row[key] for row in rows], np.str_) for key in ("quantity", "code", "message")}
+    return write_npz(flat({**answer, "failures": failures}))

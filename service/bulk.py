@@ -37,10 +37,10 @@ def transfer(
 
 def read_all(answer: HTTPResponse) -> NDArray[np.uint8]:
     """The body."""
-    buffer, size = np.empty(ROOM, np.uint8), 0
+    buffer, size = np.empty(min(answer.length or ROOM, ROOM), np.uint8), 0
     while read := answer.readinto(buffer[size:].data):
         size += read
-        if size == len(buffer):
+        if size == len(buffer) and answer.length != 0:
             buffer = np.concatenate([buffer, np.empty(3 * size, np.uint8)])
     if answer.length:
         raise IncompleteRead(b"", answer.length)

@@ -18,7 +18,7 @@ import numpy as np
 
 from service import arrow
 from service.arrays import MEDIA_TYPE as NPZ
-from service.arrays import flat, member, nested, npz_pieces, view_npz
+from service.arrays import flat, nested, view_npz, write_npz
 from service.bulk import read_all, transfer
 from substructures.documents import write_json
 
@@ -95,7 +95,7 @@ class Client:
         given = flat(request)
         if not any(isinstance(value, np.ndarray) for value in given.values()):
             return dict(self.request("POST", path, request).json())
-        body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
+        body = b"".join(write_npz(given).pieces)
         with self._transfer(path, body, NPZ) as answer:
             return _result(view_npz(read_all(answer)))
 

@@ -27,7 +27,7 @@ class Limits(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     json_bytes: int = Field(2 * 2**20, gt=0, description="largest JSON request body, bytes")
-    binary_bytes: int = Field(64 * 2**20, gt=0, description="largest npz body or Arrow record batch, bytes")
+    binary_bytes: int = Field(64 * 2**20, gt=0, le=2**30, description="largest npz body or Arrow record batch, bytes")
     stream_bytes: int = Field(2**32, gt=0, description="largest Arrow request body, bytes; kept in a temporary file")
     stream_states: int = Field(10**8, gt=0, description="most states of one Arrow request")
     program_nodes: int = Field(100_000, gt=0, description="most operations of a derived or coupled program")

@@ -29,7 +29,7 @@ def direction_values(model: Model, along: Any, states: States) -> dict[str, Any]
     if unknown:
         faults = (Fault(f"/along/{escape(k)}", "unknown-field", f"unknown field '{str(k)[:80]}'") for k in unknown)
         raise InvalidDocument(faults)
-    count = len(states.q)
+    count = states.count
     values: dict[str, Any] = {direction(name): 0.0 for name in input_names(model)}
     for field, primes in PRIMES.items():
         values |= {direction(name + primes): x for name, x in _columns(model, along, field, count).items()}

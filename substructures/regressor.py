@@ -73,15 +73,15 @@ class RegressorModel:
     def evaluate(self, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Array]:
         """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
 
-        ``request``: q, qd, qdd and parameters as for ``substructures.evaluation.evaluate``; the axis N is dropped where
-        ``q`` is (n,). Raises InvalidDocument (with pointers; ``qdd`` is needed) and MissingValue.
+        ``request``: q, qd, qdd and parameters as for ``substructures.evaluation.evaluate``; the axis N is dropped for
+        one state with ``q`` (n,). Raises InvalidDocument (with pointers; ``qdd`` is needed) and MissingValue.
         """
         model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {})
         states = read_states(model, request, limit)
         if states.qdd is None and model.dof:
             raise InvalidDocument.at("/qdd", "missing", "the regressor needs accelerations 'qdd'")
         values = symbol_values(model, request, states, OUTPUTS)
-        results = interpret_in_blocks(self.program, values, OUTPUTS, len(states.q))
+        results = interpret_in_blocks(self.program, values, OUTPUTS, states.count)
         return {name: x[0] if states.single else x for name, x in results.items()}
 
 

@@ -25,33 +25,54 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class States:
-    """States by coordinate, (N, n) each; ``single``: one state was given without the leading axis."""
+    """``count`` = N states by coordinate: (N, n), or (1, n) where all are alike; ``single``: one state was given
+    without the leading axis.
+    """
 
     q: Array
     qd: Array
     qdd: Array | None
+    count: int
     single: bool
 
 
 def read_states(model: Model, request: Mapping[str, Any], limit: int | None) -> States:
-    """q, qd, qdd of a request. Raises InvalidDocument."""
+    """q, qd, qdd of a request. One q holds for all velocities, times, inputs, ... Raises InvalidDocument."""
     q = _state(model, request.get("q"), "q")
     if q is None:
         if model.dof:
             raise InvalidDocument.at("/q", "missing", "states 'q' are needed")
         q = np.zeros((1, 0)), True
-    single, count = q[1], len(q[0])
+    count = longest(request) if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
         raise InvalidDocument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
     others = []
     for name in ("qd", "qdd"):
         given = _state(model, request.get(name), name)
         if given is not None and len(given[0]) not in (1, count):
-            message = f"{len(given[0])} states, but 'q' has {count}"
+            message = f"{len(given[0])} states where there are {count}"
             raise InvalidDocument.at(f"/{name}", "wrong-length", message)
-        others.append(None if given is None else np.broadcast_to(given[0], (count, model.dof)))
-    qd = np.zeros_like(q[0]) if others[0] is None else others[0]
-    return States(q[0], qd, others[1], single)
+        others.append(None if given is None else given[0])
+    qd = np.zeros((1, model.dof)) if others[0] is None else others[0]
+    return States(q[0], qd, others[1], count, q[1] and count == 1)
+
+
+def longest(request: Mapping[str, Any]) -> int:
+    """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
+    lengths = [1, _entries(request.get("t"))]
+    for name in ("q", "qd", "qdd"):
+        given = request.get(name)
+        if isinstance(given, list | tuple | np.ndarray) and _entries(given) and _entries(given[0]):
+            lengths.append(len(given))
+    for name in ("q", "qd", "qdd", "inputs", "parameters"):
+        given = request.get(name)
+        lengths += map(_entries, given.values()) if isinstance(given, Mapping) else ()
+    return max(lengths)
+
+
+def _entries(given: Any) -> int:
+    """The length of a list, 0 if it is none."""
+    return len(given) if isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim) else 0
 
 
 def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
@@ -122,11 +143,12 @@ def known_values(
     """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
     a value in the request. Raises InvalidDocument.
     """
-    count = len(states.q)
+    count = states.count
     values: dict[str, Any] = {}
     for primes, columns in (("", states.q), ("'", states.qd), ("''", states.qdd)):
         if columns is not None:
-            values |= {f"{name}{primes}": columns[:, a] for a, name in enumerate(model.coordinates)}
+            rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
+            values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
     t = numeric(0 if request.get("t") is None else request["t"], "/t")
     values["t"] = _per_state(t, count, "/t")
     inputs = input_names(model)

@@ -1,9 +1,8 @@
-"""Large evaluations: requests from npz and Arrow, answered part by part as npz or Arrow, in bounded memory."""
+"""Large evaluations: requests from npz and Arrow, answered as npz, or part by part in bounded memory as Arrow."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
 from typing import IO, Any
 
@@ -12,7 +11,7 @@ import orjson
 from numpy.typing import NDArray
 
 from service import arrow
-from service.arrays import Member, flat, member, npz_pieces, read_npz
+from service.arrays import flat, read_npz
 from service.operations import evaluations
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
@@ -93,30 +92,21 @@ def _arrays(request: Any) -> dict[str, Array]:
     return {name: column for name, column in columns.items() if isinstance(column, np.ndarray)}
 
 
-@dataclass(frozen=True, slots=True)
-class Split:
-    """A request for ``count`` states, part by part; ``single``: for one state without a leading axis."""
-
-    count: int
-    single: bool
-    parts: Iterable[Request]
-
-
-def split(sources: Sources, request: Request, limits: Limits, rows: bool = False) -> Split:
-    """Check the numbers of a request, and cut it into parts whose results are of moderate size.
-
-    ``rows``: give a leading axis to a single state. Raises InvalidDocument.
+def split(sources: Sources, request: Request, limits: Limits) -> Iterable[Request]:
+    """Check the numbers of a request, and cut it into parts whose results are of moderate size and have a leading axis
+    also for a single state. Raises InvalidDocument.
     """
     states = read_states(sources.model, request, limits.states)
+    request = {**request, "q": states.q}
     if states.single:
-        return Split(1, not rows, [{**request, "q": states.q} if rows else request])
-    count, size = len(states.q), max(1, PART // evaluations.bytes_per_state(sources, request))
+        return [request]
+    count, size = states.count, max(1, PART // evaluations.bytes_per_state(sources, request))
     fields = {name: _numbers(value, pointer_step(name)) for name, value in request.items() if name != "quantities"}
     if not set(_lengths(fields, "")) <= {1, count}:  # the evaluation says which one is wrong
-        return Split(count, False, [request])
+        return [request]
     quantities = {"quantities": request.get("quantities")}
     starts = range(0, max(1, count), size)
-    return Split(count, False, (_cut(fields, slice(i, i + size), count, "") | quantities for i in starts))
+    return (_cut(fields, slice(i, i + size), count, "") | quantities for i in starts)
 
 
 def _numbers(value: Any, pointer: str) -> Any:
@@ -150,51 +140,17 @@ def _cut(fields: Mapping[str, Any], some: slice, count: int, above: str) -> dict
     return part
 
 
-def as_npz(evaluate: Evaluate, cut: Split, quantities: Iterable[str]) -> Iterator[memoryview]:
-    """The answer as npz: arrays by quantity, nested names joined by dots, ``failures`` as parallel arrays.
-
-    The first array is sent while it is computed, the others are kept until then.
-    """
-    answers = map(evaluate, cut.parts)
-    first = next(answers)
-    names = list(dict.fromkeys(quantities))
-    found = flat({name: first[name] for name in names})
-    head, *others = found
-    kept: dict[str, list[Array]] = {name: [] for name in others}
-    failures: list[dict[str, Any]] = []
-
-    def rows() -> Iterator[Array]:
-        start = 0
-        for answer in chain([first], answers):
-            columns = flat({name: answer[name] for name in names})
-            for name in others:
-                kept[name].append(columns[name])
-            failures.extend({**failure, "state": start + failure["state"]} for failure in answer["failures"])
-            start += answer["count"]
-            yield columns[head]
-
-    def members() -> Iterator[Member]:
-        for name, value in flat(_without(first, names) | {"count": cut.count}).items():
-            yield member(name, value)
-        for name, some in {head: rows(), **kept}.items():
-            shape = found[name].shape
-            yield Member(name, shape if cut.single else (cut.count, *shape[1:]), np.dtype(np.float64), some)
-        yield member("failures.state", np.array([failure["state"] for failure in failures], np.int64))
-        for key in ("quantity", "code", "message"):
-            yield member(f"failures.{key}", np.array([failure[key] for failure in failures], np.str_))
-
-    return npz_pieces(members())
-
-
 def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """What an answer says beside the quantities and failures: coordinates, digest, ..."""
     return {key: value for key, value in answer.items() if key not in {*names, "failures"}}
 
 
-def as_arrow(evaluate: Evaluate, cuts: Iterable[Split], quantities: Iterable[str]) -> Iterator[memoryview | bytes]:
+def as_arrow(
+    evaluate: Evaluate, cuts: Iterable[Iterable[Request]], quantities: Iterable[str]
+) -> Iterator[memoryview | bytes]:
     """The answer as an Arrow stream: a record batch for every part, null where a state has no result."""
     names = list(dict.fromkeys(quantities))
-    answers = (evaluate(part) for cut in cuts for part in cut.parts)
+    answers = (evaluate(part) for cut in cuts for part in cut)
     first = next(answers)
     metadata = {**_without(first, [*names, "count"]), "quantities": names}
     return arrow.write_tables((_table(answer, names) for answer in chain([first], answers)), metadata)

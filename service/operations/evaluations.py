@@ -11,6 +11,7 @@ import orjson
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.evaluation import QUANTITIES, Sources, cost
+from substructures.states import longest
 
 
 def check_size(sources: Sources, request: Any, limits: Limits, streamed: bool = False) -> None:
@@ -20,7 +21,7 @@ def check_size(sources: Sources, request: Any, limits: Limits, streamed: bool = 
     """
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    states = _states(request.get("q")) or 1
+    states = longest(request)
     operations, numbers = cost(sources, _quantities(request))
     work, size = states * operations, 8 * states * numbers
     if work > limits.evaluation_operations:
@@ -41,19 +42,17 @@ def bytes_per_state(sources: Sources, request: Mapping[str, Any]) -> int:
     return max(1, 8 * cost(sources, _quantities(request))[1])
 
 
-def _states(q: Any) -> int | None:
-    """The number of states, None for one without a leading axis; what is wrong with them is found later."""
-    columns = list(q.values()) if isinstance(q, Mapping) else [q]
-    lists = [c for c in columns if isinstance(c, list | tuple | np.ndarray)]
-    if isinstance(q, Mapping):
-        return max(map(len, lists)) if lists else None
-    is_batch = bool(lists) and len(q) > 0 and isinstance(q[0], list | tuple | np.ndarray)
-    return len(q) if is_batch else None
+def _is_single(request: Mapping[str, Any]) -> bool:
+    """Whether the answer has no axis of states."""
+    q = request.get("q")
+    columns = list(q.values()) if isinstance(q, Mapping) else q
+    has_rows = columns is not None and len(columns) > 0 and np.ndim(columns[0]) > 0
+    return not has_rows and longest(request) == 1
 
 
 def as_json(result: Mapping[str, Any], request: Mapping[str, Any]) -> bytes:
     """The answer as JSON; the result of a quantity for a state where it failed is null."""
-    single = _states(request.get("q")) is None
+    single = _is_single(request)
     shown = dict(result)
     for failure in result["failures"]:
         name = failure["quantity"]

@@ -11,7 +11,7 @@ from service import arrays, arrow
 from service.answers import JSON, Answer, Stream, json_answer, streamed
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
-from service.operations.batches import Request, Split
+from service.operations.batches import Request
 from service.problems import Refused
 from service.settings import Limits
 from service.spool import Spool
@@ -70,8 +70,8 @@ class Evaluation:
         request = batches.joined(requests, self.limits)
         evaluations.check_size(self.sources, request, self.limits)
         if wanted == arrays.MEDIA_TYPE:
-            cut = batches.split(self.sources, request, self.limits)
-            return streamed(batches.as_npz(self._evaluated, cut, request.get("quantities", ())), wanted)
+            file = arrays.as_npz(self._evaluated(request))
+            return Stream(file.pieces, {"Content-Type": wanted, "Content-Length": str(file.size)})
         return json_answer(evaluations.as_json(self._evaluated(request), request))
 
     def _arrow(self, requests: Iterator[Any]) -> Iterator[memoryview | bytes]:
@@ -79,9 +79,9 @@ class Evaluation:
         cuts = chain([self._cut(first)], map(self._cut, requests))
         return batches.as_arrow(self._evaluated, cuts, first.get("quantities", ()))
 
-    def _cut(self, request: Any) -> Split:
+    def _cut(self, request: Any) -> Iterable[Request]:
         evaluations.check_size(self.sources, request, self.limits, streamed=True)
-        return batches.split(self.sources, request, self.limits, rows=True)
+        return batches.split(self.sources, request, self.limits)
 
     def _evaluated(self, request: Request) -> dict[str, Any]:
         answer = evaluate(self.sources.model, request, self.limits.states, self.engine, self.sources)

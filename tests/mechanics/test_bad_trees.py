@@ -68,6 +68,8 @@ def test_a_binding_that_makes_a_divisor_zero() -> None:
 # --- requests
 
 
+ZEROS = [[0] * 10] * 3
+
 REQUESTS: list[tuple[str, Plain, str, str, str]] = [
     ("wrong length of q", {"q": [1, 2, 3]}, "/q", "wrong-length", "10"),
     ("wrong length of qd", {"qd": [[0] * 9]}, "/qd", "wrong-length", "10"),
@@ -83,7 +85,15 @@ REQUESTS: list[tuple[str, Plain, str, str, str]] = [
     ("unknown parameter", {"parameters": {"one.l9": 1}}, "/parameters/one.l9", "unknown-parameter", "one.l9"),
     ("bound parameter", {"parameters": {"two.l": 1}}, "/parameters/two.l", "unknown-parameter", "two.l"),
     ("infinite parameter", {"parameters": {"one.l": float("inf")}}, "/parameters/one.l", "number-not-finite", ""),
-    ("wrong length of a parameter", {"parameters": {"one.l": [1, 2]}}, "/parameters/one.l", "wrong-length", ""),
+    (
+        "wrong length of a parameter",
+        {"q": ZEROS, "parameters": {"one.l": [1, 2]}},
+        "/parameters/one.l",
+        "wrong-length",
+        "",
+    ),
+    ("two numbers of velocities", {"qd": ZEROS, "qdd": ZEROS[:2]}, "/qdd", "wrong-length", "3"),
+    ("times and velocities", {"qd": ZEROS, "t": [0, 1]}, "/t", "wrong-length", "3"),
     ("unknown input", {"inputs": {"one.u9": 1}}, "/inputs/one.u9", "unknown-input", "one.u9"),
     ("inputs that are no object", {"inputs": [1]}, "/inputs", "object-expected", ""),
     ("unknown quantity", {"quantities": ["mass"]}, "/quantities/0", "unknown-quantity", "mass"),

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.arrays import member, npz_pieces, read_npz
+from service.arrays import read_npz, write_npz
 from substructures.errors import InvalidDocument, TooLarge
 
 from .conftest import HAND
@@ -99,9 +99,17 @@ def test_bombs_are_refused_before_they_unpack() -> None:
 
 
 def test_round_trip() -> None:
-    arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array(["x", "yz"]), "c": np.float64(3), "d": np.zeros((0, 2))}
-    written = b"".join(npz_pieces(member(name, value) for name, value in arrays.items()))
-    found = read_npz(io.BytesIO(written), 10**6)
+    arrays = {
+        "large": np.arange(3e5),
+        "a": np.arange(6.0).reshape(2, 3),
+        "b": np.array(["x", "yz"]),
+        "c": np.float64(3),
+        "d": np.zeros((0, 2)),
+    }
+    file = write_npz(arrays)
+    written = b"".join(file.pieces)
+    assert file.size == len(written)
+    found = read_npz(io.BytesIO(written), 10**7)
     for name, value in arrays.items():
         np.testing.assert_array_equal(found[name], value)
     fortran = io.BytesIO()

@@ -100,6 +100,31 @@ def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monk
             assert answer.status_code == 422, answer.content
 
 
+def test_one_position_and_many_velocities(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The number of states is that of the longest list in every format, also where the last part has one state."""
+    monkeypatch.setattr(batches, "PART", 10 * 8 * 2)
+    qd, quantities = np.linspace(-1, 1, 41), ["metric", "kinetic_energy"]
+    expected = filled.post(URL, json={"quantities": quantities, "q": [[0.3]] * 41, "qd": qd[:, None].tolist()}).json()
+    found = filled.post(URL, json={"quantities": quantities, "q": [0.3], "qd": qd[:, None].tolist()}).json()
+    assert found["count"] == len(found["metric"]) == 41
+    body = io.BytesIO()
+    np.savez(body, q=np.array([0.3]), qd=qd[:, None], quantities=np.array(quantities))
+    packed = post(filled, body.getvalue(), sent="application/x-npz", accept="application/x-npz")
+    assert packed.headers["content-length"] == str(len(packed.content))
+    arrays = np.load(io.BytesIO(packed.content), allow_pickle=False)
+    table = pa.ipc.open_stream(post(filled, body.getvalue(), sent="application/x-npz").content).read_all()
+    for name in quantities:
+        for values in (found[name], arrays[name], column(table, name)):
+            np.testing.assert_allclose(values, expected[name], rtol=1e-12)
+
+
+def test_limits_count_the_longest_list(store: Store, filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert filled.post(URL, json={"quantities": ["metric"], "q": [0], "t": [0] * 9}).status_code == 200
+    short = limited(store, monkeypatch, states=8)
+    refused = short.post(URL, json={"quantities": ["metric"], "q": [0], "t": [0] * 9})
+    assert (refused.status_code, refused.json()["errors"][0]["code"]) == (422, "too-many-states")
+
+
 def test_streams_are_computed_again_under_their_key(filled: TestClient) -> None:
     q = lists(np.linspace(0, 1, 40_000)[:, None])
     body, other = stream([{"q": q}] * 3, METRIC), stream([{"q": q}] * 2, METRIC)

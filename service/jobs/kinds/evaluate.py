@@ -39,7 +39,12 @@ from substructures.model import Model
 from substructures.regressor import RegressorModel, regressor
 from substructures.states import Array
 
-WRITERS = {"npz": (as_npz, "application/x-npz")}
+
+def _npz(answer: Mapping[str, Any]) -> bytes:
+    return b"".join(as_npz(answer).pieces)
+
+
+WRITERS = {"npz": (_npz, "application/x-npz")}
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 CAPACITY = 2_000_000

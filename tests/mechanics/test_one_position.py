@@ -1,0 +1,65 @@
+"""One position, many velocities: the same numbers as the position repeated, by both engines, in all quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from random_trees import Kind, Plain, model_of, random_definition, random_states
+
+from substructures import Model
+from substructures.compile import compile_program
+from substructures.evaluation import QUANTITIES, REGRESSOR, Engine, evaluate, interpreted
+from substructures.expr.program import Program
+from substructures.states import Array
+
+N = 5
+NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
+
+
+def compiled(program: Program, values: Mapping[str, Any], names: list[str], _states: int) -> dict[str, Array]:
+    """The engine that compiles what it is asked for."""
+    return compile_program(program, names).evaluate(values)
+
+
+def random_model() -> Model:
+    rng = np.random.default_rng(77)
+    return model_of(random_definition(rng, Kind(3, joints=("revolute", "prismatic"), massive=True)))
+
+
+def leaves(answer: Plain) -> dict[str, Any]:
+    """Arrays of the quantities by name."""
+    found: dict[str, Any] = {}
+    for name in NAMES:
+        some = answer[name] if isinstance(answer[name], dict) else {"": answer[name]}
+        found |= {f"{name}.{key}": x for key, x in some.items()}
+    return found
+
+
+@pytest.mark.parametrize("engine", [interpreted, compiled])
+@pytest.mark.parametrize("batched", ["qd qdd", "qdd", "qd", "t", "inputs"])
+def test_one_position_stands_for_all(engine: Engine, batched: str) -> None:
+    model = random_model()
+    x = random_states(np.random.default_rng(1), N, model.dof)
+    given = {"t": np.arange(N) / 7, "inputs": {f"tau.{model.coordinates[0]}": np.arange(N) - 2.0}}
+    one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES}
+    one["along"] = {"q": x["qd"][1], "inputs": {f"tau.{model.coordinates[0]}": 1.0}}
+    one |= {name: (x | given)[name] for name in batched.split()}
+    found = evaluate(model, one, engine=engine)
+    rows = evaluate(model, one | {"q": x["q"][:1]}, engine=engine)
+    repeated = evaluate(model, one | {"q": np.repeat(x["q"][:1], N, axis=0)})
+    assert found["count"] == rows["count"] == N
+    for name, expected in leaves(repeated).items():
+        scale = max(1.0, np.abs(expected).max(initial=0))
+        np.testing.assert_allclose(leaves(found)[name], expected, rtol=1e-12, atol=1e-13 * scale, err_msg=name)
+        np.testing.assert_array_equal(leaves(rows)[name], leaves(found)[name], err_msg=name)
+
+
+def test_the_axis_of_states_is_dropped_for_one_state_only() -> None:
+    model = random_model()
+    zero = np.zeros(model.dof)
+    for qd, shape in ((zero, ()), (zero[None], ()), (np.zeros((2, model.dof)), (2,))):
+        answer = evaluate(model, {"quantities": ["metric"], "q": zero, "qd": qd})
+        assert answer["metric"].shape == (*shape, model.dof, model.dof)
