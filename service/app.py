@@ -16,7 +16,7 @@ from service.middleware import Conventions
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
 from service.queries import idempotency
-from service.routes import aliases, formulas, models, pictures, substructures, system, trees
+from service.routes import aliases, analyses, formulas, models, pictures, substructures, system, trees
 from service.settings import Settings
 from service.store import Store
 
@@ -62,7 +62,9 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         redirect_slashes=False,
         responses=openapi.PROBLEM,
     )
-    routers = [module.router for module in (substructures, aliases, formulas, pictures, trees, models, system, pages)]
+    routers = [
+        module.router for module in (substructures, aliases, formulas, pictures, trees, analyses, models, system, pages)
+    ]
     for router in routers:
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])

@@ -7,8 +7,10 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from service.analyses.numbers import ANALYSES
 from service.schemas import AliasRequest, EvaluationRequest, Problem, YankRequest
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
@@ -20,7 +22,17 @@ PROBLEM: dict[int | str, dict[str, Any]] = {
         "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
     }
 }
-_READ_BY_US = (Definition, TreeSpec, Instance, AliasRequest, YankRequest, EvaluationRequest, Problem)
+_ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
+_READ_BY_US: tuple[type[BaseModel], ...] = (
+    Definition,
+    TreeSpec,
+    Instance,
+    AliasRequest,
+    YankRequest,
+    EvaluationRequest,
+    Problem,
+    *_ANALYSED,
+)
 
 
 def document(app: FastAPI) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import orjson
 
+from service.analyses.formulas import QUANTITIES
 from service.answers import Answer
 from service.negotiation import JSON, MEDIA_TYPES
 from service.problems import not_found, unprocessable
@@ -53,7 +54,7 @@ def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity."""
     if quantity in DERIVED or any(name in model.program.outputs for name in quantities(quantity)):
         return
-    known = ", ".join([*model.program.outputs, *DERIVED, "kinematics", "momentum"])
+    known = ", ".join([*model.program.outputs, *DERIVED, "kinematics", "momentum", *QUANTITIES])
     raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
 
 

@@ -1,0 +1,79 @@
+"""Analyses of stored trees: what they work on, their limit of time, and their answers."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+import orjson
+
+from service.analyses.formulas import Options, made
+from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.results import written
+from service.analyses.source import Source
+from service.answers import Answer
+from service.negotiation import MEDIA_TYPES, choose_media_type
+from service.operations import trees
+from service.operations.models import Style, bound
+from service.problems import Refused
+from service.queries.trees import Tree
+from service.store import Store
+from substructures.documents import read_json
+from substructures.model import Model
+from substructures.printers import render
+from substructures.regressor import RegressorModel, regressor
+from substructures.tree import TreeSpec
+
+
+def source_of(store: Store, tree: Tree, model: Model) -> Source:
+    """What analyses of a stored tree work on."""
+    limits = store.settings.limits
+
+    def derive_regressor() -> RegressorModel:
+        spec = TreeSpec.read(read_json(tree.spec.encode()))
+        with store.database.read() as connection:
+            parts = trees.parts_of(store, connection, spec)
+        return regressor(spec, parts, limits.program_nodes)
+
+    return Source(model, tree.digest, derive_regressor, limits, store.kernels.folder, store.kernels)
+
+
+def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
+    """A quantity that follows from the model, in the format chosen; its description is in the JSON answer.
+
+    Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
+    """
+    found = made(source, quantity, options)
+    text = render(bound(found.program, source.model.parameters, style.bind), style.format, style.form)
+    if style.format == "json" and found.members:
+        text = orjson.dumps(found.members).decode()[:-1] + "," + text[1:]
+    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
+
+
+def analyse(store: Store, ref: str, name: str, request: Any, accept: str) -> Answer:
+    """The result of an analysis of ANALYSES in the media type wanted.
+
+    Raises Refused 404, 406, or 503 when it takes longer than the limit of a request; InvalidDocument, MissingValue,
+    TooLarge.
+    """
+    analysis = ANALYSES[name]
+    media = choose_media_type(accept, analysis.media)
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+    deadline = Deadline(store.settings.limits.sync_seconds)
+    result = analysis.compute(source_of(store, tree, model), require_object(request), deadline)
+    return Answer(200, written(result, media, model), {"Content-Type": media})
+
+
+class Deadline:
+    """A listener of progress that ends the work when its time is over."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds, self._end = seconds, perf_counter() + seconds
+
+    def __call__(self, share: float) -> None:
+        """Raises Refused 503."""
+        if perf_counter() > self._end:
+            detail = f"{100 * share:.0f} % was done in {self.seconds:g} s, the limit of a request; nothing was stored"
+            raise Refused(503, "took-too-long", detail, limit=self.seconds)

@@ -1,0 +1,47 @@
+"""``POST /v1/trees/{ref}/simulations``, ``.../linearisations``, ...: numbers that follow from a tree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+
+from service.analyses.numbers import ANALYSES, Analysis
+from service.analyses.results import JSON
+from service.once import OnceOf
+from service.operations.analyses import analyse
+from service.requests import JsonBody, StoreOf, needs
+from service.routes.bodies import binary, body_of
+from service.schemas import AnalysisResult
+
+router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
+READ = [needs("read")]
+
+
+def _endpoint(name: str) -> Callable[..., Response]:
+    def run(ref: str, request: Request, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+        accept = request.headers.get("accept", "*/*")
+        return once.compute(lambda: analyse(store, ref, name, body, accept))
+
+    return run
+
+
+def _add(name: str, analysis: Analysis) -> None:
+    others = {media: binary() for media in analysis.media if media != JSON}
+    described: dict[int | str, dict[str, Any]] = {200: {"content": others}}
+    router.add_api_route(
+        f"/{name}",
+        _endpoint(name),
+        methods=["POST"],
+        name=name,
+        summary=analysis.text,
+        response_model=AnalysisResult,
+        dependencies=READ,
+        openapi_extra=body_of(analysis.schema.__name__),
+        responses=described,
+    )
+
+
+for _name, _analysis in ANALYSES.items():
+    _add(_name, _analysis)
