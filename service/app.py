@@ -16,7 +16,7 @@ from service.middleware import Conventions
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
 from service.queries import idempotency
-from service.routes import aliases, analyses, formulas, models, pictures, substructures, system, trees
+from service.routes import aliases, analyses, formulas, kernels, models, pictures, substructures, system, trees
 from service.settings import Settings
 from service.store import Store
 
@@ -63,7 +63,8 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         responses=openapi.PROBLEM,
     )
     routers = [
-        module.router for module in (substructures, aliases, formulas, pictures, trees, analyses, models, system, pages)
+        module.router
+        for module in (substructures, aliases, formulas, pictures, trees, analyses, models, kernels, system, pages)
     ]
     for router in routers:
         app.include_router(router)

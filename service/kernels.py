@@ -1,9 +1,13 @@
-"""Compiled kernels of models: interpreted at first, compiled in the background, at once for large batches."""
+"""Numbers as fast as they can be had: by the kernel of a tree, from kernels of its parts, or by the interpreter.
+
+Kernels of trees and of parts are compiled in the background when they are first missed, at once for large batches and
+on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
@@ -11,13 +15,16 @@ from typing import Any
 
 from service.cache import Cache
 from substructures.compile import Kernel, compile_program
-from substructures.evaluation import interpreted
+from substructures.coupling import ASKED
+from substructures.errors import MissingValue
+from substructures.evaluation import Engine, interpreted
+from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
+from substructures.numeric import NumericTree, Scalars, kernel_entries
+from substructures.part import Part
 from substructures.states import Array
+from substructures.ways import Way, quickest
 
-#: From about this many states it takes longer to interpret them than to compile first, whatever the program: both
-#: times grow with its length (UR5 and iiwa 14, M and Q: 20 ms to compile, 20 ms to interpret 10,000 states).
-AT_ONCE = 8192
 CAPACITY = 2_000_000  # weight of the kernels kept in memory
 
 Key = tuple[str, tuple[str, ...]]
@@ -34,40 +41,84 @@ class Kernels:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
         self._kernels: Cache[Kernel] = Cache(CAPACITY, _weight)
-        self._waiting: set[Key] = set()
+        self._waiting: dict[Key, int] = {}  # states that were answered without the kernel
         self._lock = Lock()
         self._compiler = ThreadPoolExecutor(1, thread_name_prefix="compiler")
 
     def __call__(self, program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
         """Outputs for values, by a kernel if there is one or if there are many states."""
+        kernel = self._ready(program, names, states)
+        if kernel is None:
+            return interpreted(program, values, names, states)
+        return kernel.evaluate(values, threads=os.cpu_count() or 1)
+
+    def of_tree(self, program: Program, parts: Iterable[Part], tree: Callable[[], NumericTree]) -> Engine:
+        """An engine that also takes the way over the parts, for outputs of the tree's own ``program``."""
+
+        def run(given: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+            if given is program and quickest(states, coupled=True, warm=self.warm(parts)) is Way.PARTS:
+                kernel = self._ready(given, names, states)
+                try:
+                    return tree().answer(values, names, states) if kernel is None else kernel.evaluate(values)
+                except MissingValue:  # of a parameter that the coupled formulas do not depend on
+                    pass
+            return self(given, values, names, states)
+
+        return run
+
+    def of_part(self, program: Program, values: Mapping[str, Any], names: Sequence[str]) -> Mapping[str, Scalars]:
+        """An engine for :class:`substructures.numeric.NumericTree`."""
+        kernel = self._ready(program, names, 1)
+        return interpret_entries(program, values, names) if kernel is None else kernel_entries(kernel, values)
+
+    def prepare(self, parts: Iterable[Part]) -> None:
+        """Compile what coupling asks of parts, in the background."""
+        for part in parts:
+            for names in ASKED:
+                self._ready(part.program, names, 1)
+
+    def warm(self, parts: Iterable[Part]) -> bool:
+        """Whether all that coupling asks of parts is compiled."""
+        return all(self._kernels.get((part.program.digest, names)) for part in parts for names in ASKED)
+
+    def compiled(self, program: Program, names: Sequence[str]) -> tuple[Kernel, bool]:
+        """The kernel for these outputs, and whether it had to be compiled (or read from the folder) first."""
         key = program.digest, tuple(names)
         kernel = self._kernels.get(key)
-        if kernel is None and states < AT_ONCE:
-            self._compile_later(key, program)
-            return interpreted(program, values, names, states)
-        if kernel is None:
-            kernel = self._compiled(key, program)
-        return kernel.evaluate(values, threads=os.cpu_count() or 1)
+        if kernel is not None:
+            return kernel, False
+        kernel = compile_program(program, key[1], self.folder)
+        self._kernels.put(key, kernel)
+        return kernel, True
 
     def close(self) -> None:
         """Stop compiling."""
         self._compiler.shutdown(wait=True, cancel_futures=True)
 
-    def _compiled(self, key: Key, program: Program) -> Kernel:
-        kernel = compile_program(program, key[1], self.folder)
-        self._kernels.put(key, kernel)
-        return kernel
-
-    def _compile_later(self, key: Key, program: Program) -> None:
+    def _ready(self, program: Program, names: Sequence[str], states: int) -> Kernel | None:
+        """The kernel if it is there or worth waiting for; otherwise it is compiled in the background."""
+        key = program.digest, tuple(names)
+        kernel = self._kernels.get(key)
+        if kernel is not None:
+            return kernel
         with self._lock:
-            if key in self._waiting:
-                return
-            self._waiting.add(key)
-        self._compiler.submit(self._work, key, program)
+            # a large batch may come in pieces
+            so_far = self._waiting.get(key, 0) + states
+        if quickest(so_far, coupled=True, warm=False) is Way.KERNEL:
+            return self.compiled(program, names)[0]
+        self._compile_later(key, program, so_far)
+        return None
+
+    def _compile_later(self, key: Key, program: Program, states: int) -> None:
+        with self._lock:
+            is_new = key not in self._waiting
+            self._waiting[key] = states
+        if is_new:
+            self._compiler.submit(self._work, key, program)
 
     def _work(self, key: Key, program: Program) -> None:
         try:
-            self._compiled(key, program)
+            self.compiled(program, key[1])
         finally:
             with self._lock:
-                self._waiting.discard(key)
+                self._waiting.pop(key, None)

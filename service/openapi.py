@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
-from service.schemas import AliasRequest, EvaluationRequest, Problem, YankRequest
+from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
 
@@ -30,6 +30,7 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
     AliasRequest,
     YankRequest,
     EvaluationRequest,
+    KernelsRequest,
     Problem,
     *_ANALYSED,
 )

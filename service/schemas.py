@@ -194,6 +194,15 @@ class TreePage(Shape):
 Column = float | list[float]
 
 
+class Direction(BaseModel):
+    """The direction of a derivative, zero where nothing is given; one row for all states, or one for each."""
+
+    q: list[float] | list[list[float]] | dict[str, Column] | None = None
+    qd: list[float] | list[list[float]] | dict[str, Column] | None = None
+    qdd: list[float] | list[list[float]] | dict[str, Column] | None = Field(None, description="of inverse dynamics")
+    inputs: dict[str, Column] = {}
+
+
 class EvaluationRequest(BaseModel):
     """States to evaluate; SI units, angles in rad."""
 
@@ -204,6 +213,7 @@ class EvaluationRequest(BaseModel):
     qdd: list[float] | list[list[float]] | dict[str, Column] | None = None
     inputs: dict[str, Column] = Field({}, description="tau.<coordinate> (N m or N) and inputs of loads")
     t: Column = Field(0, description="s")
+    along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
 
 
 class EvaluationResult(BaseModel):
@@ -215,6 +225,32 @@ class EvaluationResult(BaseModel):
     count: int
     digest: Digest
     failures: list[Any] = []
+    frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
+    columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
+
+
+class KernelsRequest(Shape):
+    """Quantities that will be evaluated together."""
+
+    quantities: list[str]
+
+
+class KernelView(Shape):
+    """A program compiled for some of its outputs."""
+
+    program: str = Field(description="model, or the derived quantity")
+    outputs: list[str]
+    operations: int
+    new: bool = Field(description="compiled now, or read from the folder of kernels")
+    machine_code: bool = Field(description="false where the interpreter has to do")
+    seconds: float
+
+
+class KernelsView(Shape):
+    """What a tree is compiled for."""
+
+    digest: Digest
+    kernels: list[KernelView]
 
 
 class AnalysisResult(BaseModel):

@@ -13,9 +13,13 @@ from service.queries import content
 from service.queries.trees import Tree
 from service.settings import Settings
 from substructures.definition import Definition
+from substructures.derived import derived
 from substructures.documents import read_json
+from substructures.expr.program import Program
 from substructures.model import Model, couple
+from substructures.numeric import NumericTree
 from substructures.part import Part
+from substructures.regressor import RegressorModel
 from substructures.tree import TreeSpec
 
 PICTURES = 16 * 2**20  # characters
@@ -26,8 +30,11 @@ class Store:
 
     def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
         self.settings, self.database, self.metrics = settings, database, metrics
-        self._parts: Cache[Part] = Cache(settings.cache_nodes // 2, lambda part: len(part.program))
-        self._models: Cache[Model] = Cache(settings.cache_nodes // 2, lambda model: len(model.program))
+        self._parts: Cache[Part] = Cache(settings.cache_nodes // 4, lambda part: len(part.program))
+        self._models: Cache[Model] = Cache(settings.cache_nodes // 4, lambda model: len(model.program))
+        self._derived: Cache[Program] = Cache(settings.cache_nodes // 4, len)
+        self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 8, lambda found: len(found.program))
+        self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 8, NumericTree.weight)
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
         self.authorisations = Authorisations(settings.key_seconds)
@@ -66,6 +73,16 @@ class Store:
             model = couple(spec, parts, self.settings.limits.program_nodes)
             self._models.put(spec.digest, model)
         return model
+
+    def derived(self, model: Model, quantity: str) -> Program:
+        """A program of :data:`substructures.derived.DERIVED`. Raises as ``derived`` does."""
+        key = model.program.digest, model.coordinates, quantity
+        program = self._derived.get(key)
+        self.metrics.cache("derived", program is not None)
+        if program is None:
+            program = derived(model, quantity, self.settings.limits.program_nodes)
+            self._derived.put(key, program)
+        return program
 
     def remember_model(self, digest: str, model: Model) -> None:
         """Keep a model that was just coupled."""

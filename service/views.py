@@ -122,6 +122,7 @@ def tree_view(tree: Tree) -> bytes:
         "created": tree.created,
         "based_on": tree.based_on,
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
+        | {"kernels": f"{path}/kernels"}
         | {name: f"{path}/{name}" for name in (*quantities, "picture")},
     }
     return dump(names)[:-1] + b"," + tree.summary.encode()[1:]

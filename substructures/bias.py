@@ -1,30 +1,62 @@
-"""The velocity forces Gamma_abc q'^b q'^c of a coupled tree in one pass out and one back, O(n) operations."""
+"""Newton and Euler's recursion through a coupled tree, one pass out and one back: O(n) operations.
+
+It gives the velocity forces Gamma_abc q'^b q'^c without the Christoffel symbols, and inverse dynamics without these and
+without the metric (Luh, Walker, Paul 1980).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from substructures.coupling import WORLD, Mounted, State
-from substructures.mechanics.linear3 import S, Vector
+from substructures.coupling import WORLD, Mounted, State, applied_wrenches
+from substructures.mechanics.linear3 import S, Vector, negate
 from substructures.mechanics.newton_euler import Load, Motion, inertial_load
 from substructures.skeleton import INTERFACE
 
 
 def bias_forces(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S]) -> list[S]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
-    motions = body_motions(mounted, states, rates)
-    loads: list[list[Load]] = []
-    for state, own in zip(states, motions, strict=True):
-        inertias = [state.own.inertia("inertia", c) for c in range(len(state.links))]
-        loads.append([inertial_load(*pair) for pair in zip(own, [*inertias, state.own.inertia("base")], strict=True)])
+    loads = _inertial_loads(states, body_motions(mounted, states, rates))
     return _pass_back(mounted, states, loads, len(rates))
 
 
-def body_motions(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S]) -> list[list[Motion]]:
-    """For every part the motions at q'' = 0 of its joints' body frames, and last of its interface."""
+def inverse_dynamics(
+    mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S], accelerations: Sequence[S]
+) -> list[S]:
+    """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a: what actuators have to do beyond the inputs that Q_a contains.
+
+    Gravity is a world accelerated upwards; forces and torques act on their bodies, what the joints do by themselves
+    (armature, springs, dampers, actuators) on their coordinates.
+    """
+    loads = _inertial_loads(states, body_motions(mounted, states, rates, accelerations))
+    for m, state, own in zip(mounted, states, loads, strict=True):
+        for carrier, force, moment in applied_wrenches(m, state):
+            own[carrier] += Load(negate(force), negate(moment))
+    result = _pass_back(mounted, states, loads, len(rates))
+    for m, state in zip(mounted, states, strict=True):
+        for c in range(len(state.links)):
+            a = m.first + c
+            rotor = state.own.scalar("armature", c) * accelerations[a]
+            result[a] = result[a] + rotor - state.stored.scalar("applied", c)
+    return result
+
+
+def body_motions(
+    mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S], accelerations: Sequence[S] | None = None
+) -> list[list[Motion]]:
+    """For every part the motions of its joints' body frames, and last of its interface.
+
+    With ``accelerations`` the world is accelerated against gravity; without, q'' = 0 in a world at rest.
+    """
     motions: list[list[Motion]] = []
     for m, state in zip(mounted, states, strict=True):
-        motions.append(_motions(m, state, motions, rates))
+        own = [_interface(m, state, motions, accelerations is not None)]
+        for c, link in enumerate(state.links):
+            a = m.first + c
+            before = own[link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
+            second = 0 if accelerations is None else accelerations[a]
+            own.insert(c, before.moved(link.s, rates[a], state.tau[c], second))
+        motions.append(own)
     return motions
 
 
@@ -33,18 +65,21 @@ def from_body(state: State, carrier: int, z: Vector) -> Vector:
     return z if carrier == INTERFACE else (z[0], z[1], z[2] - state.tau[carrier])
 
 
-def _motions(m: Mounted, state: State, motions: list[list[Motion]], rates: Sequence[S]) -> list[Motion]:
-    """Of every joint's body frame, and last of the interface."""
-    interface = Motion()
-    if state.host is not None and state.link is not None:
-        carrier = state.link.parent
-        host = motions[m.host][carrier]
-        interface = host.at(from_body(state.host, carrier, state.link.Z), state.link.rotation)
-    own = [interface]
-    for c, link in enumerate(state.links):
-        before = own[link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
-        own.insert(c, before.moved(link.s, rates[m.first + c], state.tau[c]))
-    return own
+def _interface(m: Mounted, state: State, motions: Sequence[Sequence[Motion]], falling: bool) -> Motion:
+    """Of a part's interface."""
+    if state.host is None or state.link is None:
+        return Motion(a=negate(state.gamma[INTERFACE])) if falling else Motion()
+    carrier = state.link.parent
+    return motions[m.host][carrier].at(from_body(state.host, carrier, state.link.Z), state.link.rotation)
+
+
+def _inertial_loads(states: Sequence[State], motions: Sequence[Sequence[Motion]]) -> list[list[Load]]:
+    """What moves every body, and last what is fixed to the interface, like that."""
+    result = []
+    for state, own in zip(states, motions, strict=True):
+        inertias = [*(state.own.inertia("inertia", c) for c in range(len(state.links))), state.own.inertia("base")]
+        result.append([inertial_load(*pair) for pair in zip(own, inertias, strict=True)])
+    return result
 
 
 def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[list[Load]], n: int) -> list[S]:

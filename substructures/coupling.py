@@ -8,7 +8,7 @@ Measured against expressing those products in the interface frame (f, n, K), thi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
@@ -44,8 +44,12 @@ USED = (
     *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
+WITHOUT_CHRISTOFFEL = tuple(name for name in USED if name != "christoffel")
 FRAMES = ("frame.E", "frame.position")
-OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J")
+OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J", "armature")
+
+#: all lists of outputs that coupling asks a part for
+ASKED = (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED)
 
 #: the outputs of a part's stored program, by name, for the given values of its symbols
 Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
@@ -140,7 +144,7 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
     n = 0
     for part in mounted:
         part.first, n = n, n + part.part.dof
-    states, total = _pass_up(run, mounted)
+    states, total = _pass_up(run, mounted, USED if christoffel else WITHOUT_CHRISTOFFEL)
     result = Coupled({}, {}, [0] * n, [0] * n, -dot(gravity, total.s), states)
     for m, state in zip(mounted, states, strict=True):
         _place(m, state, mounted, states, gravity)
@@ -151,14 +155,14 @@ def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christof
     return result
 
 
-def _pass_up(run: Run, mounted: Sequence[Mounted]) -> tuple[list[State], Inertia]:
+def _pass_up(run: Run, mounted: Sequence[Mounted], names: Sequence[str]) -> tuple[list[State], Inertia]:
     """Runs every program with the inertia of what is mounted on it; the total is about the world's origin."""
     payload: list[dict[int, Inertia]] = [{} for _ in mounted]
     states: list[State] = []
     total = Inertia()
     for i in reversed(range(len(mounted))):
         m = mounted[i]
-        state = _state(run, m, payload[i])
+        state = _state(run, m, payload[i], names)
         states.insert(0, state)
         whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
         if m.host == WORLD:
@@ -182,14 +186,14 @@ def _pay(run: Run, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]]
     payload[m.host][carrier] = payload[m.host].get(carrier, Inertia()) + inertia
 
 
-def _state(run: Run, m: Mounted, payload: dict[int, Inertia]) -> State:
+def _state(run: Run, m: Mounted, payload: dict[int, Inertia], names: Sequence[str]) -> State:
     own = run(m.part, m.bindings, OWN)
     bindings = dict(m.bindings)
     for k, symbols in m.part.inertia_symbols.items():
         carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
         values = (carried_here.m, *carried_here.s, *carried_here.J)
         bindings |= zip(symbols, values, strict=True)
-    stored = run(m.part, bindings, USED)
+    stored = run(m.part, bindings, names)
     joints = m.part.skeleton.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
     momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
@@ -256,13 +260,18 @@ def _gravity(m: Mounted, state: State, result: Coupled) -> None:
     result.potential = result.potential + state.stored.scalar("potential")
 
 
-def _applied(m: Mounted, state: State, result: Coupled) -> None:
-    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
+def applied_wrenches(m: Mounted, state: State) -> Iterator[tuple[int, Vector, Vector]]:
+    """(carrier, force, moment about its body frame origin) of every force and torque, in the carrier's axes."""
     for i, (carrier, moment, world) in enumerate(m.part.wrenches):
         vector = state.stored.vector("load.vector", i)
         if world:
             vector = apply(state.pose(carrier).R, vector)
-        force, n = wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
+        yield carrier, *wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
+
+
+def _applied(m: Mounted, state: State, result: Coupled) -> None:
+    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
+    for carrier, force, n in applied_wrenches(m, state):
         columns = state.outside if carrier == INTERFACE else state.columns[carrier]
         if carrier != INTERFACE:
             n = add(n, cross((0, 0, state.tau[carrier]), force))

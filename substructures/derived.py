@@ -1,88 +1,84 @@
-"""Formulas that follow from metric, Christoffel symbols and forces: Coriolis matrix, inverse dynamics, energy."""
+"""Formulas that follow from those of a model: Coriolis matrix, energy, momentum, dynamics and its derivatives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
-from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, Output, Program, Symbol, program
-from substructures.expr.replay import replay
+from substructures import sensitivity
+from substructures.errors import TooLarge
+from substructures.expr.program import Formulas, Program
 from substructures.model import Model
-
-LENGTH = {"R": "rad", "P": "m"}
-
-
-class _Replayed:
-    """Outputs of a model in a new graph, with all dependent elements, and symbols for velocities and accelerations."""
-
-    def __init__(self, model: Model) -> None:
-        self.model, self.graph, self.n = model, Graph(), model.dof
-        self.symbols = {symbol.name: symbol for symbol in model.program.symbols}
-
-    def elements(self, name: str) -> dict[tuple[int, ...], Expr]:
-        """All non-zero elements of an output."""
-        stored = self.model.program.outputs[name]
-        values = [
-            x for x in replay(self.model.program, self.graph, {}, [name])[name].entries.values() if isinstance(x, Expr)
-        ]
-        numbered = Output(stored.shape, stored.index, tuple(range(len(values))), stored.symmetry)
-        return {index: values[k] if sign > 0 else -values[k] for index, k, sign in numbered.expanded()}
-
-    def rate(self, a: int, primes: str) -> Expr:
-        """q'^a or q''^a."""
-        name = self.model.coordinates[a] + primes
-        kind = "velocity" if primes == "'" else "acceleration"
-        unit = LENGTH[self.model.joints[a]] + ("/s" if primes == "'" else "/s^2")
-        self.symbols[name] = Symbol(name, kind, unit)
-        return self.graph.symbol(name)
-
-    def coriolis(self) -> dict[tuple[int, ...], Expr]:
-        """C_ab = Gamma_abc q'^c."""
-        entries: dict[tuple[int, ...], Expr] = {}
-        for (a, b, c), gamma in self.elements("christoffel").items():
-            entries[a, b] = entries.get((a, b), self.graph.zero) + gamma * self.rate(c, "'")
-        return entries
-
-    def product(self, matrix: dict[tuple[int, ...], Expr], primes: str) -> dict[tuple[int, ...], Expr]:
-        """m_ab q'^b (or q''^b)."""
-        entries: dict[tuple[int, ...], Expr] = {}
-        for (a, b), x in matrix.items():
-            entries[(a,)] = entries.get((a,), self.graph.zero) + x * self.rate(b, primes)
-        return entries
-
-    def inverse_dynamics(self) -> dict[tuple[int, ...], Expr]:
-        """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a."""
-        result = self.product(self.elements("metric"), "''")
-        for index, x in self.elements("bias").items():
-            result[index] = result.get(index, self.graph.zero) + x
-        for index, x in self.elements("forces").items():
-            result[index] = result.get(index, self.graph.zero) - x
-        return result
-
-    def kinetic_energy(self) -> dict[tuple[int, ...], Expr]:
-        """1/2 g_ab q'^a q'^b."""
-        momentum = self.product(self.elements("metric"), "'")
-        twice = self.graph.sum(p * self.rate(a, "'") for (a,), p in momentum.items())
-        return {(): twice / 2}
+from substructures.part import MAX_NODES
+from substructures.replayed import ID, Entries, Replayed, vector
 
 
-_SHAPES: dict[str, tuple[int, Callable[[_Replayed], dict[tuple[int, ...], Any]]]] = {
-    "coriolis": (2, _Replayed.coriolis),
-    "inverse_dynamics": (1, _Replayed.inverse_dynamics),
-    "kinetic_energy": (0, _Replayed.kinetic_energy),
+def _coriolis(model: Model, max_nodes: int) -> Program:
+    """C_ab = Gamma_abc q'^c."""
+    products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
+    if products > max_nodes:
+        raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
+    r, entries = Replayed(model), Entries()
+    for (a, b, c), gamma in r.elements("christoffel").items():
+        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.rate(c, "'")
+    return r.program({"coriolis": Formulas((r.n, r.n), entries)})
+
+
+def _inverse_dynamics(model: Model, _: int) -> Program:
+    r = Replayed(model)
+    return r.program({ID: vector(r.inverse_dynamics())})
+
+
+def _kinetic_energy(model: Model, _: int) -> Program:
+    """1/2 g_ab q'^a q'^b."""
+    r = Replayed(model)
+    momentum = r.product(r.elements("metric"), "'")
+    twice = r.graph.sum(p * r.rate(a, "'") for (a,), p in momentum.items())
+    return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
+
+
+def _total_momentum(model: Model, _: int) -> Program:
+    """p_a q'^a for the momenta p_a of unit velocities."""
+    r, outputs = Replayed(model), dict[str, Formulas]()
+    for kind in ("linear", "angular"):
+        entries = Entries()
+        for (a, i), p in r.elements(f"{kind}_momentum").items():
+            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.rate(a, "'")
+        outputs[kind] = Formulas((3,), entries)
+    return r.program(outputs)
+
+
+_FORMULAS: dict[str, Callable[[Model, int], Program]] = {
+    "coriolis": _coriolis,
+    "inverse_dynamics": _inverse_dynamics,
+    "forward_dynamics": sensitivity.forward_dynamics,
+    "kinetic_energy": _kinetic_energy,
+    "total_momentum": _total_momentum,
+    "inverse_dynamics_derivative": lambda model, _: sensitivity.inverse_dynamics_derivative(model),
+    "forward_dynamics_derivative": sensitivity.forward_dynamics_derivative,
 }
-DERIVED = tuple(_SHAPES)
+DERIVED = tuple(_FORMULAS)
 
 
-def derived(model: Model, quantity: str) -> Program:
-    """A quantity of DERIVED as a program with one output of that name (mathematics.md, section 7).
+def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
+    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7).
 
-    coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew;
-    inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N]; kinetic_energy (): [J].
-    Velocities are the symbols q', accelerations q''. Raises KeyError for another name.
+    coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
+    inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
+    forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :func:`substructures.sensitivity.forward_dynamics`;
+    total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
+    inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
+    see :mod:`substructures.sensitivity`.
+    Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
+    ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
     """
-    axes, formula = _SHAPES[quantity]
-    replayed = _Replayed(model)
-    entries = formula(replayed)
-    return program(replayed.graph, {quantity: Formulas((model.dof,) * axes, entries)}, replayed.symbols)
+    result = _FORMULAS[quantity](model, max_nodes)
+    if len(result) > max_nodes:
+        raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
+    return result
+
+
+def kept(model: Model, quantity: str) -> Program:
+    """:func:`derived`, once for every model."""
+    if quantity not in model.derived:
+        model.derived[quantity] = derived(model, quantity)
+    return model.derived[quantity]

@@ -2,83 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from substructures.errors import Fault, InvalidDocument
+from substructures.directions import direction_values
+from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
-from substructures.model import KINEMATICS, Model
+from substructures.model import Model
+from substructures.quantities import DYNAMICS, QUANTITIES, REGRESSOR, Quantity, Sources, cost, read_quantities, steps
+from substructures.sensitivity import FD, SINGULAR
 from substructures.solve import cholesky_solve
-from substructures.states import Array, States, read_states, symbol_values
+from substructures.states import Array, States, known_values, read_states, require
 
-FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t"))
+__all__ = [
+    "QUANTITIES",
+    "REGRESSOR",
+    "Engine",
+    "Sources",
+    "cost",
+    "evaluate",
+    "interpreted",
+    "read_quantities",
+    "steps",
+]
 
-
-@dataclass
-class Batch:
-    """A request being answered: outputs of the program are computed once and shared by the quantities."""
-
-    model: Model
-    states: States
-    values: dict[str, Any]
-    outputs: dict[str, Array]
-
-    def output(self, name: str) -> Array:
-        """An output of the program, (N, ...)."""
-        return self.outputs[name]
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A quantity of the contract: outputs of the program that it needs, and how it follows from them."""
-
-    needs: tuple[str, ...]
-    compute: Callable[[Batch], Any]
-
-
-def _inverse_dynamics(b: Batch) -> Array:
-    if b.states.qdd is None:
-        raise InvalidDocument.at("/qdd", "missing", "inverse_dynamics needs accelerations 'qdd'")
-    return np.einsum("nab,nb->na", b.output("metric"), b.states.qdd) + b.output("bias") - b.output("forces")
-
-
-def _forward_dynamics(b: Batch) -> Array:
-    """q'' from g q'' = Q - Gamma q' q'; NaN where the metric is singular (the state is listed in the failures)."""
-    return cholesky_solve(b.output("metric"), b.output("forces") - b.output("bias"))
-
-
-def _momentum(b: Batch) -> dict[str, Array]:
-    return {
-        "linear": np.einsum("nai,na->ni", b.output("linear_momentum"), b.states.qd),
-        "angular": np.einsum("nai,na->ni", b.output("angular_momentum"), b.states.qd),
-    }
-
-
-def _kinetic_energy(b: Batch) -> Array:
-    return 0.5 * np.einsum("nab,na,nb->n", b.output("metric"), b.states.qd, b.states.qd)
-
-
-def _output(name: str) -> Quantity:
-    return Quantity((name,), lambda b: b.output(name))
-
-
-QUANTITIES: dict[str, Quantity] = {
-    **{name: _output(name) for name in ("metric", "christoffel", "forces", "gravity", "bias", "potential_energy")},
-    "coriolis": Quantity(("christoffel",), lambda b: np.einsum("nabc,nc->nab", b.output("christoffel"), b.states.qd)),
-    "inverse_dynamics": Quantity(("metric", "bias", "forces"), _inverse_dynamics),
-    "forward_dynamics": Quantity(("metric", "bias", "forces"), _forward_dynamics),
-    "kinetic_energy": Quantity(("metric",), _kinetic_energy),
-    "kinematics": Quantity(KINEMATICS, lambda b: {name: b.output(name) for name in KINEMATICS}),
-    "momentum": Quantity(("linear_momentum", "angular_momentum"), _momentum),
-}
-
-ADVICE = {
-    "forward_dynamics": "the metric is singular or not positive definite: check masses, inertias and coordinates",
-}
+#: numbers of a block where an intermediate result is larger than the result
+BLOCK = 2_000_000
 
 
 #: outputs of a program for (program, values, names, number of states)
@@ -91,29 +43,90 @@ def interpreted(program: Program, values: Mapping[str, Any], names: list[str], s
 
 
 def evaluate(
-    model: Model, request: Mapping[str, Any], limit: int | None = None, engine: Engine = interpreted
+    model: Model,
+    request: Mapping[str, Any],
+    limit: int | None = None,
+    engine: Engine = interpreted,
+    sources: Sources | None = None,
 ) -> dict[str, Any]:
     """Evaluate quantities for states.
 
-    ``request``: the JSON body of the contract (lists, numbers) or the same with arrays. The answer holds numpy arrays,
-    leading axis N dropped if ``q`` was (n,); ``failures`` lists states with a result that is not finite.
-    Raises InvalidDocument (with pointers) and MissingValue (a parameter without a value).
+    ``request``: the JSON body of the contract (lists, numbers) or the same with arrays; for derivatives of inverse and
+    forward dynamics ``along``: the direction, with ``q, qd, qdd, inputs`` as in the request. The answer holds numpy
+    arrays, leading axis N dropped if ``q`` was (n,); ``failures`` lists states with a result that is not finite;
+    ``frames`` names the rows of kinematics, ``columns`` those of the regressor.
+    Raises InvalidDocument (with pointers), MissingValue (a parameter without a value) and TooLarge.
     """
-    quantities = _quantities(request)
+    quantities = read_quantities(request)
+    sources = sources or Sources(model)
     states = read_states(model, request, limit)
-    needs = sorted({name for q in quantities for name in QUANTITIES[q].needs})
-    values = symbol_values(model, request, states, needs)
-    batch = Batch(model, states, values, engine(model.program, values, needs, len(states.q)))
+    values = _values(sources, request, states, quantities)
+    found = _computed(sources, quantities, values, engine, len(states.q))
+    results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in quantities}
     answer: dict[str, Any] = {
         "coordinates": list(model.coordinates),
         "count": len(states.q),
         "digest": model.program.digest,
     }
-    results = {name: QUANTITIES[name].compute(batch) for name in quantities}
     if "kinematics" in results:
         answer["frames"] = list(model.frames)
+    if REGRESSOR in found:
+        answer["columns"] = {"names": list(sources.columns().names), "units": list(sources.columns().units)}
     answer |= {name: _single(value) if states.single else value for name, value in results.items()}
     return answer | {"failures": _failures(results)}
+
+
+def _computed(
+    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], engine: Engine, count: int
+) -> dict[str, dict[str, Array]]:
+    """Outputs by source."""
+    found: dict[str, dict[str, Array]] = {}
+    for source, program, names in steps(sources, quantities):
+        if program is None:
+            found[source] = {name: np.full((count, sources.model.dof), np.nan) for name in names}
+            continue
+        require(program, names, values)
+        if program is sources.model.program and source == FD:
+            found[source] = _solved(sources.model, values, engine, count)
+        else:
+            found[source] = engine(program, values, names, count)
+    return found
+
+
+def _solved(model: Model, values: Mapping[str, Any], engine: Engine, count: int) -> dict[str, Array]:
+    """Forward dynamics of a model too large for formulas of it: g q'' = Q - Gamma q' q' by numbers, in blocks."""
+    result, size = np.empty((count, model.dof)), max(1, BLOCK // model.dof**2)
+    for start in range(0, count, size):
+        part = slice(start, start + size)
+        some = {name: x[part] if np.shape(x) == (count,) else x for name, x in values.items()}
+        found = engine(model.program, some, list(DYNAMICS), len(result[part]))
+        result[part] = cholesky_solve(found["metric"], found["forces"] - found["bias"])
+    return {FD: result, "pivots": np.ones((count, model.dof))}
+
+
+def _values(sources: Sources, request: Mapping[str, Any], states: States, quantities: Sequence[str]) -> dict[str, Any]:
+    """Values of all symbols. Raises InvalidDocument for a field that a quantity needs."""
+    model = sources.model
+    needed = {field: name for name in reversed(quantities) for field in QUANTITIES[name].requires}
+    if "qdd" in needed and states.qdd is None and model.dof:
+        raise InvalidDocument.at("/qdd", "missing", f"{needed['qdd']} needs accelerations 'qdd'")
+    values = known_values(model, request, states, sources.parameters(quantities))
+    if "along" in needed:
+        values |= direction_values(model, request.get("along"), states)
+    return values
+
+
+def _result(quantity: Quantity, found: Mapping[str, Array]) -> Any:
+    """The arrays of a quantity; NaN where the metric could not be inverted."""
+    if quantity.fields:
+        return {field: found[name] for field, name in zip(quantity.fields, quantity.outputs, strict=True)}
+    result = found[quantity.outputs[0]]
+    for name in quantity.pivots:
+        # D_k / |g_kk| that is not positive to rounding
+        n = found[name].shape[1]
+        usable = found[name].min(axis=1, initial=1) > 8 * n * np.finfo(np.float64).eps
+        result = np.where(usable[:, None], result, np.nan)
+    return result
 
 
 def _single(value: Any) -> Any:
@@ -126,25 +139,8 @@ def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
         arrays = value.values() if isinstance(value, dict) else (value,)
         bad = np.zeros(0, dtype=np.int64)
         for some in arrays:
-            finite = np.isfinite(some).reshape(len(some), -1).all(axis=1)
+            finite = np.isfinite(some).all(axis=tuple(range(1, some.ndim)))
             bad = np.union1d(bad, np.flatnonzero(~finite))
-        message = ADVICE.get(name, "the result is not finite")
+        message = SINGULAR if QUANTITIES[name].pivots else "the result is not finite"
         failures += [{"state": int(i), "quantity": name, "code": "not-finite", "message": message} for i in bad]
     return failures
-
-
-def _quantities(request: Mapping[str, Any]) -> list[str]:
-    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key}'") for key in request if key not in FIELDS]
-    names = request.get("quantities")
-    if not isinstance(names, (list, tuple)) or not names:
-        faults.append(Fault("/quantities", "missing", "a list of quantities is needed"))
-        names = []
-    for i, name in enumerate(names):
-        if name not in QUANTITIES:
-            known = ", ".join(QUANTITIES)
-            faults.append(
-                Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {known}")
-            )
-    if faults:
-        raise InvalidDocument(faults)
-    return list(dict.fromkeys(names))

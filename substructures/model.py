@@ -8,6 +8,7 @@ christoffel            n n n        Gamma_abc, first kind, first index = equatio
 gravity                n            generalised gravity forces
 bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
+inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
 potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
 linear_momentum        n 3          momentum of unit velocity q'^a, world axes
 angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
@@ -20,19 +21,19 @@ closure.*              m ...        of a tree with closures: see :mod:`substruct
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.bias import bias_forces
+from substructures.bias import bias_forces, inverse_dynamics
 from substructures.closures import Rows, closure_formulas
 from substructures.coupling import Coupled, couple_parts, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.kinematics import frame_kinematics
-from substructures.mechanics.linear3 import add, apply, cross, transpose
+from substructures.mechanics.linear3 import S, add, apply, cross, transpose
 from substructures.mounting import Assembly, assemble, joint_parents
 from substructures.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.skeleton import christoffel_entries
@@ -40,6 +41,7 @@ from substructures.tree import TreeSpec
 from substructures.verification import certify_tree
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
+MOMENTUM = ("linear_momentum", "angular_momentum")
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,11 @@ class Model:
     def dof(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
+
+    @cached_property
+    def derived(self) -> dict[str, Program]:
+        """Programs that were formed from this model's, by name; they live as long as it."""
+        return {}
 
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
@@ -98,7 +105,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
     try:
         coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
-        outputs = model_outputs(assembly, coupled)
+        outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
     except ZeroDivisionError:
         raise InvalidDocument.at(
             "/instances", "division-by-zero", "with these bindings a formula divides by zero"
@@ -118,9 +125,19 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows)
 
 
-def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
-    """The table above."""
-    n = len(coupled.gravity)
+def model_outputs(
+    assembly: Assembly,
+    coupled: Coupled,
+    rates: Sequence[S],
+    accelerations: Sequence[S],
+    names: frozenset[str] | None = None,
+) -> dict[str, Formulas]:
+    """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""
+    n, mounted, states = len(coupled.gravity), assembly.mounted, coupled.states
+
+    def wanted(*some: str) -> bool:
+        return names is None or not names.isdisjoint(some)
+
     outputs = {
         "metric": Formulas((n, n), coupled.metric, "symmetric"),
         "christoffel": Formulas((n, n, n), coupled.christoffel, "christoffel"),
@@ -128,23 +145,28 @@ def model_outputs(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
-    rates = _rates(assembly)
-    bias = bias_forces(assembly.mounted, coupled.states, rates)
-    outputs["bias"] = array((n,), lambda a: bias[a])
-    outputs |= _momentum(assembly, coupled) | _kinematics(assembly, coupled)
-    if assembly.cuts:
-        outputs |= closure_formulas(assembly.mounted, coupled.states, assembly.cuts, rates)
-    return outputs
+    if wanted("bias"):
+        bias = bias_forces(mounted, states, rates)
+        outputs["bias"] = array((n,), lambda a: bias[a])
+    if wanted("inverse_dynamics"):
+        inverse = inverse_dynamics(mounted, states, rates, accelerations)
+        outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
+    if wanted(*MOMENTUM):
+        outputs |= _momentum(assembly, coupled)
+    if assembly.cuts and names is None:
+        outputs |= closure_formulas(mounted, states, assembly.cuts, rates)
+    return outputs | (_kinematics(assembly, coupled) if wanted(*KINEMATICS) else {})
 
 
-def _rates(assembly: Assembly) -> list[Any]:
-    """The symbols of all velocities."""
-    rates = []
+def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
+    """The symbols of all velocities and accelerations."""
+    rates, accelerations = [], []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
         for joint in m.part.skeleton.joints:
-            name = f"{instance.name}.{joint.coordinate}'"
-            rates.append(assembly.scope.declare(name, "velocity", "m/s" if joint.s else "rad/s"))
-    return rates
+            name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
+            rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
+            accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))
+    return rates, accelerations
 
 
 def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:

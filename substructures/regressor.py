@@ -18,10 +18,10 @@ which is structurally zero where joint a does not carry k, and where the formula
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.bias import from_body
+from substructures.bias import body_motions, from_body
 from substructures.coupling import OWN, Mounted, Run, State, couple_parts, frame_link, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
@@ -30,10 +30,10 @@ from substructures.interface import inertia_names
 from substructures.mechanics.base_functions import Columns, carried
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import lean_rotation
-from substructures.mechanics.linear3 import S, add, negate, scale, transpose
+from substructures.mechanics.linear3 import S, negate, transpose
 from substructures.mechanics.metric import pairing
 from substructures.mechanics.newton_euler import Motion, inertial_load
-from substructures.model import Model
+from substructures.model import Model, rate_symbols
 from substructures.mounting import Assembly, assemble
 from substructures.part import MAX_NODES, Part
 from substructures.skeleton import BASE, INTERFACE
@@ -80,10 +80,7 @@ class RegressorModel:
         states = read_states(model, request, limit)
         if states.qdd is None and model.dof:
             raise InvalidDocument.at("/qdd", "missing", "the regressor needs accelerations 'qdd'")
-        # accelerations come last: no symbol can be checked before they are there, the interpreter checks
-        values = symbol_values(model, request, states, ())
-        if states.qdd is not None:
-            values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(self.coordinates)}
+        values = symbol_values(model, request, states, OUTPUTS)
         results = interpret_in_blocks(self.program, values, OUTPUTS, len(states.q))
         return {name: x[0] if states.single else x for name, x in results.items()}
 
@@ -147,17 +144,16 @@ def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
 def _links(run: Run, assembly: Assembly) -> list[_Link]:
     """All links, and their motion in one pass outwards."""
     states = couple_parts(_bare(run), assembly.mounted, assembly.gravity).states
+    motions = body_motions(assembly.mounted, states, *rate_symbols(assembly))
     result: list[_Link] = []
-    motions: list[list[Motion]] = []
-    for (instance, m), state in zip(_pairs(assembly), states, strict=True):
-        motions.append(_motions(m, state, motions, _rates(assembly, instance, m)))
+    for (instance, m), state, own_motions in zip(_pairs(assembly), states, motions, strict=True):
         own = run(m.part, m.bindings, OWN)
         frames = list(m.part.skeleton.carrier)
         named = {c: symbols[0].removesuffix(".m") for c, symbols in sorted(m.part.inertia_symbols.items())}
         if state.outside and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
             named[INTERFACE] = BASE
         result += [
-            _link(f"{instance.name}.{body}", m, state, frames.index(body), own, motions[-1]) for body in named.values()
+            _link(f"{instance.name}.{body}", m, state, frames.index(body), own, own_motions) for body in named.values()
         ]
     return result
 
@@ -183,31 +179,3 @@ def _bare(run: Run) -> Run:
         return Stored({**found.outputs, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
 
     return massless
-
-
-def _rates(assembly: Assembly, instance: Instance, m: Mounted) -> list[tuple[S, S]]:
-    """The symbols of q' and q'' of an instance."""
-    result = []
-    for joint in m.part.skeleton.joints:
-        name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
-        velocity = assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s")
-        result.append((velocity, assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2")))
-    return result
-
-
-def _motions(m: Mounted, state: State, motions: list[list[Motion]], rates: Sequence[tuple[S, S]]) -> list[Motion]:
-    """Of every joint's body frame, and last of the interface."""
-    if state.host is not None and state.link is not None:
-        carrier = state.link.parent
-        interface = motions[m.host][carrier].at(from_body(state.host, carrier, state.link.Z), state.link.rotation)
-    else:
-        # gravity is a world accelerated upwards
-        interface = Motion(a=scale(-1, state.gamma[INTERFACE]))
-    own = [interface]
-    for c, (link, (rate, second)) in enumerate(zip(state.links, rates, strict=True)):
-        before = own[link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
-        moved = before.moved(link.s, rate, state.tau[c])
-        along = (0, 0, second)
-        faster = {"a": add(moved.a, along)} if link.s else {"alpha": add(moved.alpha, along)}
-        own.insert(c, replace(moved, **faster))
-    return own

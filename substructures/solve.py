@@ -11,19 +11,16 @@ Array = NDArray[np.float64]
 def cholesky_solve(g: Array, f: Array) -> Array:
     """x with g x = f for (N, n, n) and (N, n), by g = L L^T; NaN in states where g is not positive definite."""
     try:
-        return _solved(g, f)
+        L = np.linalg.cholesky(g)
     except np.linalg.LinAlgError:
-        pass
-    result = np.full_like(f, np.nan)
-    for i in range(len(f)):
-        try:
-            result[i] = _solved(g[i : i + 1], f[i : i + 1])[0]
-        except np.linalg.LinAlgError:
-            continue
-    return result
-
-
-def _solved(g: Array, f: Array) -> Array:
-    L = np.linalg.cholesky(g)
-    y = np.linalg.solve(L, f[..., None])
-    return np.asarray(np.linalg.solve(np.swapaxes(L, -1, -2), y)[..., 0], dtype=np.float64)
+        half = len(f) // 2
+        if not half:
+            return np.full_like(f, np.nan)
+        return np.concatenate([cholesky_solve(g[:half], f[:half]), cholesky_solve(g[half:], f[half:])])
+    x = np.array(f, dtype=np.float64)
+    n = x.shape[1]
+    for k in range(n):
+        x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k, :k], x[:, :k])) / L[:, k, k]
+    for k in reversed(range(n)):
+        x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k + 1 :, k], x[:, k + 1 :])) / L[:, k, k]
+    return x

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import lru_cache
@@ -16,7 +16,7 @@ from substructures.errors import Fault, InvalidDocument, MissingValue
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import ExpressionError, parse
-from substructures.expr.program import array, program
+from substructures.expr.program import Program, array, program
 from substructures.model import Model
 from substructures.scope import no_names
 
@@ -110,45 +110,58 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
 
 
 def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
-    """Values of all symbols that the needed outputs depend on."""
-    count = len(states.q)
-    values: dict[str, Any] = {}
-    for a, name in enumerate(model.coordinates):
-        values[name] = states.q[:, a]
-        values[f"{name}'"] = states.qd[:, a]
-    t = numeric(0 if request.get("t") is None else request["t"], "/t")
-    values["t"] = _per_state(t, count, "/t")
-    symbols = {s.name: s for s in model.program.symbols}
-    values |= {name: 0.0 for name, s in symbols.items() if s.kind == "input"}
-    values |= _defaults(model)
-    values |= _given(request, "inputs", count, {n for n, s in symbols.items() if s.kind == "input"} | _actuators(model))
-    values |= _given(request, "parameters", count, set(model.parameters))
-    for name in _needed(model, needs):
-        if name not in values:
-            raise MissingValue(name)
+    """Values of all symbols that the needed outputs of the model depend on. Raises InvalidDocument, MissingValue."""
+    values = known_values(model, request, states, model.parameters)
+    require(model.program, needs, values)
     return values
 
 
-def _actuators(model: Model) -> set[str]:
-    return {f"tau.{name}" for name in model.coordinates}
+def known_values(
+    model: Model, request: Mapping[str, Any], states: States, parameters: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
+    a value in the request. Raises InvalidDocument.
+    """
+    count = len(states.q)
+    values: dict[str, Any] = {}
+    for primes, columns in (("", states.q), ("'", states.qd), ("''", states.qdd)):
+        if columns is not None:
+            values |= {f"{name}{primes}": columns[:, a] for a, name in enumerate(model.coordinates)}
+    t = numeric(0 if request.get("t") is None else request["t"], "/t")
+    values["t"] = _per_state(t, count, "/t")
+    inputs = input_names(model)
+    values |= dict.fromkeys(inputs, 0.0)
+    # default values, correctly rounded
+    values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
+    values |= _given(request, "inputs", count, inputs)
+    values |= _given(request, "parameters", count, parameters)
+    return values
 
 
-def _needed(model: Model, needs: Iterable[str]) -> list[str]:
-    operations = model.program.operations
-    return [
-        model.program.symbols[operations[i][1]].name
-        for i in model.program.reachable(needs)
-        if operations[i][0] == "sym"
-    ]
+def input_names(model: Model) -> list[str]:
+    """The inputs of loads, and every actuator (also where it does no work)."""
+    named = [s.name for s in model.program.symbols if s.kind == "input"]
+    return list(dict.fromkeys([*named, *(f"tau.{name}" for name in model.coordinates)]))
 
 
-def _given(request: Mapping[str, Any], field: str, count: int, known: set[str]) -> dict[str, Any]:
-    given = request.get(field) or {}
-    if not isinstance(given, Mapping):
-        raise InvalidDocument.at(f"/{field}", "object-expected", "an object of numbers by name is needed")
+def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:
+    """Raises MissingValue for the first symbol without a value that the outputs depend on."""
+    for name in program.needs(names):
+        if name not in values:
+            raise MissingValue(name)
+
+
+def _given(request: Mapping[str, Any], field: str, count: int, known: Container[str]) -> dict[str, Any]:
+    return given_values(request.get(field), field, f"/{field}", count, known)
+
+
+def given_values(given: Any, field: str, place: str, count: int, known: Container[str]) -> dict[str, Any]:
+    """Numbers by name, one or one for every state; ``field``: what they are, ``place``: pointer to the object."""
+    if not isinstance(given or {}, Mapping):
+        raise InvalidDocument.at(place, "object-expected", "an object of numbers by name is needed")
     result = {}
-    for name, value in given.items():
-        pointer = f"/{field}/{escape(name)}"
+    for name, value in (given or {}).items():
+        pointer = f"{place}/{escape(name)}"
         if name not in known:
             raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
         result[name] = _per_state(numeric(value, pointer), count, pointer)
@@ -161,11 +174,6 @@ def _per_state(values: Array, count: int, pointer: str) -> Array:
             pointer, "wrong-length", f"one number, or one for each of the {count} states is needed"
         )
     return values
-
-
-def _defaults(model: Model) -> dict[str, float]:
-    """Default values of parameters, correctly rounded."""
-    return {name: default_number(p["value"]) for name, p in model.parameters.items() if p["value"] is not None}
 
 
 @lru_cache(maxsize=100_000)

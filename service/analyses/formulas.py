@@ -19,7 +19,6 @@ from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.perturbation import perturbation, state_space
-from substructures.analysis.right_hand_side import forward_dynamics
 from substructures.analysis.routh import routh
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.program import Program
@@ -137,7 +136,7 @@ def _perturbation(source: Source, _: Options) -> Made:
 def _state_space(source: Source, options: Options) -> Made:
     model, outputs, inputs = source.model, options.get("outputs", ()), options.get("inputs")
     state = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-    members = {"state": state, "inputs": list(inputs or inputs_of(model)), "outputs": list(outputs)}
+    members = {"state": state, "inputs": list(inputs or inputs_of(model)), "expressions": list(outputs)}
     return Made(state_space(model, outputs, inputs), members)
 
 
@@ -148,10 +147,6 @@ def _sensitivity(source: Source, options: Options) -> Made:
 
 def _curvature(source: Source, _: Options) -> Made:
     return Made(curvature(source.model, source.limits.program_nodes), {"coordinates": list(source.model.coordinates)})
-
-
-def _forward_dynamics(source: Source, _: Options) -> Made:
-    return Made(forward_dynamics(source.model), {"coordinates": list(source.model.coordinates)})
 
 
 def _adjoint(source: Source, options: Options) -> Made:
@@ -191,11 +186,6 @@ def _base_parameters(source: Source, options: Options) -> Made:
     return Made(found.program, members, found)
 
 
-def _regressor(source: Source, _: Options) -> Made:
-    found = source.regressor()
-    return Made(found.program, {"names": list(found.names), "units": list(found.units)})
-
-
 _QUANTITIES = {
     "first_integrals": _Quantity(_first_integrals, ("inputs", "zero"), (), {"zero": "parameters"}),
     "routhian": _Quantity(_routhian, ("cyclic",), (), {"cyclic": "coordinates"}),
@@ -206,10 +196,8 @@ _QUANTITIES = {
     "riemann": _Quantity(_curvature, (), ("riemann",)),
     "ricci": _Quantity(_curvature, (), ("ricci",)),
     "scalar_curvature": _Quantity(_curvature, (), ("scalar_curvature",)),
-    "forward_dynamics": _Quantity(_forward_dynamics, (), ("forward_dynamics",)),
     "adjoint": _Quantity(_adjoint, ("controls", "running", "terminal", "parameters")),
     "base_parameters": _Quantity(_base_parameters, ("drives",), ("grouping", "base_parameters")),
     "base_regressor": _Quantity(_base_parameters, ("drives",), ("base_regressor",)),
-    "regressor": _Quantity(_regressor),
 }
 QUANTITIES = tuple(_QUANTITIES)

@@ -5,37 +5,26 @@ from __future__ import annotations
 from time import perf_counter
 from typing import Any
 
-import orjson
-
 from service.analyses.formulas import Options, made
 from service.analyses.numbers import ANALYSES, require_object
 from service.analyses.results import written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.negotiation import MEDIA_TYPES, choose_media_type
+from service.negotiation import JSON, MEDIA_TYPES, choose_media_type
 from service.operations import trees
-from service.operations.models import Style, bound
+from service.operations.models import Style, bound, joined
+from service.operations.sources import sources_of
 from service.problems import Refused
 from service.queries.trees import Tree
 from service.store import Store
-from substructures.documents import read_json
 from substructures.model import Model
 from substructures.printers import render
-from substructures.regressor import RegressorModel, regressor
-from substructures.tree import TreeSpec
 
 
 def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
-    limits = store.settings.limits
-
-    def derive_regressor() -> RegressorModel:
-        spec = TreeSpec.read(read_json(tree.spec.encode()))
-        with store.database.read() as connection:
-            parts = trees.parts_of(store, connection, spec)
-        return regressor(spec, parts, limits.program_nodes)
-
-    return Source(model, tree.digest, derive_regressor, limits, store.kernels.folder, store.kernels)
+    columns = sources_of(store, tree, model).columns
+    return Source(model, tree.digest, columns, store.settings.limits, store.kernels.folder, store.kernels)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
@@ -44,9 +33,10 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
     Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
     """
     found = made(source, quantity, options)
-    text = render(bound(found.program, source.model.parameters, style.bind), style.format, style.form)
-    if style.format == "json" and found.members:
-        text = orjson.dumps(found.members).decode()[:-1] + "," + text[1:]
+    program = bound(found.program, source.model.parameters, style.bind)
+    text = render(program, style.format, style.form)
+    if style.format == JSON and found.members:
+        text = joined(found.members, text)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 

@@ -17,14 +17,14 @@ from service.operations import evaluations
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.model import Model
+from substructures.evaluation import Sources
 from substructures.states import Array, numeric, read_states
 
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 #: fields whose columns may also be given one by one: ``q.<coordinate>``, ``parameters.<name>``, ...
-_GROUPS = ("q", "qd", "qdd", "inputs", "parameters")
+_GROUPS = ("along.inputs", "along.q", "along.qd", "along.qdd", "along", "q", "qd", "qdd", "inputs", "parameters")
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
-_CONSTANTS = ("quantities", "parameters", "inputs", "t")
+_CONSTANTS = ("quantities", "parameters", "inputs", "along", "t")
 _STATES = ("/q", "/qd", "/qdd", "/along/q", "/along/qd", "/along/qdd")
 
 Request = Mapping[str, Any]
@@ -56,13 +56,22 @@ def _request(constants: Request, columns: Mapping[str, Any]) -> dict[str, Any]:
     """The request with nested objects, from columns whose names are joined by dots."""
     request = {name: dict(value) if isinstance(value, Mapping) else value for name, value in constants.items()}
     for name, column in columns.items():
-        group, _, key = name.partition(".")
-        is_grouped = group in _GROUPS and key != ""
-        holder, place = (request.setdefault(group, {}), key) if is_grouped else (request, name)
+        *steps, place = _path(name)
+        holder: Any = request
+        for step in steps:
+            holder = holder.setdefault(step, {}) if isinstance(holder, dict) else None
         if not isinstance(holder, dict) or place in holder:
             raise InvalidDocument.at(pointer_step(name), "given-twice", f"'{name}' is given twice")
         holder[place] = column
     return request
+
+
+def _path(name: str) -> tuple[str, ...]:
+    """Where a column belongs in the nested request."""
+    if name in _GROUPS:
+        return tuple(name.split("."))
+    group = next((each for each in _GROUPS if name.startswith(f"{each}.") and name != f"{each}."), None)
+    return (name,) if group is None else (*group.split("."), name[len(group) + 1 :])
 
 
 def joined(requests: Iterable[Request], limits: Limits) -> Request:
@@ -93,15 +102,15 @@ class Split:
     parts: Iterable[Request]
 
 
-def split(model: Model, request: Request, limits: Limits, rows: bool = False) -> Split:
+def split(sources: Sources, request: Request, limits: Limits, rows: bool = False) -> Split:
     """Check the numbers of a request, and cut it into parts whose results are of moderate size.
 
     ``rows``: give a leading axis to a single state. Raises InvalidDocument.
     """
-    states = read_states(model, request, limits.states)
+    states = read_states(sources.model, request, limits.states)
     if states.single:
         return Split(1, not rows, [{**request, "q": states.q} if rows else request])
-    count, size = len(states.q), max(1, PART // evaluations.bytes_per_state(model, request))
+    count, size = len(states.q), max(1, PART // evaluations.bytes_per_state(sources, request))
     fields = {name: _numbers(value, pointer_step(name)) for name, value in request.items() if name != "quantities"}
     if not set(_lengths(fields, "")) <= {1, count}:  # the evaluation says which one is wrong
         return Split(count, False, [request])

@@ -10,20 +10,10 @@ import orjson
 
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES
-from substructures.model import Model
-
-# dimensions of the answer for one state; what is not listed has one
-_DIMENSIONS = {
-    "metric": 2,
-    "coriolis": 2,
-    "christoffel": 3,
-    "kinetic_energy": 0,
-    "potential_energy": 0,
-}
+from substructures.evaluation import QUANTITIES, Sources, cost
 
 
-def check_size(model: Model, request: Any, limits: Limits, streamed: bool = False) -> None:
+def check_size(sources: Sources, request: Any, limits: Limits, streamed: bool = False) -> None:
     """Refuse what would take too long or too much memory, before anything is computed.
 
     ``streamed``: the answer leaves part by part and may have any size. Raises InvalidDocument, TooLarge.
@@ -31,27 +21,24 @@ def check_size(model: Model, request: Any, limits: Limits, streamed: bool = Fals
     if not isinstance(request, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
     states = _states(request.get("q")) or 1
-    needs = {output for name in _quantities(request) for output in QUANTITIES[name].needs}
-    work = states * len(model.program.reachable(needs))
+    operations, numbers = cost(sources, _quantities(request))
+    work, size = states * operations, 8 * states * numbers
     if work > limits.evaluation_operations:
         raise TooLarge("the evaluation (states times operations)", work, limits.evaluation_operations)
-    size = states * bytes_per_state(model, request)
     if size > limits.binary_bytes and not streamed:
         raise TooLarge("the answer (in bytes)", size, limits.binary_bytes)
 
 
-def _quantities(request: Mapping[str, Any]) -> set[str]:
+def _quantities(request: Mapping[str, Any]) -> list[str]:
     """Those that there are; unknown ones are refused later."""
     given = request.get("quantities")
-    names = {name for name in given if isinstance(name, str)} if isinstance(given, list) else set()
-    return names & QUANTITIES.keys()
+    names = [name for name in given if isinstance(name, str)] if isinstance(given, list) else []
+    return [name for name in dict.fromkeys(names) if name in QUANTITIES]
 
 
-def bytes_per_state(model: Model, request: Mapping[str, Any]) -> int:
+def bytes_per_state(sources: Sources, request: Mapping[str, Any]) -> int:
     """About the size of the results for one state."""
-    n, frames = max(1, len(model.coordinates)), len(model.frames)
-    sizes = {"kinematics": frames * (12 + 6 * n)} | {name: n**k for name, k in _DIMENSIONS.items()}
-    return max(1, 8 * sum(sizes.get(name, n) for name in _quantities(request)))
+    return max(1, 8 * cost(sources, _quantities(request))[1])
 
 
 def _states(q: Any) -> int | None:

@@ -16,8 +16,7 @@ from service.problems import Refused
 from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
-from substructures.evaluation import Engine, evaluate
-from substructures.model import Model
+from substructures.evaluation import Engine, Sources, evaluate
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 _KNOWN = ", ".join(MEDIA_TYPES)
@@ -57,7 +56,7 @@ def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
 class Evaluation:
     """Evaluates a tree in the format wanted."""
 
-    model: Model
+    sources: Sources
     digest: str
     limits: Limits
     engine: Engine
@@ -69,9 +68,9 @@ class Evaluation:
         if wanted == arrow.MEDIA_TYPE:
             return streamed(self._arrow(iter(requests)), wanted)
         request = batches.joined(requests, self.limits)
-        evaluations.check_size(self.model, request, self.limits)
+        evaluations.check_size(self.sources, request, self.limits)
         if wanted == arrays.MEDIA_TYPE:
-            cut = batches.split(self.model, request, self.limits)
+            cut = batches.split(self.sources, request, self.limits)
             return streamed(batches.as_npz(self._evaluated, cut, request.get("quantities", ())), wanted)
         return json_answer(evaluations.as_json(self._evaluated(request), request))
 
@@ -81,8 +80,9 @@ class Evaluation:
         return batches.as_arrow(self._evaluated, cuts, first.get("quantities", ()))
 
     def _cut(self, request: Any) -> Split:
-        evaluations.check_size(self.model, request, self.limits, streamed=True)
-        return batches.split(self.model, request, self.limits, rows=True)
+        evaluations.check_size(self.sources, request, self.limits, streamed=True)
+        return batches.split(self.sources, request, self.limits, rows=True)
 
     def _evaluated(self, request: Request) -> dict[str, Any]:
-        return {**evaluate(self.model, request, self.limits.states, self.engine), "digest": self.digest}
+        answer = evaluate(self.sources.model, request, self.limits.states, self.engine, self.sources)
+        return {**answer, "digest": self.digest}

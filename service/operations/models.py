@@ -13,13 +13,15 @@ from service.answers import Answer
 from service.negotiation import JSON, MEDIA_TYPES
 from service.problems import not_found, unprocessable
 from service.queries.content import FormulaRow
-from substructures.derived import DERIVED, derived
+from substructures.derived import DERIVED
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.evaluation import REGRESSOR, Sources
 from substructures.expr.bind import bind
 from substructures.expr.program import Output, Program
 from substructures.model import Model
 from substructures.printers import entries, render
 from substructures.printers.symmetry import symmetry_rule
+from substructures.regressor import OUTPUTS
 
 #: quantities that consist of several outputs
 GROUPS = {
@@ -52,18 +54,29 @@ def quantities(name: str) -> tuple[str, ...]:
 
 def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity."""
-    if quantity in DERIVED or any(name in model.program.outputs for name in quantities(quantity)):
+    if quantity in (*DERIVED, *OUTPUTS) or any(name in model.program.outputs for name in quantities(quantity)):
         return
-    known = ", ".join([*model.program.outputs, *DERIVED, "kinematics", "momentum", *QUANTITIES])
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
+    known = ", ".join(dict.fromkeys(names))
     raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
 
 
-def model_quantity(model: Model, quantity: str) -> Program:
-    """The program of one quantity of a model."""
+def model_quantity(sources: Sources, quantity: str) -> Program:
+    """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
     if quantity in DERIVED:
-        return derived(model, quantity)
-    wanted = quantities(quantity)
-    return model.program.select([name for name in model.program.outputs if name in wanted])
+        return sources.program(quantity)
+    if quantity in OUTPUTS:
+        return sources.program(REGRESSOR).select([quantity])
+    wanted, whole = quantities(quantity), sources.model.program
+    return whole.select([name for name in whole.outputs if name in wanted])
+
+
+def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[str, Any]]:
+    """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
+    if quantity not in OUTPUTS:
+        return {}, sources.model.parameters
+    found = sources.columns()
+    return {"columns": {"names": found.names, "units": found.units}}, found.parameters
 
 
 def part_quantity(program: Program, rows: Sequence[FormulaRow]) -> Program:
@@ -143,11 +156,15 @@ def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: s
         raise unprocessable("bind", message, "/query/bind") from None
 
 
-def printed(program: Program, style: Style, coordinates: Sequence[str] = ()) -> Answer:
-    """The program in the format chosen. Raises TooLarge."""
+def printed(
+    program: Program, style: Style, coordinates: Sequence[str] = (), members: Mapping[str, Any] | None = None
+) -> Answer:
+    """The program in the format chosen; ``members`` are put before it in JSON. Raises TooLarge."""
     text = render(program, style.format, style.form)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, coordinates)
+    if style.format == JSON and members:
+        text = joined(members, text)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 
@@ -162,4 +179,9 @@ def _with_entries(text: str, program: Program, style: Style, coordinates: Sequen
         "symmetry_rule": symmetry_rule(CHRISTOFFEL, "Gamma"),
         "entries": [dict(zip("abc", e["index"], strict=True)) | {"formula": e["formula"]} for e in listed],
     }
+    return joined(members, text)
+
+
+def joined(members: Mapping[str, Any], text: str) -> str:
+    """A JSON object with further members before those of another one."""
     return orjson.dumps(members).decode()[:-1] + "," + text[1:]

@@ -17,6 +17,7 @@ from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store import Store
 from substructures.documents import read_json
+from substructures.evaluation import Sources
 from substructures.model import Model
 from substructures.part import Part
 from substructures.picture import picture
@@ -66,7 +67,7 @@ def _kept(store: Store, digest: str, pose: Pose | None) -> str | None:
 
 
 def _draw(store: Store, digest: str, scene: Scene, pose: Pose | None) -> str:
-    check_size(scene.model, {"quantities": ["kinematics"], "q": pose}, store.settings.limits)
+    check_size(Sources(scene.model), {"quantities": ["kinematics"], "q": pose}, store.settings.limits)
     with np.errstate(all="ignore"):  # defaults of any size may be stored; what is not finite is not drawn
         svg = picture(scene.spec, scene.parts, scene.model, None if pose is None else list(pose))
     if pose is None:

@@ -95,6 +95,7 @@ def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_ex
     spec = spec.model_copy(update={"instances": pinned})
     model = couple(spec, parts, store.settings.limits.program_nodes)
     store.remember_model(spec.digest, model)
+    store.kernels.prepare(parts.values())
     return Revision(spec, model, parts, base, is_exact)
 
 

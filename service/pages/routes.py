@@ -9,6 +9,7 @@ from fastapi import APIRouter, Request, Response
 from service import keys
 from service.operations import catalogue, trees
 from service.operations.models import model_quantity
+from service.operations.sources import sources_of
 from service.pages.catalogue import Shown, page
 from service.pages.details import part_page, tree_page
 from service.pages.layout import answer
@@ -61,5 +62,5 @@ def tree(ref: str, request: Request, store: StoreOf) -> Response:
     with store.database.read() as connection:
         found = trees.find(connection, ref)
         model = store.model(connection, found)
-    metric = model_quantity(model, "metric") if found.dof else None
+    metric = model_quantity(sources_of(store, found, model), "metric") if found.dof else None
     return answer(request, tree_page(found, model, metric))

@@ -14,6 +14,7 @@ from service.negotiation import MEDIA_TYPES
 from service.once import OnceSpooled
 from service.operations import analyses, models, trees
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
+from service.operations.sources import engine_of, sources_of
 from service.requests import SpooledBody, StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
 from service.routes.options import OptionsOf
@@ -47,7 +48,9 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
-    evaluation = Evaluation(model, tree.digest, store.settings.limits, store.kernels)
+    evaluation = Evaluation(
+        sources_of(store, tree, model), tree.digest, store.settings.limits, engine_of(store, tree, model)
+    )
     return once.compute(lambda: evaluation.answer(read_requests(body, sent, store.settings.limits), wanted))
 
 
@@ -55,8 +58,10 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
 def get_quantity(
     ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf
 ) -> Response:
-    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, ...; what follows from
-    them (first_integrals, perturbation, curvature, ...) is described by further members of the JSON answer.
+    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...
+
+    What follows from them (first_integrals, perturbation, curvature, ...) is described by further members of the JSON
+    answer.
     """
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
@@ -69,7 +74,9 @@ def get_quantity(
     tag = etag(tree.digest, quantity, *style.identity)
 
     def make() -> Answer:
-        program = models.bound(models.model_quantity(model, quantity), model.parameters, style.bind)
-        return models.printed(program, style, model.coordinates)
+        sources = sources_of(store, tree, model)
+        members, parameters = models.described(sources, quantity)
+        program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
+        return models.printed(program, style, model.coordinates, members)
 
     return conditional(request, tag, is_pinned(ref), make)

@@ -22,7 +22,8 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.model import Model
-from substructures.sensitivity import ID, inverse_dynamics_jacobians
+from substructures.replayed import ID
+from substructures.sensitivity import inverse_dynamics_jacobians
 
 #: operations without a derivative at a zero of their argument
 JUMPS = ("abs", "sign")

@@ -52,6 +52,23 @@ def interpret(program: Program, values: Mapping[str, Any], names: Iterable[str] 
     """
     names = list(program.outputs if names is None else names)
     batch = np.broadcast_shapes(*(np.shape(v) for v in values.values())) if values else ()
+    results = operations(program, values, names)
+    return {name: assemble(program.outputs[name], results, batch) for name in names}
+
+
+def interpret_entries(program: Program, values: Mapping[str, Any], names: Iterable[str]) -> dict[str, list[Any]]:
+    """The independent elements of outputs alone, in the order of ``index``: numbers, or arrays of the shape of the
+    values. Raises as :func:`interpret`.
+    """
+    names = list(names)
+    results = operations(program, values, names)
+    wanted = {entry for name in names for entry in program.outputs[name].entries}
+    plain = {e: results[e] if getattr(results[e], "ndim", 0) else float(results[e]) for e in wanted}
+    return {name: [plain[entry] for entry in program.outputs[name].entries] for name in names}
+
+
+def operations(program: Program, values: Mapping[str, Any], names: Iterable[str]) -> dict[int, Any]:
+    """The value of every operation that the outputs need."""
     results: dict[int, Any] = {}
     with np.errstate(all="ignore"):
         for i in program.reachable(names):
@@ -65,7 +82,7 @@ def interpret(program: Program, values: Mapping[str, Any], names: Iterable[str] 
                 results[i] = np.power(results[operation[1]], float(operation[2]))
             else:
                 results[i] = _FUNCTIONS[op](*(results[x] for x in operation[1:]))
-    return {name: assemble(program.outputs[name], results, batch) for name in names}
+    return results
 
 
 def interpret_in_blocks(

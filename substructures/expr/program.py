@@ -119,6 +119,18 @@ class Program:
                     needed[operand] = 1
         return [i for i, flag in enumerate(needed) if flag]
 
+    @cached_property
+    def _needs(self) -> dict[tuple[str, ...], tuple[str, ...]]:
+        return {}
+
+    def needs(self, names: Iterable[str]) -> tuple[str, ...]:
+        """The names of the symbols that the outputs depend on."""
+        key = tuple(names)
+        if key not in self._needs:
+            found = (self.operations[i] for i in self.reachable(key))
+            self._needs[key] = tuple(self.symbols[op[1]].name for op in found if op[0] == "sym")
+        return self._needs[key]
+
     def select(self, names: Sequence[str]) -> Program:
         """The part of the program that computes the named outputs. Raises KeyError for an unknown name."""
         keep = self.reachable(names)

@@ -1,4 +1,4 @@
-"""Accelerations at q'' = 0 and the forces they need: Gamma_abc q'^b q'^c without the Christoffel symbols.
+"""Accelerations and the forces they need: Gamma_abc q'^b q'^c without the Christoffel symbols, inverse dynamics.
 
 Written for a body frame with origin B: omega, alpha and the acceleration of B in frame k. With the matrix
 A = skew(alpha) + skew(omega)^2 a point x of the body has the acceleration a + A x, so that (m, s, J) about B give the
@@ -47,13 +47,13 @@ class Motion:
         a = add(self.a, apply(self.field(), z))
         return Motion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
 
-    def moved(self, s: int, rate: S, tau: S) -> Motion:
-        """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q'' = 0."""
+    def moved(self, s: int, rate: S, tau: S, acceleration: S = 0) -> Motion:
+        """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q''."""
         a = add(self.a, apply(self.field(), (0, 0, tau)))
-        turning = scale(rate, cross(self.omega, E3))
+        turning, along = scale(rate, cross(self.omega, E3)), (0, 0, acceleration)
         if s:
-            return Motion(self.omega, self.alpha, add(a, scale(2, turning)))
-        return Motion(add(self.omega, (0, 0, rate)), add(self.alpha, turning), a)
+            return Motion(self.omega, self.alpha, add(add(a, scale(2, turning)), along))
+        return Motion(add(self.omega, (0, 0, rate)), add(add(self.alpha, turning), along), a)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,6 @@ from substructures.analysis.shooting import Shooting
 from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
-from substructures.sensitivity import forward_dynamics_derivative
 
 STENCIL = np.array([-2, -1, 1, 2])
 
@@ -135,8 +134,10 @@ def test_adjoint_equations_are_transposed_perturbation_equations() -> None:
     q, qd, dq, dqd, lq, lqd = rng.uniform(-0.7, 0.7, (6, n))
     du = {name: float(rng.uniform(-1, 1)) for name in request["controls"]}
     state = {"q": q, "qd": qd, "t": 0.3, "inputs": {"x.u1": 0.4} if "x.u1" in inputs_of(model) else {}}
-    answer = evaluate(model, {"quantities": ["forward_dynamics", "metric"], **state})
-    slope = forward_dynamics_derivative(model, state, {"q": dq, "qd": dqd, "inputs": du})
+    along = {"q": dq, "qd": dqd, "inputs": du}
+    quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
+    answer = evaluate(model, {"quantities": quantities, **state, "along": along})
+    slope = answer["forward_dynamics_derivative"]
     values: dict[str, Any] = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= dict.fromkeys(inputs_of(model), 0.0) | state["inputs"] | {"t": 0.3, "lambda.0": 1.0}
     for names, x in (

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 
-from substructures import Definition, MissingValue, Part, TreeSpec, catalogue, couple, derive
+from substructures import Definition, MissingValue, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures.compile import compile_program
+from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
-from substructures.numeric import EQUATIONS, NumericTree
+from substructures.numeric import EQUATIONS, CompiledParts, NumericTree
 
 
 def parts_of(spec: TreeSpec) -> dict[str, Part]:
@@ -47,28 +50,78 @@ TREES = {
 
 def values_of(evaluator: NumericTree, batch: tuple[int, ...]) -> dict[str, Any]:
     rng = np.random.default_rng(1)
-    names = [*evaluator.assembly.scope.symbols, *(f"{name}'" for name in evaluator.coordinates)]
+    names = [*evaluator.assembly.scope.symbols]
+    names += [f"{name}{primes}" for name in evaluator.coordinates for primes in ("'", "''")]
     return {
         name: rng.uniform(0.5, 1.5, batch) if batch else float(rng.uniform(0.5, 1.5)) for name in sorted(set(names))
     }
 
 
+def compare(found: dict[str, Any], expected: dict[str, Any]) -> None:
+    for name, x in expected.items():
+        scale = max(1.0, float(np.abs(x).max(initial=0.0)))
+        assert found[name].shape == x.shape
+        np.testing.assert_allclose(found[name], x, atol=1e-12 * scale, rtol=0)
+
+
+@cache
+def pair(name: str) -> tuple[dict[str, Part], Model]:
+    parts = parts_of(TREES[name])
+    return parts, couple(TREES[name], parts)
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> CompiledParts:
+    return CompiledParts(tmp_path_factory.mktemp("kernels"))
+
+
 @pytest.mark.parametrize("name", TREES)
-@pytest.mark.parametrize("batch", [(), (3,)])
-def test_square_commutes(name: str, batch: tuple[int, ...]) -> None:
-    spec = TREES[name]
-    parts = parts_of(spec)
-    evaluator = NumericTree(spec, parts)
+@pytest.mark.parametrize("batch", [(), (3,), (37,)])
+def test_square_commutes(name: str, batch: tuple[int, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    """All outputs of the model; also when the batch is worked off in blocks."""
+    parts, model = pair(name)
+    evaluator = NumericTree(TREES[name], parts)
+    values = values_of(evaluator, batch)
+    monkeypatch.setattr("substructures.numeric.BLOCK", 10)
+    compare(evaluator.evaluate(values, list(model.program.outputs)), interpret(model.program, values))
+
+
+@pytest.mark.parametrize("name", TREES)
+@pytest.mark.parametrize("batch", [(), (5,)])
+def test_kernels_of_parts(name: str, batch: tuple[int, ...], compiled: CompiledParts) -> None:
+    """The same from compiled parts, and from the kernel of the whole."""
+    parts, model = pair(name)
+    evaluator = NumericTree(TREES[name], parts, compiled)
     values = values_of(evaluator, batch)
     found = evaluator.evaluate(values)
-    expected = interpret(couple(spec, parts).program, values, EQUATIONS)
-    for quantity in EQUATIONS:
-        scale = max(1.0, float(np.abs(expected[quantity]).max(initial=0.0)))
-        assert found[quantity].shape == expected[quantity].shape
-        np.testing.assert_allclose(found[quantity], expected[quantity], atol=1e-12 * scale, rtol=0)
+    compare(found, interpret(model.program, values, EQUATIONS))
+    compare(found, compile_program(model.program, EQUATIONS).evaluate(values))
+
+
+def test_parts_that_are_warm_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    parts, _ = pair("springs")
+    engine = CompiledParts()
+    for part in parts.values():
+        engine.warm(part)
+    monkeypatch.setattr("substructures.numeric.compile_program", None)
+    evaluator = NumericTree(TREES["springs"], parts, engine)
+    evaluator.evaluate(values_of(evaluator, ()))
+    evaluator.evaluate(values_of(evaluator, ()), ["metric"])
 
 
 def test_missing_value_is_named() -> None:
     spec = TREES["springs"]
     with pytest.raises(MissingValue, match="has no value"):
         NumericTree(spec, parts_of(spec)).evaluate({})
+
+
+def test_answers_have_the_axis_of_states() -> None:
+    """Also for one state and for none; parameters that are not given have their defaults."""
+    parts, model = pair("arm on arm")
+    evaluator = NumericTree(TREES["arm on arm"], parts)
+    q = np.random.default_rng(0).uniform(-1, 1, (2, model.dof))
+    for states in (2, 1, 0):
+        values = {name: q[:states, a] for a, name in enumerate(model.coordinates)}
+        found = evaluator.answer(values, ["metric", "gravity"], states)
+        expected = evaluate(model, {"q": q[:states], "quantities": ["metric", "gravity"]})
+        compare(found, {name: expected[name] for name in ("metric", "gravity")})

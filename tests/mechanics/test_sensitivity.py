@@ -11,11 +11,7 @@ from random_trees import Kind, Plain, model_of, random_definition, random_states
 from substructures import Definition, InvalidDocument, MissingValue, Model, Program, TreeSpec, catalogue, couple, derive
 from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
-from substructures.sensitivity import (
-    forward_dynamics_derivative,
-    inverse_dynamics_derivative,
-    inverse_dynamics_jacobians,
-)
+from substructures.sensitivity import inverse_dynamics_derivative, inverse_dynamics_jacobians
 from substructures.solve import cholesky_solve
 from substructures.states import default_number
 
@@ -90,6 +86,13 @@ def close(found: Any, expected: Any, tolerance: float = TOLERANCE) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance * scale)
 
 
+def forward_dynamics_derivative(model: Model, request: Plain, along: Plain) -> Any:
+    wanted = request | {"quantities": ["forward_dynamics_derivative"], "along": along}
+    answer = evaluate(model, wanted)
+    assert not answer["failures"]
+    return answer["forward_dynamics_derivative"]
+
+
 def directional(model: Model, program: Program, x: Plain, d: Plain) -> Any:
     return interpret(program, values(model, x, d))["inverse_dynamics_derivative"]
 
@@ -150,8 +153,7 @@ def test_forward_dynamics_along_a_direction(model: Model) -> None:
     x, d = state(model), state(model, 1)
     request = {"q": x["q"], "qd": x["qd"], "inputs": x["inputs"], "t": TIME}
     along = {"q": d["q"], "qd": d["qd"], "inputs": d["inputs"]}
-    program = inverse_dynamics_derivative(model)
-    found = forward_dynamics_derivative(model, request, along, program)
+    found = forward_dynamics_derivative(model, request, along)
     metric = evaluate(model, request | {"quantities": ["metric"]})["metric"]
     assert np.linalg.eigvalsh(metric).min() > 0
     close(found, slope(model, "forward_dynamics", x, d), 1e-6)
@@ -164,10 +166,8 @@ def test_accelerations_by_actuators_are_the_inverse_metric() -> None:
     robot = catalogue_model("ur5")
     x = state(robot)
     request = {"q": x["q"], "qd": x["qd"]}
-    program = inverse_dynamics_derivative(robot)
     columns = [
-        forward_dynamics_derivative(robot, request, {"inputs": {f"tau.{name}": 1}}, program)
-        for name in robot.coordinates
+        forward_dynamics_derivative(robot, request, {"inputs": {f"tau.{name}": 1}}) for name in robot.coordinates
     ]
     metric = evaluate(robot, request | {"quantities": ["metric"]})["metric"]
     np.testing.assert_allclose(metric @ np.stack(columns, axis=2), [np.eye(6)] * N, atol=1e-11)
@@ -189,9 +189,12 @@ def test_singular_metric_gives_nan_in_that_state_alone() -> None:
         ({"q": [[1, 2], [1, 2]]}, "/along/q"),
         ({"inputs": {"tau.y": 1}}, "/along/inputs/tau.y"),
         ({"inputs": {"tau.x.q1": [1, 2]}}, "/along/inputs/tau.x.q1"),
+        ({"inputs": 3}, "/along/inputs"),
+        ({"velocity": 3}, "/along/velocity"),
+        (None, "/along"),
     ],
 )
-def test_refused_directions(along: Plain, pointer: str) -> None:
+def test_refused_directions(along: Any, pointer: str) -> None:
     with pytest.raises(InvalidDocument) as error:
         forward_dynamics_derivative(catalogue_model("planar-2r"), {"q": [0.1, 0.2]}, along)
     assert error.value.faults[0].pointer == pointer

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import monotonic, sleep
+from typing import Any
 
 import numpy as np
 import pytest
+from fastapi.testclient import TestClient
 
-from service import kernels
 from service.kernels import Kernels
 from service.settings import Settings
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive, ways
 from substructures.evaluation import evaluate
+from substructures.numeric import NumericTree
 
 
 @pytest.fixture(scope="module")
@@ -48,21 +50,98 @@ def test_small_batches_are_answered_first_and_compiled_then(model: Model, tmp_pa
 
 
 def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernels, "AT_ONCE", 10)
+    monkeypatch.setattr(ways, "AT_ONCE", 10)
     engine = Kernels(tmp_path)
     agree(model, engine, 33)
     engine.close()
     wait_for(tmp_path)
 
 
+def test_large_batches_may_come_in_pieces(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The background is too busy to compile; the third piece is more than is worth interpreting."""
+    monkeypatch.setattr(ways, "AT_ONCE", 10)
+    engine = Kernels(tmp_path)
+    monkeypatch.setattr(engine._compiler, "submit", lambda *_: None)
+    for _ in range(2):
+        agree(model, engine, 4)
+        assert not list(tmp_path.iterdir())
+    agree(model, engine, 4)
+    assert list(tmp_path.iterdir())
+    engine.close()
+
+
 def test_damaged_files_are_made_anew(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernels, "AT_ONCE", 1)
+    monkeypatch.setattr(ways, "AT_ONCE", 1)
     for _ in range(2):
         engine = Kernels(tmp_path)
         agree(model, engine, 5)
         engine.close()
         for file in tmp_path.iterdir():
             file.write_bytes(file.read_bytes()[:-7] + b"garbage")
+
+
+SPEC = {
+    "name": "two",
+    "gravity": [0, 0, "-9.81"],
+    "instances": [
+        {"name": "a", "substructure": "planar-2r"},
+        {"name": "b", "substructure": "planar-2r", "at": "a.link2", "parameters": {"m1": "a.m2"}},
+    ],
+}
+
+
+def test_one_state_comes_from_warm_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without compiling anything for the tree; the same numbers as from its formulas."""
+    part, spec = derive(Definition.read(catalogue.load("planar-2r"))), TreeSpec.read(SPEC)
+    parts = {"a": part, "b": part}
+    model, engine = couple(spec, parts), Kernels(tmp_path)
+    engine.prepare(parts.values())
+    limit = monotonic() + 30
+    while not engine.warm(parts.values()):
+        assert monotonic() < limit
+        sleep(0.02)
+    asked: list[str] = []
+    tree = NumericTree(spec, parts, engine.of_part)
+    monkeypatch.setattr(engine, "_compile_later", lambda key, *_: asked.append(key[0]))
+    monkeypatch.setattr("service.kernels.interpreted", None)
+    monkeypatch.setattr("service.kernels.interpret_entries", None)
+    q = np.random.default_rng(1).uniform(-1, 1, 4)
+    wanted = {"quantities": ["metric", "christoffel", "forces", "kinematics"], "q": q, "qd": q[::-1]}
+    found = evaluate(model, wanted, engine=engine.of_tree(model.program, parts.values(), lambda: tree))
+    expected = evaluate(model, wanted)
+    for name in ("metric", "christoffel", "forces"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found["kinematics"]["U"], expected["kinematics"]["U"], atol=1e-12)
+    assert asked == [model.program.digest]
+    engine.close()
+
+
+def test_ways() -> None:
+    assert ways.quickest(1, coupled=True, warm=True) is ways.Way.PARTS
+    assert ways.quickest(1, coupled=True, warm=False) is ways.Way.INTERPRETER
+    assert ways.quickest(100, coupled=True, warm=True) is ways.Way.INTERPRETER
+    assert ways.quickest(100, coupled=False, warm=True) is ways.Way.PARTS
+    assert ways.quickest(10**5, coupled=False, warm=True) is ways.Way.KERNEL
+
+
+def test_kernels_on_request(filled: TestClient) -> None:
+    """Compiled once; evaluations of the same quantities then use them."""
+    body = {"quantities": ["metric", "forward_dynamics"]}
+    first = filled.post("/v1/trees/cell/kernels", json=body)
+    assert first.status_code == 201, first.text
+    rows = first.json()["kernels"]
+    assert [(row["program"], row["new"]) for row in rows] == [("model", True), ("forward_dynamics", True)]
+    again = filled.post("/v1/trees/cell/kernels", json=body)
+    assert again.status_code == 200
+    assert not any(row["new"] for row in again.json()["kernels"])
+    states = {"q": [[0.1], [0.2]], "qd": [[0], [1]]}
+    assert filled.post("/v1/trees/cell/evaluations", json={**body, **states}).status_code == 200
+    assert filled.post("/v1/trees/cell").status_code == 405
+
+
+@pytest.mark.parametrize("body", [[], {}, {"quantities": ["mass"]}, {"quantities": [{}]}, {"more": 1}])
+def test_refused_requests_for_kernels(filled: TestClient, body: Any) -> None:
+    assert filled.post("/v1/trees/cell/kernels", json=body).status_code == 422
 
 
 @pytest.mark.parametrize(

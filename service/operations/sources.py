@@ -1,0 +1,46 @@
+"""What evaluations of a stored tree work with: derived programs and the regressor, and the way over its parts."""
+
+from __future__ import annotations
+
+from service.operations.trees import parts_of
+from service.queries.trees import Tree
+from service.store import Store
+from substructures.documents import read_json
+from substructures.evaluation import Engine, Sources
+from substructures.model import Model
+from substructures.numeric import NumericTree
+from substructures.part import Part
+from substructures.regressor import RegressorModel, regressor
+from substructures.tree import TreeSpec
+
+
+def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
+    """What quantities of a tree are computed from."""
+    return Sources(model, store.derived, lambda: _regressor(store, tree))
+
+
+def engine_of(store: Store, tree: Tree, model: Model) -> Engine:
+    """What computes them: a tree whose parts have kernels answers before it has one of its own."""
+    found = store.numeric_trees.get(tree.digest)
+    if found is None:
+        spec, parts = tree_parts(store, tree)
+        store.kernels.prepare(parts.values())
+        found = NumericTree(spec, parts, store.kernels.of_part)
+        store.numeric_trees.put(tree.digest, found)
+    parts_used = [m.part for m in found.assembly.mounted]
+    return store.kernels.of_tree(model.program, parts_used, lambda: found)
+
+
+def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
+    """The document of a tree and its parts by instance."""
+    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    with store.database.read() as connection:
+        return spec, parts_of(store, connection, spec)
+
+
+def _regressor(store: Store, tree: Tree) -> RegressorModel:
+    found = store.regressors.get(tree.digest)
+    if found is None:
+        found = regressor(*tree_parts(store, tree), store.settings.limits.program_nodes)
+        store.regressors.put(tree.digest, found)
+    return found

@@ -1,0 +1,53 @@
+"""``/v1/trees/{ref}/kernels``: compile on request what would otherwise be compiled in the background."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+from fastapi import APIRouter, Response
+
+from service.answers import Answer, json_answer
+from service.once import OnceOf
+from service.operations import trees
+from service.operations.sources import sources_of
+from service.requests import JsonBody, StoreOf, needs
+from service.routes.bodies import body_of
+from service.schemas import KernelsView
+from service.views import dump
+from substructures.errors import InvalidDocument
+from substructures.evaluation import read_quantities, steps
+
+router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
+
+
+@router.post(
+    "",
+    status_code=201,
+    response_model=KernelsView,
+    dependencies=[needs("read")],
+    openapi_extra=body_of("KernelsRequest"),
+)
+def compile_kernels(ref: str, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+    """Compile a tree for evaluations of these quantities together. 201 when something was compiled, else 200.
+
+    Without this a tree is compiled in the background after its first evaluation, and at once for many states.
+    """
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+
+    def work() -> Answer:
+        if not isinstance(body, dict):
+            raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+        rows = []
+        for source, program, names in steps(sources_of(store, tree, model), read_quantities(body)):
+            if program is not None:
+                start = perf_counter()
+                kernel, is_new = store.kernels.compiled(program, names)
+                described = {"program": source, "outputs": names, "operations": program.count(names)["total"]}
+                times = {"new": is_new, "machine_code": kernel.compiled, "seconds": perf_counter() - start}
+                rows.append(described | times)
+        status = 201 if any(row["new"] for row in rows) else 200
+        return json_answer(dump({"digest": tree.digest, "kernels": rows}), status)
+
+    return once.compute(work)
