@@ -13,9 +13,11 @@ import httpx2
 
 from service import __version__, demo, keys, logs, openapi
 from service.app import bare_app
+from service.cli_analysis import add_commands
 from service.client import Client, ProblemError
 from service.database import Database, DatabaseError
 from service.migrate import MigrationError
+from service.problems import Refused
 from service.queries.keys import list_keys, revoke_key
 from service.server import serve
 from service.settings import Settings, SettingsError, from_environment
@@ -27,7 +29,7 @@ from substructures.part import derive
 from substructures.printers import FORMATS, render
 
 SERVER = "http://127.0.0.1:8000"
-EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError)
+EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -76,6 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
     command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
 
+    add_commands(commands, _add)
     _add(commands, "openapi", _openapi, "print the OpenAPI document")
     _add_key_commands(commands)
     return parser

@@ -75,9 +75,17 @@ class Client:
         """Couple one more instance onto a tree; the new revision."""
         return dict(self.request("POST", f"/v1/trees/{tree}/couplings", instance).json())
 
-    def formula(self, tree: str, quantity: str, format: str = "text", form: str = "compact", bind: str = "") -> str:  # noqa: A002 -- the name in the contract
-        """A quantity of a tree as text in one of the formats."""
-        wanted = {"format": format, "form": form, "bind": bind}
+    def formula(
+        self,
+        tree: str,
+        quantity: str,
+        format: str = "text",  # noqa: A002 -- the name in the contract
+        form: str = "compact",
+        bind: str = "",
+        **options: str | list[str],
+    ) -> str:
+        """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..."""
+        wanted = {"format": format, "form": form, "bind": bind, **options}
         return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
@@ -92,6 +100,21 @@ class Client:
         body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
         with self._transfer(path, body, NPZ) as answer:
             return _result(view_npz(read_all(answer)))
+
+    def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
+        """Numbers that follow from the equations of motion: ``linearisations``, ``equilibria``, ``root-loci``, ..."""
+        return dict(json.loads(self.analysis(tree, analysis, request)))
+
+    def simulate(self, tree: str, **request: Any) -> dict[str, Any]:
+        """A motion with its checks; ``t``, ``q``, ``qd`` and ``series`` are arrays."""
+        found = nested(view_npz(np.frombuffer(self.analysis(tree, "simulations", request, NPZ), np.uint8)))
+        return {**json.loads(str(found.pop("summary"))), **found}
+
+    def analysis(self, tree: str, analysis: str, request: Any, media_type: str = "application/json") -> bytes:
+        """The answer to a request for numbers in one of its media types."""
+        plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in request.items()}
+        path, headers = f"/v1/trees/{tree}/{analysis}", {"Accept": media_type}
+        return self.request("POST", path, plain, headers=headers).content
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from time import perf_counter
 from typing import Any
 
@@ -37,7 +38,15 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
     text = render(program, style.format, style.form)
     if style.format == JSON and found.members:
         text = joined(found.members, text)
+    if style.format == "text":
+        text = "\n".join([text.rstrip("\n"), *_notes(found.members), ""])
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
+
+
+def _notes(members: Mapping[str, Any]) -> Iterator[str]:
+    """What is said for people about first integrals."""
+    for each in members.get("integrals", ()):
+        yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
 
 
 def analyse(store: Store, ref: str, name: str, request: Any, accept: str) -> Answer:
