@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import httpx2
 import orjson
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options
@@ -113,8 +114,8 @@ def _numbers(options: argparse.Namespace, name: str) -> int:
         told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
     else:
         with Client(options.server, options.key) as client:
-            data = client.analysis(options.tree, name, request, media)
-            told = orjson.loads(data) if media == JSON else None
+            answer = client.analysis(options.tree, name, request, media)
+        data, told = answer.content, _told(answer)
     return _tell(told, data, options.out)
 
 
@@ -126,23 +127,31 @@ def _media(out: Path | None, name: str) -> str:
     return media
 
 
-def _tell(told: Mapping[str, Any] | None, data: bytes, out: Path | None) -> int:
+def _told(answer: httpx2.Response) -> dict[str, Any]:
+    """The JSON answer, or what the headers of another say."""
+    headers = answer.headers
+    if headers["content-type"] == JSON:
+        return dict(answer.json())
+    right = headers.get("trajectory-right", "true") == "true"
+    return {"status": headers.get("trajectory-status", "finished"), "is_right": right}
+
+
+def _tell(told: Mapping[str, Any], data: bytes, out: Path | None) -> int:
     """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
     if out is not None:
         out.write_bytes(data)
         print(f"{out}: {len(data)} bytes")
-    checks = told.get("checks", []) if told else []
-    if told is not None and (out is not None or checks):
-        _summary(told, checks)
-    elif out is None:
+    if out is not None or "checks" in told:
+        _summary(told)
+    else:
         print(data.decode())
-    failed = told is not None and (told.get("status") == "failed" or not told.get("is_right", True))
-    return int(failed)
+    return int(told.get("status") == "failed" or not told.get("is_right", True))
 
 
-def _summary(told: Mapping[str, Any], checks: list[Mapping[str, Any]]) -> None:
-    print(" ".join(str(told[key]) for key in ("status", "message") if told.get(key)))
-    for check in checks:
+def _summary(told: Mapping[str, Any]) -> None:
+    words = [str(told[key]) for key in ("status", "message") if told.get(key)]
+    print(*words, *([] if told.get("is_right", True) else ["WRONG: a necessary condition is violated"]))
+    for check in told.get("checks", []):
         verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
         drift = f"{check['relative']:.2g} (limit {check['limit']:.2g})"
         print(f"{check['name']}: {check['rule']}, {verdict}, {drift}: {check['reason']}")

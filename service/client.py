@@ -103,18 +103,18 @@ class Client:
 
     def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
         """Numbers that follow from the equations of motion: ``linearisations``, ``equilibria``, ``root-loci``, ..."""
-        return dict(json.loads(self.analysis(tree, analysis, request)))
+        return dict(self.analysis(tree, analysis, request).json())
 
     def simulate(self, tree: str, **request: Any) -> dict[str, Any]:
         """A motion with its checks; ``t``, ``q``, ``qd`` and ``series`` are arrays."""
-        found = nested(view_npz(np.frombuffer(self.analysis(tree, "simulations", request, NPZ), np.uint8)))
+        found = nested(view_npz(np.frombuffer(self.analysis(tree, "simulations", request, NPZ).content, np.uint8)))
         return {**json.loads(str(found.pop("summary"))), **found}
 
-    def analysis(self, tree: str, analysis: str, request: Any, media_type: str = "application/json") -> bytes:
-        """The answer to a request for numbers in one of its media types."""
+    def analysis(self, tree: str, analysis: str, request: Any, media_type: str = "application/json") -> httpx2.Response:
+        """The answer to a request for numbers in one of its media types; headers tell whether a motion is right."""
         plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in request.items()}
         path, headers = f"/v1/trees/{tree}/{analysis}", {"Accept": media_type}
-        return self.request("POST", path, plain, headers=headers).content
+        return self.request("POST", path, plain, headers=headers)
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any

@@ -12,6 +12,7 @@ from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
 from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
+from substructures.analysis.velocity_constraints import VelocityConstraints
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
 
@@ -32,6 +33,7 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
     EvaluationRequest,
     KernelsRequest,
     Problem,
+    VelocityConstraints,
     *_ANALYSED,
 )
 

@@ -19,6 +19,7 @@ from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.perturbation import perturbation, state_space
+from substructures.analysis.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.routh import routh
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.program import Program
@@ -98,6 +99,20 @@ def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:
             raise TooLarge("the formulas (in operations)", size, limit)
         _made.put(key, found)
     return found
+
+
+def velocity_equations_of(source: Source, document: Mapping[str, Any]) -> Made:
+    """Voronets' and Boltzmann-Hamel equations of a model with velocity constraints.
+
+    Raises InvalidDocument with pointers into the document, TooLarge.
+    """
+    found = quasi_velocity_equations(source.model, document)
+    names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
+    members = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
+    size, limit = len(found.program), source.limits.program_nodes
+    if size > limit:
+        raise TooLarge("the formulas (in operations)", size, limit)
+    return Made(found.program, members)
 
 
 def base_of(source: Source, drives: tuple[str, ...]) -> BaseParameters:

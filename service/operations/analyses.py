@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from time import perf_counter
 from typing import Any
 
-from service.analyses.formulas import Options, made
+from service.analyses.formulas import Made, Options, made, velocity_equations_of
 from service.analyses.numbers import ANALYSES, require_object
-from service.analyses.results import written
+from service.analyses.results import trajectory_of, written
 from service.analyses.source import Source
 from service.answers import Answer
 from service.negotiation import JSON, MEDIA_TYPES, choose_media_type
@@ -33,7 +33,19 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
 
     Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
     """
-    found = made(source, quantity, options)
+    return _printed(source, made(source, quantity, options), style)
+
+
+def velocity_equations(store: Store, ref: str, document: Any, style: Style) -> Answer:
+    """The equations of a stored tree with velocity constraints as formulas. Raises as :func:`printed`, Refused 404."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+    source = source_of(store, tree, model)
+    return _printed(source, velocity_equations_of(source, require_object(document)), style)
+
+
+def _printed(source: Source, found: Made, style: Style) -> Answer:
     program = bound(found.program, source.model.parameters, style.bind)
     text = render(program, style.format, style.form)
     if style.format == JSON and found.members:
@@ -62,7 +74,11 @@ def analyse(store: Store, ref: str, name: str, request: Any, accept: str) -> Ans
         model = store.model(connection, tree)
     deadline = Deadline(store.settings.limits.sync_seconds)
     result = analysis.compute(source_of(store, tree, model), require_object(request), deadline)
-    return Answer(200, written(result, media, model), {"Content-Type": media})
+    headers = {"Content-Type": media}
+    motion = trajectory_of(result)
+    if motion is not None:  # a CSV file has no place for them
+        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": str(motion.is_right).lower()}
+    return Answer(200, written(result, media, model), headers)
 
 
 class Deadline:

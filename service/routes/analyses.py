@@ -9,10 +9,12 @@ from fastapi import APIRouter, Request, Response
 
 from service.analyses.numbers import ANALYSES, Analysis
 from service.analyses.results import JSON
+from service.negotiation import MEDIA_TYPES
 from service.once import OnceOf
-from service.operations.analyses import analyse
+from service.operations.analyses import analyse, velocity_equations
 from service.requests import JsonBody, StoreOf, needs
-from service.routes.bodies import binary, body_of
+from service.routes.bodies import binary, body_of, printed
+from service.routes.style import StyleOf
 from service.schemas import AnalysisResult
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
@@ -45,3 +47,17 @@ def _add(name: str, analysis: Analysis) -> None:
 
 for _name, _analysis in ANALYSES.items():
     _add(_name, _analysis)
+
+
+@router.post(
+    "/velocity-equations",
+    dependencies=READ,
+    openapi_extra=body_of("VelocityConstraints"),
+    responses=printed(MEDIA_TYPES),
+)
+def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, style: StyleOf) -> Response:
+    """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
+
+    Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.
+    """
+    return once.compute(lambda: velocity_equations(store, ref, body, style))

@@ -15,9 +15,11 @@ from fastapi.testclient import TestClient
 
 from service import arrow
 from service.app import open_store
+from service.negotiation import MEDIA_TYPES
 from service.settings import Limits, Settings
 from substructures import catalogue
 from substructures.documents import write_json
+from substructures.expr.program import Program
 
 from .conftest import make_client
 
@@ -233,6 +235,21 @@ def test_a_skate_does_not_slip(client: TestClient) -> None:
     assert found["is_right"], found
     x, y, phi = found["q"][-1]
     assert (x, y, phi) == pytest.approx((2 * math.sin(2), 2 - 2 * math.cos(2), 2))  # a circle of radius v/omega
+
+
+def test_equations_of_a_skate_in_every_format(client: TestClient) -> None:
+    edge = {"type": "knife_edge", "name": "edge", "frame": "s.sled"}
+    speeds = {"speed": "s.x'*cos(s.phi) + s.y'*sin(s.phi)", "turn": "s.phi'"}
+    body = {"constraints": [edge], "velocities": speeds}
+    for name in MEDIA_TYPES:
+        answer = client.post("/v1/trees/skate/velocity-equations", params={"format": name}, json=body)
+        assert answer.status_code == 200, answer.text
+        if name == "json":
+            assert answer.json()["velocities"] == ["speed", "turn"]
+            assert Program.from_bytes(answer.content).outputs["hamel_bias"].shape == (2,)
+    wrong = client.post("/v1/trees/skate/velocity-equations", json={"constraints": [{**edge, "frame": "s.nobody"}]})
+    assert wrong.status_code == 422
+    assert wrong.json()["errors"][0]["pointer"] == "/constraints/0/frame"
 
 
 def test_identification_finds_what_was_put_in(client: TestClient) -> None:

@@ -41,7 +41,9 @@ def test_simulate_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -
 def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "rough.yaml").write_text("q: [0.5]\nspan: [0, 2]\nfixed_step: {step: 0.2, method: semi-implicit-euler}\n")
     assert main(["simulate", str(folder / "cell.yaml"), str(folder / "rough.yaml")]) == 1
-    assert "VIOLATED from t = " in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert shown.startswith("finished WRONG")
+    assert "VIOLATED from t = " in shown
 
 
 def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -88,6 +90,8 @@ def test_on_a_server(folder: Path, settings: Settings, capsys: pytest.CaptureFix
         server = ["--server", address]
         assert main(["simulate", "cell", str(folder / "swing.yaml"), "--out", str(folder / "x.csv"), *server]) == 0
         assert (folder / "x.csv").read_text().startswith("t,arm.q,arm.q'")
+        (folder / "long.yaml").write_text("q: [0.5]\nspan: [0, 2]\nmax_steps: 2\n")
+        assert main(["simulate", "cell", str(folder / "long.yaml"), "--out", str(folder / "y.csv"), *server]) == 1
         assert main(["simulate", "cell", str(folder / "swing.yaml"), *server]) == 0
         assert "energy: constant, holds" in capsys.readouterr().out
         assert main(["analyse", "cell", "first_integrals", "--bind", "defaults", *server]) == 0
