@@ -16,10 +16,36 @@ from service.middleware import Conventions
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
 from service.queries import idempotency
-from service.routes import aliases, analyses, formulas, kernels, models, pictures, substructures, system, trees
+from service.routes import (
+    aliases,
+    analyses,
+    formulas,
+    job_streams,
+    jobs,
+    kernels,
+    models,
+    pictures,
+    substructures,
+    system,
+    trees,
+)
 from service.settings import Settings
 from service.store import Store
 
+ROUTES = (
+    substructures,
+    aliases,
+    formulas,
+    pictures,
+    trees,
+    analyses,
+    models,
+    kernels,
+    jobs,
+    job_streams,
+    system,
+    pages,
+)
 DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: metric, Christoffel symbols, forces."
 
 
@@ -39,8 +65,7 @@ def open_store(settings: Settings) -> Iterator[Store]:
             import_catalogue(store)
         yield store
     finally:
-        store.kernels.close()
-        database.close()
+        store.close()
 
 
 def create_app(store: Store) -> FastAPI:
@@ -62,10 +87,7 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         redirect_slashes=False,
         responses=openapi.PROBLEM,
     )
-    routers = [
-        module.router
-        for module in (substructures, aliases, formulas, pictures, trees, analyses, models, kernels, system, pages)
-    ]
+    routers = [module.router for module in ROUTES]
     for router in routers:
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])

@@ -183,3 +183,11 @@ def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
         else:
             result[name] = item
     return result
+
+
+def as_npz(result: Mapping[str, Any]) -> bytes:
+    """The answer of an evaluation as npz; nested names are joined by dots, ``failures`` become parallel arrays."""
+    failures = result["failures"]
+    columns = {key: [str(f[key]) for f in failures] for key in ("quantity", "code", "message")}
+    values = flat({**result, "failures": {"state": [f["state"] for f in failures], **columns}})
+    return b"".join(npz_pieces(member(name, value) for name, value in values.items()))

@@ -11,24 +11,22 @@ from typing import Any
 
 import httpx2
 
-from service import __version__, demo, keys, logs, openapi
+from service import __version__, cli_jobs, demo, keys, logs, openapi
 from service.app import bare_app
 from service.cli_analysis import add_commands
 from service.client import Client, ProblemError
 from service.database import Database, DatabaseError
 from service.migrate import MigrationError
-from service.problems import Refused
 from service.queries.keys import list_keys, revoke_key
-from service.server import serve
+from service.refusals import Refused
+from service.server import serve, work
 from service.settings import Settings, SettingsError, from_environment
 from substructures.definition import Definition
-from substructures.documents import read_json, read_yaml
 from substructures.errors import InvalidDocument, SubstructuresError
 from substructures.lean import lean
 from substructures.part import derive
 from substructures.printers import FORMATS, render
 
-SERVER = "http://127.0.0.1:8000"
 EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
 
 
@@ -64,6 +62,11 @@ def _parser() -> argparse.ArgumentParser:
     command = _add(commands, "serve", _serve, "run the service (settings also from SUBSTRUCTURES_* variables)")
     command.add_argument("--host", help="address to listen on (127.0.0.1)")
     command.add_argument("--port", type=int, help="port to listen on (8000)")
+    _add_engine(command)
+    _add_database(command)
+
+    command = _add(commands, "worker", _worker, "compute the jobs of servers that share a PostgreSQL database")
+    _add_engine(command)
     _add_database(command)
 
     _add(commands, "demo", _demo, "couple a gripper onto a Puma 560 over HTTP and compare with published numbers")
@@ -75,9 +78,10 @@ def _parser() -> argparse.ArgumentParser:
 
     command = _add(commands, "submit", _submit, "submit a definition to a server")
     command.add_argument("file", type=Path, help="definition, JSON or YAML")
-    command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
-    command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
+    command.add_argument("--wait", action="store_true", help="wait where it takes so long that it becomes a job")
+    cli_jobs.add_server(command)
 
+    cli_jobs.register(commands, _add, _add_database)
     add_commands(commands, _add)
     _add(commands, "openapi", _openapi, "print the OpenAPI document")
     _add_key_commands(commands)
@@ -109,8 +113,14 @@ def _add_database(command: argparse.ArgumentParser) -> None:
     command.add_argument("--database", help=f"URL: sqlite:///FILE or postgresql://... ({default})")
 
 
+def _add_engine(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--engine", choices=("local", "dask", "none"), help="what computes jobs (local)")
+    command.add_argument("--engine-address", help="the scheduler of a Dask cluster, tcp://...")
+    command.add_argument("--workers", type=int, help="processes that compute jobs (one per core)")
+
+
 def _settings(options: argparse.Namespace) -> Settings:
-    names = ("host", "port", "database")
+    names = ("host", "port", "database", "engine", "engine_address", "workers")
     return from_environment(os.environ, **{name: getattr(options, name, None) for name in names})
 
 
@@ -120,17 +130,18 @@ def _serve(options: argparse.Namespace) -> int:
     return 0
 
 
+def _worker(options: argparse.Namespace) -> int:
+    logs.configure()
+    work(_settings(options))
+    return 0
+
+
 def _demo(_: argparse.Namespace) -> int:
     return demo.run()
 
 
-def _read(path: Path) -> Any:
-    data = path.read_bytes()
-    return read_json(data) if path.suffix == ".json" else read_yaml(data)
-
-
 def _derive(options: argparse.Namespace) -> int:
-    part = derive(Definition.read(_read(options.file)))
+    part = derive(Definition.read(cli_jobs.read_document(options.file)))
     if options.show:
         names = [n for n in part.program.outputs if n == options.show or n.startswith(f"{options.show}.")]
         if not names:
@@ -148,8 +159,13 @@ def _derive(options: argparse.Namespace) -> int:
 
 def _submit(options: argparse.Namespace) -> int:
     with Client(options.server, options.key) as client:
-        version, is_new = client.submit(_read(options.file))
-    print(f"{version['name']}@{version['version']} {'stored' if is_new else 'was stored already'}, {version['digest']}")
+        answer = client.request("POST", "/v1/substructures", cli_jobs.read_document(options.file))
+        version = answer.json()
+        if answer.status_code == 202:
+            print(f"became the job {version['id']}")
+            return cli_jobs.follow(client, version["id"]) if options.wait else 0
+    stored = "stored" if answer.status_code == 201 else "was stored already"
+    print(f"{version['name']}@{version['version']} {stored}, {version['digest']}")
     return 0
 
 

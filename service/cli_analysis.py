@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from service.analyses.numbers import ANALYSES, require_object
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
+from service.cli_jobs import Add, add_server, read_document
 from service.client import Client
 from service.operations import models
 from service.operations.analyses import printed
@@ -23,7 +23,6 @@ from service.operations.models import Style
 from service.settings import Limits
 from substructures import catalogue
 from substructures.definition import Definition
-from substructures.documents import read_json, read_yaml
 from substructures.errors import InvalidDocument
 from substructures.evaluation import Sources
 from substructures.model import couple
@@ -32,9 +31,7 @@ from substructures.printers import FORMATS
 from substructures.regressor import regressor
 from substructures.tree import Instance, TreeSpec
 
-SERVER = "http://127.0.0.1:8000"
 SUFFIXES = (".yaml", ".yml", ".json")
-Add = Callable[[Any, str, Callable[[argparse.Namespace], int], str], argparse.ArgumentParser]
 
 
 def add_commands(commands: Any, add: Add) -> None:
@@ -58,8 +55,7 @@ def add_commands(commands: Any, add: Add) -> None:
 
 def _add_tree(command: argparse.ArgumentParser) -> None:
     command.add_argument("tree", help="tree document (JSON or YAML), or the name of a tree on a server")
-    command.add_argument("--server", default=SERVER, help=f"address ({SERVER}); not used for a document")
-    command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
+    add_server(command)
 
 
 def _add_output(command: argparse.ArgumentParser) -> None:
@@ -165,12 +161,6 @@ def _summary(told: Mapping[str, Any]) -> None:
 def is_document(tree: str) -> bool:
     """Whether a tree is given as a file."""
     return tree.endswith(SUFFIXES)
-
-
-def read_document(path: Path) -> Any:
-    """Plain data of a JSON or YAML file, numbers exact."""
-    data = path.read_bytes()
-    return read_json(data) if path.suffix == ".json" else read_yaml(data)
 
 
 def local_source(path: Path) -> Source:

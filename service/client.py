@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from http import HTTPStatus
 from http.client import HTTPResponse
+from pathlib import Path
+from time import sleep
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import urlencode
 
 import httpx2
 import numpy as np
@@ -18,6 +21,8 @@ from service.arrays import MEDIA_TYPE as NPZ
 from service.arrays import flat, member, nested, npz_pieces, view_npz
 from service.bulk import read_all, transfer
 from substructures.documents import write_json
+
+PERIOD, PATIENCE = 0.5, 60.0  # seconds between looks at a job, and without an answer
 
 
 class ProblemError(Exception):
@@ -54,13 +59,14 @@ class Client:
             options["content"] = write_json(body)
             options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
         answer = self._http.request(method, path, **options)
-        if answer.is_error:
-            raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
+        _check(answer)
         return answer
 
     def submit(self, definition: Any) -> tuple[dict[str, Any], bool]:
         """Submit a definition: the version, and whether it is new."""
         answer = self.request("POST", "/v1/substructures", definition)
+        if answer.status_code == 202:
+            return self._made_by_job(answer.json()["id"]), True
         return dict(answer.json()), answer.status_code == 201
 
     def substructure(self, ref: str) -> dict[str, Any]:
@@ -69,11 +75,11 @@ class Client:
 
     def create_tree(self, spec: Any) -> dict[str, Any]:
         """Couple the instances of a tree."""
-        return dict(self.request("POST", "/v1/trees", spec).json())
+        return self._made("/v1/trees", spec)
 
     def couple(self, tree: str, instance: Any) -> dict[str, Any]:
         """Couple one more instance onto a tree; the new revision."""
-        return dict(self.request("POST", f"/v1/trees/{tree}/couplings", instance).json())
+        return self._made(f"/v1/trees/{tree}/couplings", instance)
 
     def formula(
         self,
@@ -138,6 +144,96 @@ class Client:
             if answer.status >= 400:
                 raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
             yield answer
+
+    def _made(self, path: str, body: Any) -> dict[str, Any]:
+        answer = self.request("POST", path, body)
+        return self._made_by_job(answer.json()["id"]) if answer.status_code == 202 else dict(answer.json())
+
+    def _made_by_job(self, job: str) -> dict[str, Any]:
+        """What a request has made that took so long that it became a job of one item."""
+        self.wait(job)
+        (item,) = self.job_items(job)
+        if item["problem"] is not None:
+            raise ProblemError(item["problem"]["status"], item["problem"])
+        return dict(self.request("GET", item["result"]["location"]).json())
+
+    def submit_job(self, submission: Any) -> dict[str, Any]:
+        """Queue ``{"kind", "items"}`` or ``{"kind", "template", "choices"}``: the job."""
+        return dict(self.request("POST", "/v1/jobs", submission).json())
+
+    def job(self, job: str) -> dict[str, Any]:
+        """A job with its progress."""
+        return dict(self.request("GET", f"/v1/jobs/{job}").json())
+
+    def jobs(self, **filters: str) -> Iterator[dict[str, Any]]:
+        """All jobs (of a ``state``, of a ``kind``), the newest first."""
+        return self._pages("/v1/jobs", filters)
+
+    def job_items(self, job: str, **filters: str) -> Iterator[dict[str, Any]]:
+        """The items of a job (in a ``state``) with their results and problems."""
+        return self._pages(f"/v1/jobs/{job}/items", filters)
+
+    def cancel_job(self, job: str) -> dict[str, Any]:
+        """Cancel what is not finished."""
+        return dict(self.request("POST", f"/v1/jobs/{job}/cancel").json())
+
+    def wait(self, job: str, told: Callable[[dict[str, Any]], None] | None = None) -> dict[str, Any]:
+        """Wait until a job has ended, however long and whether or not the server restarts meanwhile; tell about it."""
+        failures = 0
+        while True:
+            try:
+                view = self.job(job)
+            except httpx2.TransportError:
+                failures += 1
+                if failures > PATIENCE / PERIOD:
+                    raise
+                sleep(PERIOD)
+                continue
+            failures = 0
+            if told is not None:
+                told(view)
+            if view["state"] in ("succeeded", "failed", "cancelled"):
+                return view
+            sleep(PERIOD)
+
+    def events(self, job: str, after: int = 0) -> Iterator[tuple[int, str, dict[str, Any]]]:
+        """What happens to a job behind the event ``after`` (number, type, data), until it or the connection ends."""
+        headers = {"Last-Event-ID": str(after)} if after else {}
+        with self._http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as answer:
+            if answer.is_error:
+                answer.read()
+                _check(answer)
+            fields: dict[str, str] = {}
+            for line in answer.iter_lines():
+                name, _, value = line.partition(": ")
+                if line:
+                    fields[name] = value
+                elif "data" in fields:
+                    yield int(fields["id"]), fields["event"], json.loads(fields["data"])
+                    fields = {}
+
+    def download(self, path: str, target: Path) -> int:
+        """Save what is at a path, however large; its size in bytes."""
+        with self._http.stream("GET", path) as answer, target.open("wb") as file:
+            if answer.is_error:
+                answer.read()
+                _check(answer)
+            for chunk in answer.iter_bytes():
+                file.write(chunk)
+            return file.tell()
+
+    def _pages(self, path: str, filters: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+        link: str | None = f"{path}?{urlencode({**filters, 'page_size': 200})}"
+        while link is not None:
+            page = self.request("GET", link).json()
+            yield from page["items"]
+            link = page["links"]["next"]
+
+
+def _check(answer: httpx2.Response) -> None:
+    """Raise ProblemError unless it is a success."""
+    if answer.is_error:
+        raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
 
 
 def _problem(status: int, media_type: str, body: bytes) -> ProblemError:

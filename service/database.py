@@ -17,7 +17,7 @@ from service.migrate import upgrade
 READERS = 16
 BUSY_MS = 10_000
 
-__all__ = ["Connection", "Database", "DatabaseError"]
+__all__ = ["Connection", "Database", "DatabaseError", "claimed", "normalised"]
 
 
 class DatabaseError(Exception):
@@ -34,10 +34,10 @@ class Database:
         DatabaseError when another server holds it, when it does not answer and for an unknown kind of URL,
         MigrationError for a database of a newer version.
         """
-        self.url = _normalised(address)
+        self.url = normalised(address)
         with ExitStack() as opened:
             if exclusive and self.is_sqlite:
-                opened.enter_context(closing(_lock(self.url)))
+                opened.enter_context(closing(claimed(self.url)))
             self.writer = _engine(self.url, writer=True)
             opened.callback(self.writer.dispose)
             self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)
@@ -75,7 +75,8 @@ class Database:
         self._opened.close()
 
 
-def _normalised(address: str) -> URL:
+def normalised(address: str) -> URL:
+    """The URL of a database. Raises DatabaseError for what is not supported."""
     try:
         url = make_url(address)
     except ArgumentError:
@@ -124,8 +125,11 @@ def _configure(connection: Any, _record: object) -> None:
     connection.execute("PRAGMA foreign_keys=ON")
 
 
-def _lock(url: URL) -> sqlite3.Connection:
-    """An exclusive lock beside the database; the operating system drops it when the process dies."""
+def claimed(url: URL) -> sqlite3.Connection:
+    """An exclusive lock beside an SQLite file; the operating system drops it when the process dies.
+
+    Raises DatabaseError when another process has it.
+    """
     path = Path(f"{url.database}.lock")
     try:
         lock = sqlite3.connect(path, timeout=0, isolation_level=None, check_same_thread=False)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Histogram, generate_latest
+from collections.abc import Mapping
+
+from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 CONTENT_TYPE = CONTENT_TYPE_LATEST
 
@@ -22,6 +24,16 @@ class Metrics:
             "substructures_cache", "Look-ups of decoded programs", ["kind", "result"], registry=self._registry
         )
 
+        self._items = Counter(
+            "substructures_job_items",
+            "Changes of items by new state (queued: again)",
+            ["state"],
+            registry=self._registry,
+        )
+        self._queue = Gauge(
+            "substructures_queue", "Jobs and items by state", ["what", "state"], registry=self._registry
+        )
+
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count a request; ``route`` is the pattern, so that the number of series stays small."""
         known = method if method in ("GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH") else "other"
@@ -31,6 +43,17 @@ class Metrics:
     def cache(self, kind: str, hit: bool) -> None:
         """Count a look-up in the cache of decoded programs."""
         self._cache.labels(kind, "hit" if hit else "miss").inc()
+
+    def items(self, states: Mapping[str, int]) -> None:
+        """Count items of jobs by the state that they have come into; queued means tried again."""
+        for state, number in states.items():
+            self._items.labels(state).inc(number)
+
+    def queue(self, counts: Mapping[str, Mapping[str, int]]) -> None:
+        """Show how many jobs and items there are in which state."""
+        for kind, states in counts.items():
+            for state, number in states.items():
+                self._queue.labels(kind, state).set(number)
 
     def text(self) -> bytes:
         """The Prometheus exposition."""

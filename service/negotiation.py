@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from service.problems import Refused, unprocessable
+from service.refusals import Refused, unprocessable
 from substructures.printers import FORMATS
 
 JSON = "json"

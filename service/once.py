@@ -7,21 +7,28 @@
         |-- answered already: the same answer again
         |-- other request under this key: 422
         '-- in flight: 409
+
+Work that takes longer than its limit (``sync_seconds``, or less by ``Prefer: wait=N``) becomes a job, as does work that
+is asked for with ``Prefer: respond-async``: the answer is 202. A thread cannot be stopped, so what was begun in time
+goes on to its end, which the limits on sizes bound; its result is dropped, and nothing is stored twice.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
 import secrets
 from collections.abc import Callable, Iterable
+from contextvars import copy_context
 from datetime import timedelta
 from functools import cached_property
 from time import perf_counter
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import orjson
 from fastapi import Depends, Header, Request, Response
 
+from service import keys
 from service.answers import Answer, Stream
 from service.database import Connection
 from service.operations.trees import StaleError
@@ -31,6 +38,8 @@ from service.requests import RawBody, SpooledBody, StoreOf
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
+S = TypeVar("S")
+T = TypeVar("T")
 ATTEMPTS = 8
 
 
@@ -54,8 +63,15 @@ class Once:
             found.update(piece)
         return found.hexdigest()
 
-    def run(self, prepare: Callable[[], Commit]) -> Response:
-        """Prepare without writing, then commit in one transaction. Raises Refused 409, 422 or 503 (took too long)."""
+    def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
+        """Prepare without writing, then commit in one transaction.
+
+        ``deferred`` prepares the job that does the same. Raises Refused 409, 422 or, without one, 503 (took too long).
+        """
+        return self.submit(lambda: self._in_time(prepare, deferred))
+
+    def submit(self, prepare: Callable[[], Commit]) -> Response:
+        """As :meth:`run`, without a limit of time."""
         kept = self._claim() if self.key else None
         if kept is not None:
             return _replayed(kept)
@@ -68,32 +84,72 @@ class Once:
     def _act(self, prepare: Callable[[], Commit]) -> Answer:
         for _ in range(ATTEMPTS):
             commit = prepare()
-            self._check_time()
             try:
                 with self.store.database.write() as connection:
                     answer = commit(connection)
                     self._keep(connection, answer, answer.body)
-                return answer
+                return self._told(answer)
             except StaleError:
                 continue
         raise Refused(409, "conflict", "others keep changing this resource; try again", headers={"Retry-After": "1"})
 
-    def compute(self, work: Callable[[], Answer | Stream]) -> Response:
+    def _in_time(self, work: Callable[[], S], deferred: Callable[[], T] | None) -> S | T:
+        """What the work gives, or what ``deferred`` gives where the work has no time (left)."""
+        seconds = self.store.settings.limits.sync_seconds
+        if deferred is not None:
+            if self._prefers("respond-async"):
+                return deferred()
+            wait = self._prefers("wait=([0-9]{1,6})")
+            seconds = min(seconds, float(wait[1])) if wait else seconds
+        future = self.store.threads.submit(copy_context().run, work)
+        try:
+            return future.result(self._started + seconds - perf_counter())
+        except TimeoutError:
+            future.cancel()
+        if deferred is not None:
+            return deferred()
+        detail = f"this takes longer than {seconds:g} s, the limit of a request; nothing was stored"
+        raise Refused(503, "took-too-long", detail, limit=seconds)
+
+    def _prefers(self, preference: str) -> re.Match[str] | None:
+        """The preference (RFC 7240) if it is asked for."""
+        given = ",".join(self._request.headers.getlist("prefer")).split(",")
+        return next(filter(None, (re.fullmatch(preference, each.strip().lower()) for each in given)), None)
+
+    def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
         """Work that stores nothing: the same request under the same key computes the same answer again.
 
         The time limit of a stream is that of its beginning.
         """
         known = self._claim() if self.key else None
+        if known is not None and known.body is not None:  # it became a job
+            return _replayed(known)
         try:
-            answer = work()
-            self._check_time()
-            if known is None and self.key:
-                with self.store.database.write() as connection:
-                    self._keep(connection, answer, None)
+            found = self._in_time(work, deferred)
+            if isinstance(found, Answer | Stream):
+                if known is None and self.key:
+                    with self.store.database.write() as connection:
+                        self._keep(connection, found, None)
+                return found.response()
+            with self.store.database.write() as connection:
+                answer = found(connection)
+                if known is None:
+                    self._keep(connection, answer, answer.body)
         except BaseException:
             self._release()
             raise
-        return answer.response()
+        return self._told(answer).response()
+
+    def require(self, scope: str) -> None:
+        """Raise Refused 403 unless whoever asks has this scope too."""
+        with self.store.database.read() as connection:
+            keys.authorise(connection, self._request.headers.get("authorization"), scope)
+
+    def _told(self, answer: Answer) -> Answer:
+        """The answer; a job does not wait until somebody looks for one."""
+        if answer.status == 202:
+            self.store.wake.set()
+        return answer
 
     def _claim(self) -> idempotency.Entry | None:
         limits = self.store.settings.limits
@@ -122,12 +178,6 @@ class Once:
         if self.key:
             with self.store.database.write() as connection:
                 idempotency.release(connection, self.principal, self.key, self._owner)
-
-    def _check_time(self) -> None:
-        seconds, limit = perf_counter() - self._started, self.store.settings.limits.sync_seconds
-        if seconds > limit:
-            detail = f"this took {seconds:.1f} s; the limit of a request is {limit:g} s; nothing was stored"
-            raise Refused(503, "took-too-long", detail, limit=limit)
 
 
 def _replayed(entry: idempotency.Entry) -> Response:

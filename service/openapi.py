@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
+from service.job_schemas import CancelRequest, JobRequest
 from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
 from substructures.analysis.velocity_constraints import VelocityConstraints
 from substructures.definition import Definition
@@ -24,17 +25,15 @@ PROBLEM: dict[int | str, dict[str, Any]] = {
     }
 }
 _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
+_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
 _READ_BY_US: tuple[type[BaseModel], ...] = (
     Definition,
     TreeSpec,
     Instance,
-    AliasRequest,
-    YankRequest,
-    EvaluationRequest,
-    KernelsRequest,
-    Problem,
+    *_REQUESTS,
     VelocityConstraints,
     *_ANALYSED,
+    Problem,
 )
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from http import HTTPStatus
 from typing import Any
 
 import orjson
@@ -23,9 +22,12 @@ from sqlalchemy.exc import DataError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
+from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from service.request_id import current_request_id
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
+
+__all__ = ["MEDIA_TYPE", "Refused", "as_refused", "document", "install", "not_found", "response", "unprocessable"]
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
@@ -33,45 +35,12 @@ _log = logging.getLogger(__name__)
 _CODES = {404: "not-found", 405: "method-not-allowed"}
 
 
-class Refused(Exception):
-    """A request that cannot be served. ``code`` is for programs, ``detail`` for people."""
-
-    def __init__(
-        self,
-        status: int,
-        code: str,
-        detail: str,
-        faults: Sequence[Fault] = (),
-        headers: Mapping[str, str] | None = None,
-        **members: Any,
-    ) -> None:
-        super().__init__(detail)
-        self.status, self.code, self.detail = status, code, detail
-        self.faults, self.headers, self.members = tuple(faults), dict(headers or {}), members
-
-
-def not_found(detail: str, code: str = "not-found") -> Refused:
-    """404."""
-    return Refused(404, code, detail)
-
-
-def unprocessable(code: str, detail: str, pointer: str = "", **members: Any) -> Refused:
-    """422 with a pointer to the culprit."""
-    return Refused(422, code, detail, [Fault(pointer, code, detail)], **members)
-
-
 def as_refused(error: Exception) -> Refused:
     """What a client is told about an exception."""
+    known = known_refusal(error)
+    if known is not None:
+        return known
     match error:
-        case Refused():
-            return error
-        case InvalidDocument():
-            detail = "; ".join(str(fault) for fault in error.faults[:3])
-            return Refused(422, "invalid-document", detail, error.faults)
-        case TooLarge():
-            return unprocessable("too-large", str(error), what=error.what, size=error.size, limit=error.limit)
-        case MissingValue():
-            return unprocessable("missing-value", str(error), "/parameters" + pointer_step(error.name))
         case RequestValidationError():
             faults = [_validation_fault(item) for item in error.errors()]
             return Refused(422, "invalid-request", "; ".join(map(str, faults[:3])), faults)
@@ -99,17 +68,7 @@ def _validation_fault(item: Mapping[str, Any]) -> Fault:
 
 def document(refused: Refused, instance: str) -> dict[str, Any]:
     """The problem document."""
-    return {
-        "type": f"urn:problem-type:substructures:{refused.code}",
-        "title": HTTPStatus(refused.status).phrase,
-        "status": refused.status,
-        "detail": refused.detail,
-        "instance": instance,
-        "code": refused.code,
-        "request_id": current_request_id(),
-        "errors": [{"pointer": f.pointer, "code": f.code, "message": f.message} for f in refused.faults],
-        **refused.members,
-    }
+    return problem(refused, instance=instance, request_id=current_request_id())
 
 
 def response(error: Exception, instance: str) -> Response:

@@ -16,6 +16,8 @@ from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
 
+SUBMISSIONS = "/v1/jobs"  # longer bodies
+
 
 async def get_store(request: Request) -> Store:
     """The store of the app."""
@@ -48,7 +50,9 @@ def _authorised(store: Store, given: str | None, scope: str) -> str:
 
 async def raw_body(request: Request, store: StoreOf) -> bytes:
     """The request body, refused with 413 as soon as it exceeds its limit."""
-    return b"".join([chunk async for chunk in _limited(request, store.settings.limits.json_bytes)])
+    limits = store.settings.limits
+    limit = limits.job_bytes if request.url.path == SUBMISSIONS else limits.json_bytes
+    return b"".join([chunk async for chunk in _limited(request, limit)])
 
 
 async def spooled_body(request: Request, store: StoreOf) -> AsyncIterator[Spool]:

@@ -11,9 +11,11 @@ from contextlib import contextmanager
 import uvicorn
 
 from service.app import create_app, open_store
+from service.engines import engine_of
 from service.queries.keys import any_key
 from service.settings import Settings, SettingsError
 from service.store import Store
+from service.supervisor import supervised
 
 
 def serve(settings: Settings) -> None:
@@ -21,7 +23,19 @@ def serve(settings: Settings) -> None:
     with open_store(settings) as store:
         check_exposure(store)
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
-        _server(store).run()
+        with supervised(store, engine_of(settings)):
+            _server(store).run()
+
+
+def work(settings: Settings) -> None:
+    """Compute jobs of a database that servers share, until interrupted. Raises SettingsError for SQLite."""
+    if not settings.database.startswith("postgres"):
+        raise SettingsError("a worker of its own needs PostgreSQL; with SQLite the server computes the jobs itself")
+    if settings.engine == "none":
+        raise SettingsError("a worker needs an engine: local or dask")
+    signal.signal(signal.SIGTERM, _stop)
+    with open_store(settings) as store, supervised(store, engine_of(settings)):
+        threading.Event().wait()
 
 
 def _stop(_signal: int, _frame: object) -> None:
@@ -42,7 +56,11 @@ def check_exposure(store: Store) -> None:
 @contextmanager
 def background(settings: Settings) -> Iterator[str]:
     """A server in a thread on a free port of loopback; gives its address."""
-    with open_store(settings) as store, socket.create_server(("127.0.0.1", 0)) as listener:
+    with (
+        open_store(settings) as store,
+        supervised(store, engine_of(settings)),
+        socket.create_server(("127.0.0.1", 0)) as listener,
+    ):
         server = _server(store)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -35,6 +36,17 @@ class Limits(BaseModel):
     evaluation_operations: int = Field(2 * 10**9, gt=0, description="most states times operations of one evaluation")
     page_size: int = Field(1000, gt=0, description="most items of a page")
     idempotency_hours: float = Field(24.0, gt=0, description="how long an Idempotency-Key is remembered, hours")
+    job_bytes: int = Field(16 * 2**20, gt=0, description="largest JSON body that submits a job, bytes")
+    job_queue: int = Field(200_000, gt=0, description="most unfinished items of all jobs")
+    job_queue_per_key: int = Field(100_000, gt=0, description="most unfinished items of the jobs of one API key")
+    job_seconds: float = Field(1800.0, gt=0, description="longest time of one attempt on an item, seconds")
+    lease_seconds: float = Field(20.0, gt=0, description="after this time the items of a dead server are taken over")
+    job_days: float = Field(30.0, gt=0, description="how long finished jobs and their results are kept, days")
+    job_items: int = Field(20_000, gt=0, description="most items of one job")
+    job_states: int = Field(10_000, gt=0, description="most states of one item; larger sets are split into items")
+    job_nodes: int = Field(1_000_000, gt=0, description="most operations of a program derived or coupled by a job")
+    job_cpu_seconds: float = Field(600.0, gt=0, description="CPU time of one item of a job, seconds")
+    job_memory_bytes: int = Field(2 * 2**30, gt=0, description="memory of the process that computes an item, bytes")
 
 
 class Settings(BaseModel):
@@ -48,6 +60,9 @@ class Settings(BaseModel):
     allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
     cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
+    engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
+    engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
+    workers: int = Field(0, ge=0, description="processes that compute jobs; 0: one per core")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
     key_seconds: float = Field(1.0, ge=0, description="how long a checked API key is not checked again, seconds")
     limits: Limits = Limits()

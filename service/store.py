@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
 
 from service.cache import Cache
 from service.database import Connection, Database
@@ -22,6 +24,7 @@ from substructures.part import Part
 from substructures.regressor import RegressorModel
 from substructures.tree import TreeSpec
 
+THREADS = 16
 PICTURES = 16 * 2**20  # characters
 
 
@@ -38,6 +41,14 @@ class Store:
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
         self.authorisations = Authorisations(settings.key_seconds)
+        self.threads = ThreadPoolExecutor(THREADS, thread_name_prefix="request")  # requests that may be given up
+        self.wake = Event()  # set when there is something new for the supervisor of this process
+
+    def close(self) -> None:
+        """Stop what computes in the background, and give the database up."""
+        self.threads.shutdown(wait=True, cancel_futures=True)
+        self.kernels.close()
+        self.database.close()
 
     def part(self, connection: Connection, digest: str) -> Part | None:
         """The part with this digest, decoded; None when it is not stored."""

@@ -12,7 +12,17 @@ from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.model import Model
-from substructures.quantities import DYNAMICS, QUANTITIES, REGRESSOR, Quantity, Sources, cost, read_quantities, steps
+from substructures.quantities import (
+    DYNAMICS,
+    QUANTITIES,
+    REGRESSOR,
+    Quantity,
+    Sources,
+    cost,
+    numbers_per_state,
+    read_quantities,
+    steps,
+)
 from substructures.sensitivity import FD, SINGULAR
 from substructures.solve import cholesky_solve
 from substructures.states import Array, States, known_values, read_states, require
@@ -25,6 +35,7 @@ __all__ = [
     "cost",
     "evaluate",
     "interpreted",
+    "numbers_per_state",
     "read_quantities",
     "steps",
 ]

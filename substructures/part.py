@@ -186,3 +186,13 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
         raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
     return Part(definition, result, certify_part(m, result, seconds))
+
+
+def recheck(part: Part) -> dict[str, Any]:
+    """The certificate of a stored part made anew, of the program as it is stored.
+
+    Raises VerificationFailed when the program disagrees with the definition, InvalidDocument as :func:`derive`.
+    """
+    m = mechanism(part.definition)
+    m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
+    return certify_part(m, part.program, 0.0)

@@ -114,6 +114,14 @@ def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
     return operations, numbers
 
 
+def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
+    """At most so many numbers of the answer for one state; known without the formulas."""
+    n, columns = max(1, dof), 10 * frames
+    several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
+    several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6}
+    return sum(several.get(name, n) for name in quantities)
+
+
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
     """(source, program, its outputs); no program: no state has a result."""
     wanted: dict[str, set[str]] = {}

@@ -33,6 +33,7 @@ from substructures.analysis.shooting_program import OptimalControlRequest
 from substructures.analysis.simulate import simulate
 from substructures.analysis.simulate_closed import simulate_closed
 from substructures.analysis.simulate_rolling import simulate_rolling
+from substructures.analysis.trajectory import Trajectory
 from substructures.definition import read_model
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.states import read_states
@@ -40,6 +41,13 @@ from substructures.states import read_states
 Request = Mapping[str, Any]
 #: fields that only a motion with velocity constraints has
 ROLLING = ("constraints", "velocities", "independent", "v", "form")
+
+
+MOTIONS: dict[type[RollingRequest | ClosedRequest | SimulationRequest], Callable[..., Trajectory]] = {
+    RollingRequest: simulate_rolling,
+    ClosedRequest: simulate_closed,
+    SimulationRequest: simulate,
+}
 
 
 @dataclass(frozen=True)
@@ -66,18 +74,25 @@ def _check_size(source: Source, states: int, numbers: int) -> None:
         raise TooLarge("the answer (in bytes)", size, source.limits.binary_bytes)
 
 
+def check_request(name: str, request: Any, is_closed: bool) -> None:
+    """Check the shape of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument."""
+    given = require_object(request)
+    read_model(_motion_schema(given, is_closed) if name == "simulations" else ANALYSES[name].schema, given)
+
+
+def _motion_schema(request: Request, is_closed: bool) -> type[RollingRequest | ClosedRequest | SimulationRequest]:
+    if any(name in request for name in ROLLING):
+        return RollingRequest
+    return ClosedRequest if is_closed or "prescribed" in request else SimulationRequest
+
+
 def _simulation(source: Source, request: Request, report: Report) -> Any:
     model, n = source.model, source.model.dof
-    if any(field in request for field in ROLLING):
-        _check_size(source, len(RollingRequest.read(request).outputs()), 3 * n + 8)
-        return simulate_rolling(model, request, report, source.folder)
-    if model.closures or "prescribed" in request:
-        rows = sum(len(closure.rows) for closure in model.closures)
-        _check_size(source, len(ClosedRequest.read(request).outputs()), 4 * n + rows + 8)
-        return simulate_closed(model, request, report, source.folder)
-    read = SimulationRequest.read(request)
-    _check_size(source, len(read.outputs()), 3 * n + 10 + len(read.series) + len(read.inputs))
-    return simulate(model, request, report, source.folder)
+    schema = _motion_schema(request, bool(model.closures))
+    read = schema.read(request)
+    rows = sum(len(closure.rows) for closure in model.closures)
+    _check_size(source, len(read.outputs()), 4 * n + rows + 10 + len(getattr(read, "series", ())) + len(read.inputs))
+    return MOTIONS[schema](model, request, report, source.folder)
 
 
 def _sensitivities(source: Source, request: Request, report: Report) -> Any:

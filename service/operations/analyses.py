@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from time import perf_counter
 from typing import Any
 
@@ -11,15 +10,14 @@ from service.analyses.numbers import ANALYSES, require_object
 from service.analyses.results import trajectory_of, written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.negotiation import JSON, MEDIA_TYPES, choose_media_type
+from service.negotiation import MEDIA_TYPES
 from service.operations import trees
-from service.operations.models import Style, bound, joined
 from service.operations.sources import sources_of
-from service.problems import Refused
+from service.printing import Style, made_text
 from service.queries.trees import Tree
+from service.refusals import Refused
 from service.store import Store
 from substructures.model import Model
-from substructures.printers import render
 
 
 def source_of(store: Store, tree: Tree, model: Model) -> Source:
@@ -46,29 +44,17 @@ def velocity_equations(store: Store, ref: str, document: Any, style: Style) -> A
 
 
 def _printed(source: Source, found: Made, style: Style) -> Answer:
-    program = bound(found.program, source.model.parameters, style.bind)
-    text = render(program, style.format, style.form)
-    if style.format == JSON and found.members:
-        text = joined(found.members, text)
-    if style.format == "text":
-        text = "\n".join([text.rstrip("\n"), *_notes(found.members), ""])
+    text = made_text(found, source.model.parameters, style)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 
-def _notes(members: Mapping[str, Any]) -> Iterator[str]:
-    """What is said for people about first integrals."""
-    for each in members.get("integrals", ()):
-        yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
+def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answer:
+    """The result of an analysis of ANALYSES in one of its media types.
 
-
-def analyse(store: Store, ref: str, name: str, request: Any, accept: str) -> Answer:
-    """The result of an analysis of ANALYSES in the media type wanted.
-
-    Raises Refused 404, 406, or 503 when it takes longer than the limit of a request; InvalidDocument, MissingValue,
+    Raises Refused 404, or 503 when it takes longer than the limit of a request, InvalidDocument, MissingValue,
     TooLarge.
     """
     analysis = ANALYSES[name]
-    media = choose_media_type(accept, analysis.media)
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)

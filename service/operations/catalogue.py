@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from service.database import Connection
 from service.paging import read_token, write_token
@@ -13,17 +12,18 @@ from service.problems import Refused, not_found, unprocessable
 from service.queries import aliases, catalogue, content
 from service.references import ALIAS, Reference, parse_reference
 from service.store import Store
+from service.summaries import PartContent, part_content
 from substructures.definition import Definition
-from substructures.documents import write_json
-from substructures.part import Part, derive
+from substructures.part import derive
 
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """A definition ready to be stored; ``part`` is None when its content is stored already."""
+    """A definition ready to be stored; ``content`` is None when that is stored already."""
 
-    definition: Definition
-    part: Part | None
+    name: str
+    digest: str
+    content: PartContent | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,71 +39,24 @@ def prepare(store: Store, definition: Definition) -> Submission:
     """Derive, verify and certify a definition unless its content is known. Raises InvalidDocument, TooLarge."""
     with store.database.read() as connection:
         if content.has_part(connection, definition.digest):
-            return Submission(definition, None)
+            return Submission(definition.name, definition.digest, None)
     part = derive(definition, store.settings.limits.program_nodes)
     store.remember_part(part)
-    return Submission(definition, part)
+    return Submission(definition.name, definition.digest, part_content(part))
 
 
-def store_part(connection: Connection, part: Part) -> None:
+def store_part(connection: Connection, part: PartContent) -> None:
     """Write a part with its program and formulas; content that is there already stays as it is."""
-    definition, program = part.definition, part.program
-    content.put_program(connection, program.digest, program.to_bytes(), len(program))
-    words = (definition.name, definition.title, definition.description, *definition.tags)
-    row = {
-        "digest": definition.digest,
-        "program": program.digest,
-        "definition": definition.canonical().decode(),
-        "title": _plain(definition.title),
-        "description": _plain(definition.description),
-        "searchable": _plain("\n".join(words).lower()),
-        "dof": part.dof,
-        "joints": part.joints,
-        "tags": _json(definition.tags),
-        "coordinates": _json(part.coordinates),
-        "bodies": _json(part.bodies),
-        "ports": _json(part.ports),
-        "parameters": _json(part.parameters),
-        "operations": _json(part.operations),
-        "certificate": _json(part.certificate),
-    }
-    content.put_part(connection, row, tuple(dict.fromkeys(definition.tags)), formula_rows(part))
-
-
-def formula_rows(part: Part) -> list[content.FormulaRow]:
-    """The addressable formulas of a part."""
-    return [
-        content.FormulaRow(
-            position,
-            formula.quantity,
-            formula.body,
-            formula.coordinate,
-            _json(formula.shape),
-            formula.symmetry,
-            formula.operations,
-            formula.output,
-            _json(formula.index),
-        )
-        for position, formula in enumerate(part.formulas())
-    ]
-
-
-def _plain(text: str) -> str:
-    """Without NUL, which PostgreSQL cannot store outside of JSON's escapes."""
-    return text.replace("\0", "")
-
-
-def _json(value: Any) -> str:
-    return write_json(value).decode()
+    content.put_program(connection, part.row["program"], part.program, part.nodes)
+    content.put_part(connection, part.row, part.tags, [content.FormulaRow(*values) for values in part.formulas])
 
 
 def submit(connection: Connection, submission: Submission) -> tuple[catalogue.Version, bool]:
     """Store a submission; the version, and whether it is new."""
-    if submission.part is not None:
-        store_part(connection, submission.part)
-    definition = submission.definition
-    number, is_new = catalogue.add_version(connection, definition.name, definition.digest)
-    return _resolved(connection, Reference(definition.name, number=number)), is_new
+    if submission.content is not None:
+        store_part(connection, submission.content)
+    number, is_new = catalogue.add_version(connection, submission.name, submission.digest)
+    return _resolved(connection, Reference(submission.name, number=number)), is_new
 
 
 def find(connection: Connection, text: str) -> catalogue.Version:

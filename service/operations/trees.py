@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,8 @@ from service.queries import catalogue as versions
 from service.queries import content, trees
 from service.references import Reference, parse_reference
 from service.store import Store
-from substructures.documents import read_json, write_json
+from service.summaries import PartContent, part_content, tree_summary
+from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model, couple
 from substructures.part import Part, derive
@@ -36,24 +38,47 @@ class Revision:
     is_exact: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Coupled:
+    """What is stored of a coupled tree: canonical program, its operations, degrees of freedom, the summary as JSON.
+
+    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
+    """
+
+    spec: TreeSpec
+    program: bytes
+    nodes: int
+    dof: int
+    summary: bytes
+    parts: Mapping[str, str]
+    inline: Sequence[PartContent] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a tree shall become; ``is_exact``: ``base`` was named by number; ``step``: where the request's body is."""
+
+    document: dict[str, Any]
+    base: trees.Tree
+    is_exact: bool
+    step: str
+
+
 def prepare(store: Store, data: Any) -> Revision:
     """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge."""
     return _coupled(store, TreeSpec.read(data))
 
 
-def prepare_coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Revision:
-    """Couple one more instance onto an existing tree. Raises InvalidDocument, TooLarge, Refused 404 or 412."""
+def coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Change:
+    """One more instance on an existing tree. Raises Refused 404 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
-    grown, step = {**spec, "instances": [*instances, data]}, f"/instances/{len(instances)}"
-    try:
-        return _coupled(store, TreeSpec.read(grown), base, _is_pinned(text))
-    except InvalidDocument as error:
-        raise InvalidDocument(_within(fault, step) for fault in error.faults) from None
+    grown = {**spec, "instances": [*instances, data]}
+    return Change(grown, base, _is_pinned(text), f"/instances/{len(instances)}")
 
 
-def prepare_removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Revision:
-    """Remove one instance that carries no other. Raises Refused 404, 409 or 412."""
+def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Change:
+    """One instance less, which must not carry another. Raises Refused 404, 409 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
     if all(each["name"] != instance for each in instances):
@@ -62,7 +87,15 @@ def prepare_removal(store: Store, text: str, instance: str, if_match: str | None
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
     kept = [each for each in instances if each["name"] != instance]
-    return _coupled(store, TreeSpec.read({**spec, "instances": kept}), base, _is_pinned(text))
+    return Change({**spec, "instances": kept}, base, _is_pinned(text), "")
+
+
+def prepare_change(store: Store, change: Change) -> Revision:
+    """Couple a changed tree. Raises InvalidDocument, TooLarge."""
+    try:
+        return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
+    except InvalidDocument as error:
+        raise InvalidDocument(_within(fault, change.step) for fault in error.faults) from None
 
 
 def _within(fault: Fault, step: str) -> Fault:
@@ -137,42 +170,50 @@ def _pin(instance: Instance, part: Part) -> Instance:
 
 
 def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool]:
-    """Store a revision; the tree, and whether it is new (creating the same tree again is not).
+    """Store a revision; as :func:`store`."""
+    spec, model = revision.spec, revision.model
+    inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
+    digests = {name: part.definition.digest for name, part in revision.parts.items()}
+    program = model.program.to_bytes()
+    coupled = Coupled(spec, program, len(model.program), model.dof, tree_summary(spec, model), digests, inline)
+    return store(connection, coupled, revision.base.revision if revision.base else None, revision.is_exact)
 
-    Raises StaleError when the latest revision is no longer the one that was changed, unless that one was pinned.
+
+def store(
+    connection: Connection, coupled: Coupled, base: int | None = None, is_exact: bool = False
+) -> tuple[trees.Tree, bool]:
+    """Store a coupled tree; the tree, and whether it is new (creating the same tree again is not).
+
+    Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned.
     """
-    spec, base = revision.spec, revision.base
+    spec = coupled.spec
     latest = trees.lock_name(connection, spec.name)
     if base is None and latest:
         current = trees.resolve(connection, Reference(spec.name))
         if current is not None and current.digest == spec.digest:
             return current, False
-    if base is not None and not revision.is_exact and latest != base.revision:
+    if base is not None and not is_exact and latest != base:
         raise StaleError(f"'{spec.name}' was changed meanwhile")
-    _write(connection, revision, latest + 1)
+    _write(connection, coupled, latest + 1, base)
     return find(connection, f"{spec.name}@{latest + 1}"), True
 
 
-def _write(connection: Connection, revision: Revision, number: int) -> None:
-    spec, program = revision.spec, revision.model.program
-    for instance in spec.instances:
-        if instance.definition is not None:
-            catalogue.store_part(connection, revision.parts[instance.name])
-    content.put_program(connection, program.digest, program.to_bytes(), len(program))
-    given = read_json(spec.canonical())
-    shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
+def _write(connection: Connection, coupled: Coupled, number: int, base: int | None) -> None:
+    for part in coupled.inline:
+        catalogue.store_part(connection, part)
+    spec, digest = coupled.spec, "sha256:" + hashlib.sha256(coupled.program).hexdigest()
+    content.put_program(connection, digest, coupled.program, coupled.nodes)
     row = {
         "name": spec.name,
         "revision": number,
         "digest": spec.digest,
         "spec": spec.canonical().decode(),
-        "program": program.digest,
-        "dof": len(revision.model.coordinates),
-        "summary": write_json({**revision.model.summary(), **shown}).decode(),
-        "based_on": revision.base.revision if revision.base else None,
+        "program": digest,
+        "dof": coupled.dof,
+        "summary": coupled.summary.decode(),
+        "based_on": base,
     }
-    digests = {name: part.definition.digest for name, part in revision.parts.items()}
-    trees.add_revision(connection, row, digests)
+    trees.add_revision(connection, row, coupled.parts)
 
 
 def find(connection: Connection, text: str) -> trees.Tree:

@@ -40,16 +40,21 @@ HEADERS = {
 }
 
 
-def document(title: str, *content: Html, script: str = "") -> bytes:
-    """The bytes of a page."""
+def document(title: str, *content: Html, script: str = "", refresh: int | None = None) -> bytes:
+    """The bytes of a page, which is loaded again after ``refresh`` seconds."""
     head = html(
         tag("meta", charset="utf-8"),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("meta", name="color-scheme", content="light dark"),
+        None if refresh is None else tag("meta", http_equiv="refresh", content=refresh),
         tag("title", title),
         tag("style", Html(STYLE)),
     )
-    top = tag("header", link("substructures", "/"), tag("nav", link("openapi.json", "/openapi.json")))
+    top = tag(
+        "header",
+        link("substructures", "/"),
+        tag("nav", link("jobs", "/jobs"), " · ", link("openapi.json", "/openapi.json")),
+    )
     body = tag("body", top, tag("main", *content), tag("script", Html(script)) if script else None)
     return f"<!doctype html>\n{tag('html', tag('head', head), body, lang='en')}\n".encode()
 

@@ -1,4 +1,4 @@
-"""``/``, ``/substructures/{ref}`` and ``/trees/{ref}``: pages for people, read with the same keys as the API."""
+"""``/``, ``/substructures/{ref}``, ``/trees/{ref}``, ``/jobs``: for people, read with the same keys as the API."""
 
 from __future__ import annotations
 
@@ -7,20 +7,22 @@ import re
 from fastapi import APIRouter, Request, Response
 
 from service import keys
-from service.operations import catalogue, trees
+from service.operations import catalogue, jobs, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
 from service.pages.catalogue import Shown, page
 from service.pages.details import part_page, tree_page
+from service.pages.jobs import job_page, jobs_page
 from service.pages.layout import answer
 from service.queries import aliases
+from service.queries import jobs as job_rows
 from service.queries import trees as revisions
 from service.queries.catalogue import Search
 from service.requests import StoreOf, needs
 from service.settings import Settings
 from substructures.lean import lean
 
-CARDS, TREES = 500, 100
+CARDS, TREES, JOBS, BAD = 500, 100, 100, 50
 _HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")])
@@ -64,3 +66,22 @@ def tree(ref: str, request: Request, store: StoreOf) -> Response:
         model = store.model(connection, found)
     metric = model_quantity(sources_of(store, found, model), "metric") if found.dof else None
     return answer(request, tree_page(found, model, metric))
+
+
+@router.get("/jobs")
+def all_jobs(request: Request, store: StoreOf) -> Response:
+    """The latest jobs."""
+    with store.database.read() as connection:
+        found = job_rows.page_jobs(connection, None, None, None, JOBS + 1)
+        progress = [jobs.progress(connection, job) for job in found[:JOBS]]
+    return answer(request, jobs_page(found[:JOBS], progress, len(found) > JOBS))
+
+
+@router.get("/jobs/{job}")
+def one_job(job: str, request: Request, store: StoreOf) -> Response:
+    """A job with its progress."""
+    with store.database.read() as connection:
+        found = jobs.find(connection, job)
+        bad = job_rows.page_items(connection, job, "failed", -1, BAD + 1)
+        progress = jobs.progress(connection, found)
+    return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD))

@@ -104,6 +104,12 @@ def resolve(connection: Connection, ref: Reference) -> Version | None:
     return None if row is None else Version(*row)
 
 
+def all_versions(connection: Connection) -> list[tuple[str, int]]:
+    """Name and number of every version that is not withdrawn."""
+    query = select(versions.c.name, versions.c.version).where(versions.c.yanked.is_(None))
+    return [(name, number) for name, number in connection.execute(query.order_by(versions.c.name, versions.c.version))]
+
+
 def page(connection: Connection, search: Search, after: tuple[Any, ...] | None, size: int) -> list[Version]:
     """Up to ``size`` latest versions that follow the position ``after`` (sort value, name) in the order of ``sort``."""
     column = _SORTABLE[search.sort.lstrip("-")]

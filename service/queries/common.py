@@ -8,6 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Table
 from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import OperationalError
 
 _INSERT: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 
@@ -24,3 +25,14 @@ def insert_missing(connection: Connection, table: Table, rows: Sequence[Mapping[
     statement = _INSERT[connection.dialect.name](table).on_conflict_do_nothing()
     counted = {"preserve_rowcount": True}  # otherwise PostgreSQL's driver does not say
     return sum(connection.execute(statement, row, execution_options=counted).rowcount for row in rows)
+
+
+def put_all(connection: Connection, table: Table, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Insert the rows whose key is not there yet, many at a time."""
+    if rows:
+        connection.execute(_INSERT[connection.dialect.name](table).on_conflict_do_nothing(), list(rows))
+
+
+def is_outage(error: Exception) -> bool:
+    """Whether it is the database that failed (locked, full, gone), so that the same may work later."""
+    return isinstance(error, OperationalError)

@@ -83,6 +83,11 @@ def get_definition(connection: Connection, digest: str) -> bytes | None:
     return None if text is None else text.encode()
 
 
+def get_blob(connection: Connection, digest: str) -> bytes | None:
+    """The definition or the program with this digest."""
+    return get_definition(connection, digest) or get_program(connection, digest)
+
+
 def list_formulas(
     connection: Connection,
     part: str,

@@ -7,16 +7,17 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 
 from service.analyses.formulas import QUANTITIES
-from service.answers import Answer, etag
+from service.answers import JSON, Answer, Stream, etag
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrow import MEDIA_TYPE as ARROW
 from service.negotiation import MEDIA_TYPES
-from service.once import OnceSpooled
+from service.once import Commit, OnceSpooled
 from service.operations import analyses, models, trees
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
 from service.requests import SpooledBody, StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
+from service.routes.deferred import ACCEPTED, deferred
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
@@ -26,7 +27,7 @@ router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
 READ = [needs("read")]
 BINARY = {NPZ: binary(), ARROW: binary()}
 BODY: dict[str, Any] = body_of("EvaluationRequest", others=BINARY)
-RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}}
+RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}, **ACCEPTED}
 
 
 @router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
@@ -51,7 +52,15 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
     evaluation = Evaluation(
         sources_of(store, tree, model), tree.digest, store.settings.limits, engine_of(store, tree, model)
     )
-    return once.compute(lambda: evaluation.answer(read_requests(body, sent, store.settings.limits), wanted))
+
+    def work() -> Answer | Stream:
+        return evaluation.answer(read_requests(body, sent, store.settings.limits), wanted)
+
+    def later() -> Commit:
+        (given,) = read_requests(body, sent, store.settings.limits)
+        return deferred(once, "evaluate", {"tree": ref, "request": given}, "/request")()
+
+    return once.compute(work, later if sent == JSON else None)  # arrays stay out of the queue
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

@@ -16,6 +16,7 @@ from service.queries import aliases, content
 from service.queries.catalogue import SORTS, Search, Version
 from service.requests import JsonBody, OptionalJsonBody, StoreOf, conditional, needs
 from service.routes.bodies import body_of, content_of
+from service.routes.deferred import ACCEPTED, deferred
 from service.schemas import VersionPage, VersionView, YankRequest
 from service.views import dump, page_view, version_path, version_view
 from substructures.definition import Definition, read_model
@@ -30,7 +31,9 @@ def names_of(connection: Connection, version: Version) -> list[str]:
     return aliases.aliases_of(connection, (version.name, version.version))[0]
 
 
-@router.post("", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION)
+@router.post(
+    "", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION, responses=ACCEPTED
+)
 def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     definition = Definition.read(body)
@@ -45,7 +48,7 @@ def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
 
         return commit
 
-    return once.run(prepare)
+    return once.run(prepare, deferred(once, "derive", body))
 
 
 @router.get("", response_model=VersionPage, dependencies=READ)

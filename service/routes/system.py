@@ -6,6 +6,7 @@ from fastapi import APIRouter, Response
 
 from service.answers import Answer, json_answer
 from service.metrics import CONTENT_TYPE
+from service.queries.jobs import counts
 from service.requests import StoreOf, needs
 from service.schemas import Health, LimitsView
 from service.views import dump
@@ -34,6 +35,8 @@ def readyz(store: StoreOf) -> Response:
 @router.get("/metrics", dependencies=READ, response_class=Response)
 def metrics(store: StoreOf) -> Response:
     """Metrics for Prometheus."""
+    with store.database.read() as connection:
+        store.metrics.queue(counts(connection))
     return Answer(200, store.metrics.text(), {"Content-Type": CONTENT_TYPE}).response()
 
 

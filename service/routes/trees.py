@@ -9,13 +9,15 @@ from fastapi import APIRouter, Header, Query, Request, Response
 
 from service.answers import Answer, json_answer
 from service.database import Connection
-from service.once import Commit, OnceOf
+from service.once import Commit, Once, OnceOf
 from service.operations import trees
+from service.operations.job_results import BASE, IS_EXACT
 from service.paging import limited, link_header, next_link, read_token, write_token
 from service.queries.trees import page
 from service.references import parse_reference
 from service.requests import JsonBody, StoreOf, conditional, needs
 from service.routes.bodies import body_of
+from service.routes.deferred import ACCEPTED, deferred
 from service.schemas import TreePage, TreeView
 from service.views import dump, tree_item, tree_path, tree_view
 
@@ -39,10 +41,28 @@ def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
     return prepared
 
 
-@router.post("", status_code=201, response_model=TreeView, dependencies=WRITE, openapi_extra=body_of("TreeSpec"))
+def changed(once: Once, change: Callable[[], trees.Change]) -> Response:
+    """Store a changed tree, at once or by a job."""
+
+    def later() -> Commit:
+        found = change()
+        members = {BASE: found.base.revision, IS_EXACT: found.is_exact}
+        return deferred(once, "assemble", found.document, found.step, members)()
+
+    return once.run(revision(lambda: trees.prepare_change(once.store, change())), later)
+
+
+@router.post(
+    "",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("TreeSpec"),
+    responses=ACCEPTED,
+)
 def create(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
-    return once.run(revision(lambda: trees.prepare(store, body)))
+    return once.run(revision(lambda: trees.prepare(store, body)), deferred(once, "assemble", body))
 
 
 @router.get("", response_model=TreePage, dependencies=READ)
@@ -78,14 +98,21 @@ def is_pinned(ref: str) -> bool:
 
 
 @router.post(
-    "/{ref}/couplings", status_code=201, response_model=TreeView, dependencies=WRITE, openapi_extra=body_of("Instance")
+    "/{ref}/couplings",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("Instance"),
+    responses=ACCEPTED,
 )
 def add_coupling(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
     """Couple one more instance onto the tree: a new revision."""
-    return once.run(revision(lambda: trees.prepare_coupling(store, ref, body, if_match)))
+    return changed(once, lambda: trees.coupling(store, ref, body, if_match))
 
 
-@router.delete("/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE)
+@router.delete(
+    "/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE, responses=ACCEPTED
+)
 def remove_coupling(ref: str, instance: str, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
-    return once.run(revision(lambda: trees.prepare_removal(store, ref, instance, if_match)))
+    return changed(once, lambda: trees.removal(store, ref, instance, if_match))

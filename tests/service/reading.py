@@ -24,7 +24,7 @@ KNOWN = {
     "div",
     "span",
 } | {
-    *("h1", "h2", "h3", "pre", "code", "input", "img", "article", "sub", "sup"),
+    *("h1", "h2", "h3", "pre", "code", "input", "img", "article", "sub", "sup", "progress"),
     *("table", "thead", "tbody", "tr", "th", "td", "dl", "dt", "dd", "ul", "li"),
 }
 

@@ -17,11 +17,13 @@ from service import arrow
 from service.app import open_store
 from service.negotiation import MEDIA_TYPES
 from service.settings import Limits, Settings
+from service.store import Store
 from substructures import catalogue
 from substructures.documents import write_json
 from substructures.expr.program import Program
 
 from .conftest import make_client
+from .fake_engine import FakeEngine, finished, running
 
 G = 9.81
 BAR: dict[str, Any] = {
@@ -73,16 +75,21 @@ def submit(client: TestClient, name: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
     folder: Path = tmp_path_factory.mktemp("analyses")
     with open_store(Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False)) as store:
-        client = make_client(store)
-        for name in ("simple-pendulum", "cart-pendulum"):
-            submit(client, name)
-        for tree in TREES:
-            answer = client.post("/v1/trees", json=tree)
-            assert answer.status_code == 201, answer.text
-        yield client
+        yield store
+
+
+@pytest.fixture(scope="module")
+def client(store: Store) -> TestClient:
+    client = make_client(store)
+    for name in ("simple-pendulum", "cart-pendulum"):
+        submit(client, name)
+    for tree in TREES:
+        answer = client.post("/v1/trees", json=tree)
+        assert answer.status_code == 201, answer.text
+    return client
 
 
 def ask(client: TestClient, path: str, **request: Any) -> Any:
@@ -293,7 +300,7 @@ def test_wrong_requests(client: TestClient, name: str, request_: dict[str, Any],
     assert refused.status_code == 406
 
 
-def test_the_time_of_a_request_is_limited(tmp_path: Path) -> None:
+def test_what_takes_long_becomes_a_job(tmp_path: Path) -> None:
     limits = Limits(sync_seconds=0.5)
     with open_store(Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False, limits=limits)) as store:
         client = make_client(store)
@@ -301,11 +308,31 @@ def test_the_time_of_a_request_is_limited(tmp_path: Path) -> None:
         assert client.post("/v1/trees", json=TREES[0]).status_code == 201
         request = {"q": [1], "span": [0, 1e6], "method": "RK23", "max_steps": 10**8}
         answer = client.post("/v1/trees/clock/simulations", json=request)
-        assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+        assert (answer.status_code, answer.json()["kind"]) == (202, "analyse")
         large = {"q": [1], "span": [0, 1e6], "count": 1_000_000}
-        small = Limits(binary_bytes=10**6)
-        store.settings = store.settings.model_copy(update={"limits": small})
+        store.settings = store.settings.model_copy(update={"limits": Limits(binary_bytes=10**6)})
         assert client.post("/v1/trees/clock/simulations", json=large).json()["code"] == "too-large"
+
+
+@pytest.mark.parametrize("headers", [{}, {"Accept": "text/csv"}])
+def test_jobs_compute_the_same(client: TestClient, store: Store, headers: dict[str, str]) -> None:
+    request = {"q": [0, 0.4], "span": [0, 1], "count": 5}
+    answer = client.post("/v1/trees/cart/simulations", json=request, headers=headers)
+    with running(store, FakeEngine()):
+        waiting = client.post(
+            "/v1/trees/cart/simulations", json=request, headers={**headers, "Prefer": "respond-async"}
+        )
+        assert waiting.status_code == 202, waiting.text
+        job = finished(client, waiting.json()["id"])
+        (item,) = client.get(job["result"]).json()["items"]
+    assert (item["state"], item["result"]["status"], item["result"]["is_right"]) == ("succeeded", "finished", True)
+    (file,) = item["files"]
+    assert answer.headers["content-type"].startswith(file["media_type"])
+    content = client.get(file["href"]).content
+    if headers:
+        assert content == answer.content
+    else:
+        assert client.get(file["href"]).json()["q"] == answer.json()["q"]
 
 
 def test_an_idempotency_key_is_accepted(client: TestClient) -> None:

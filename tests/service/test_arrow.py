@@ -71,6 +71,18 @@ def expected(client: TestClient) -> Any:
     ).json()  # fmt: skip
 
 
+def assert_same(found: Any, known: Any) -> None:
+    """Equal up to rounding: the first answers may be interpreted, later ones compiled."""
+    if isinstance(known, dict):
+        assert found.keys() == known.keys()
+        for name, value in known.items():
+            assert_same(found[name], value)
+    elif np.asarray(known).dtype.kind == "f":
+        np.testing.assert_allclose(found, known, rtol=1e-14, atol=1e-15)
+    else:
+        np.testing.assert_array_equal(found, known)
+
+
 def test_arrow_equals_json(double: TestClient) -> None:
     body = stream(BATCHES, {**REQUEST, "parameters": {"hand.l": 0.5}})
     answer = post(double, body)
@@ -79,8 +91,8 @@ def test_arrow_equals_json(double: TestClient) -> None:
     table, known = pa.ipc.open_stream(answer.content).read_all(), expected(double)
     assert [len(chunk) for chunk in table["metric"].chunks] == [3, 1, 6]
     for name in ("metric", "forces", "kinetic_energy"):
-        np.testing.assert_array_equal(column(table, name), known[name])
-    np.testing.assert_array_equal(column(table, "kinematics.rotation"), known["kinematics"]["rotation"])
+        assert_same(column(table, name), known[name])
+    assert_same(column(table, "kinematics.rotation"), known["kinematics"]["rotation"])
     metadata = table.schema.metadata
     assert json.loads(metadata[b"coordinates"]) == known["coordinates"]
     assert json.loads(metadata[b"quantities"]) == REQUEST["quantities"]
@@ -92,17 +104,17 @@ def test_arrow_equals_json(double: TestClient) -> None:
 def test_any_format_in_any_format_out(double: TestClient) -> None:
     body = stream(BATCHES, {**REQUEST, "parameters": {"hand.l": 0.5}})
     known = expected(double)
-    assert post(double, body, JSON).json() == known
+    assert_same(post(double, body, JSON).json(), known)
     arrays = np.load(io.BytesIO(post(double, body, NPZ).content), allow_pickle=False)
-    np.testing.assert_array_equal(arrays["metric"], known["metric"])
-    np.testing.assert_array_equal(arrays["kinematics.U"], known["kinematics"]["U"])
+    assert_same(arrays["metric"], known["metric"])
+    assert_same(arrays["kinematics.U"], known["kinematics"]["U"])
     assert int(arrays["count"]) == 10
     packed = io.BytesIO()
     np.savez(packed, q=Q, quantities=np.array(["metric"]))
     plain = pa.ipc.open_stream(post(double, packed.getvalue(), ARROW, NPZ).content).read_all()
     one = json.dumps({"quantities": ["metric"], "q": Q[4].tolist(), "qd": [0, 0]}).encode()
     single = pa.ipc.open_stream(post(double, one, ARROW, JSON).content).read_all()
-    np.testing.assert_array_equal(column(plain, "metric")[4], column(single, "metric")[0])
+    assert_same(column(plain, "metric")[4], column(single, "metric")[0])
 
 
 @pytest.mark.parametrize("accept", ["*/*", "application/*", f"{NPZ};q=0.2, {ARROW}", f"text/html, {ARROW}"])
@@ -128,7 +140,7 @@ def test_the_format_may_be_refused(double: TestClient) -> None:
 )
 def test_other_columns(double: TestClient, columns: dict[str, Any]) -> None:
     known = post(double, stream([{"q": lists(Q)}], {"quantities": ["metric"]}), JSON).json()
-    assert post(double, stream([columns], {"quantities": ["metric"]}), JSON).json() == known
+    assert_same(post(double, stream([columns], {"quantities": ["metric"]}), JSON).json(), known)
 
 
 def test_batches_without_rows_are_passed_over(double: TestClient) -> None:

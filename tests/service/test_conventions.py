@@ -11,11 +11,12 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
+from service.arrays import member, npz_pieces
 from service.schemas import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store import Store
 
-from .conftest import HAND, PENDULUM, TREE, make_client
+from .conftest import PENDULUM, TREE, make_client
 
 JSON = {"Content-Type": "application/json"}
 
@@ -182,11 +183,16 @@ def test_pages_that_are_too_long(small: TestClient) -> None:
     assert small.get("/v1/trees?page_size=4").json()["errors"][0]["pointer"] == "/query/page_size"
 
 
-def test_slow_work_stores_nothing(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch, rows: Any) -> None:
+def test_slow_work_that_cannot_be_queued(
+    filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch, rows: Any
+) -> None:
     before = rows()
     limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
     monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
-    problem(filled.post("/v1/trees/cell/couplings", json=HAND), 503, "took-too-long")
+    given = {"quantities": ["metric"], "q": [0.1]}
+    body = b"".join(npz_pieces(member(name, value) for name, value in given.items()))
+    answer = filled.post("/v1/trees/cell/evaluations", content=body, headers={"Content-Type": "application/x-npz"})
+    problem(answer, 503, "took-too-long")
     assert rows() == before
 
 

@@ -54,14 +54,14 @@ def test_failures_free_the_key(filled: TestClient, rows: Any) -> None:
 
 def test_in_flight(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     started, finish = threading.Event(), threading.Event()
-    prepare = trees.prepare_coupling
+    prepare = trees.prepare_change
 
     def slow(*arguments: Any) -> Any:
         started.set()
         assert finish.wait(10)
         return prepare(*arguments)
 
-    monkeypatch.setattr("service.operations.trees.prepare_coupling", slow)
+    monkeypatch.setattr("service.operations.trees.prepare_change", slow)
     answers: list[Any] = []
     post = lambda: answers.append(filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY))  # noqa: E731
     thread = threading.Thread(target=post)

@@ -1,0 +1,32 @@
+"""Which engine the settings name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from importlib import import_module
+
+from service.jobs.engine import Engine
+from service.jobs.local import LocalEngine
+from service.settings import Settings, SettingsError
+
+
+def engine_of(settings: Settings) -> Callable[[], Engine] | None:
+    """What makes the engine that the settings name; None: no engine. Raises SettingsError."""
+    workers = settings.workers or os.cpu_count() or 1
+    match settings.engine:
+        case "local":
+            return lambda: LocalEngine(workers)
+        case "dask":
+            return _dask(settings.engine_address)
+    return None
+
+
+def _dask(address: str) -> Callable[[], Engine]:
+    if not address:
+        raise SettingsError("the engine dask needs the address of its scheduler: --engine-address tcp://...")
+    try:
+        module = import_module("service.jobs.dask")  # an extra; it takes long to load
+    except ImportError:
+        raise SettingsError("the engine dask needs the extra: pip install 'substructures[dask]'") from None
+    return lambda: module.DaskEngine(address)

@@ -1,0 +1,110 @@
+"""What jobs compute. A submission is expanded into items, each item is resolved, and later run in another process."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from typing import Any
+
+from service.jobs.engine import Outcome
+from service.jobs.kinds.analyse import analysis_kind
+from service.jobs.kinds.assemble import ASSEMBLE
+from service.jobs.kinds.choices import combinations
+from service.jobs.kinds.derive import DERIVE
+from service.jobs.kinds.evaluate import EVALUATE
+from service.jobs.kinds.export import EXPORT
+from service.jobs.kinds.kind import Item, Kind, Progress
+from service.jobs.kinds.library import Library
+from service.jobs.kinds.verify import VERIFY
+from service.refusals import Refused, known_refusal, problem
+from service.settings import Limits
+from substructures.certificate import VerificationFailed
+from substructures.errors import Fault, InvalidDocument, InvalidProgram
+
+__all__ = ["KINDS", "Library", "expand", "resolve", "run"]
+
+_KINDS: dict[str, Kind] = {
+    "assemble": ASSEMBLE,
+    "evaluate": EVALUATE,
+    "export": EXPORT,
+    "derive": DERIVE,
+    "verify": VERIFY,
+    "simulate": analysis_kind("simulations"),
+    "optimise": analysis_kind("optimal-controls"),
+    "analyse": analysis_kind(),
+}
+KINDS = tuple(_KINDS)
+FIELDS = ("kind", "items", "template", "choices")
+_log = logging.getLogger(__name__)
+
+
+def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Library) -> list[Item]:
+    """The items of a submission: ``items``, or every combination of the ``choices`` put into the ``template``.
+
+    An item may stand for several: states are split into parts of bounded size, ``*`` into the
+    versions of the catalogue. Raises InvalidDocument with pointers into the submission.
+    """
+    if kind not in _KINDS:
+        raise InvalidDocument.at("/kind", "unknown-kind", f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}")
+    items: list[Item] = []
+    for pointer, given in _given(request, limits.job_items):
+        if not isinstance(given, dict):
+            raise InvalidDocument.at(pointer, "object-expected", "an object is needed")
+        try:
+            items += _KINDS[kind].spread(given, limits, library)
+        except InvalidDocument as error:
+            raise InvalidDocument(Fault(pointer + f.pointer, f.code, f.message) for f in error.faults) from None
+        if len(items) > limits.job_items:
+            message = f"more than {limits.job_items:,} items after splitting; submit several jobs"
+            raise InvalidDocument.at("/items", "too-many-items", message)
+    if not items:
+        raise InvalidDocument.at("/items", "empty", "a job needs at least one item")
+    return items
+
+
+def _given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
+    """The items as given or put together, each with the place of its faults."""
+    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key[:80]}'") for key in request if key not in FIELDS]
+    if ("items" in request) == ("template" in request):
+        faults.append(Fault("/items", "missing", "give either 'items', or a 'template' with 'choices'"))
+    if faults:
+        raise InvalidDocument(faults)
+    if "template" in request:
+        made = combinations(request["template"], request.get("choices"), limit)
+        return [("/template", item) for item in made]
+    items = request["items"]
+    if not isinstance(items, list) or not items:
+        raise InvalidDocument.at("/items", "empty", "a list of at least one item is needed")
+    if len(items) > limit:
+        raise InvalidDocument.at("/items", "too-many-items", f"{len(items):,} items; the limit is {limit:,}")
+    return [(f"/items/{k}", item) for k, item in enumerate(items)]
+
+
+def resolve(kind: str, item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    """The item with all references pinned to digests, and the digests of the blobs that it needs.
+
+    Raises InvalidDocument with pointers relative to the item.
+    """
+    return _KINDS[kind].resolve(item, library)
+
+
+def run(kind: str, item: Item, blobs: Mapping[str, bytes], progress: Progress) -> Outcome:
+    """Compute a resolved item; what fails on its own account becomes a problem document. Raises MemoryError."""
+    try:
+        return _KINDS[kind].run(item, blobs, progress)
+    except MemoryError:
+        raise
+    except (InvalidProgram, VerificationFailed) as error:
+        code = "damaged-program" if isinstance(error, InvalidProgram) else "verification-failed"
+        return failed(Refused(500, code, str(error)))
+    except Exception as error:  # one item never takes the others with it
+        known = known_refusal(error)
+        if known is None:
+            _log.error("unexpected %s", type(error).__name__, exc_info=error)
+            known = Refused(500, "internal-error", f"an error in the service: {type(error).__name__}")
+        return failed(known)
+
+
+def failed(refused: Refused) -> Outcome:
+    """The outcome of an item that failed."""
+    return Outcome(problem=problem(refused))

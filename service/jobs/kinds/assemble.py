@@ -1,0 +1,93 @@
+"""assemble: an item is a tree document as for ``POST /v1/trees``; its outcome is what is stored of the tree."""
+
+from __future__ import annotations
+
+from service.jobs.engine import Outcome
+from service.jobs.kinds.decoded import part_of
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
+from service.jobs.kinds.library import Library, StoredVersion
+from service.settings import Limits
+from service.summaries import part_content, tree_summary
+from substructures.documents import read_json
+from substructures.errors import Fault, InvalidDocument
+from substructures.model import couple
+from substructures.part import Part, derive
+from substructures.tree import Instance, TreeSpec
+
+
+def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
+    return [{"tree": item, "nodes": limits.job_nodes}]
+
+
+def pinned_tree(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition."""
+    spec = TreeSpec.read(item["tree"])
+    versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
+    faults = [
+        Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance))
+        for k, instance in enumerate(spec.instances)
+        if instance.name in versions and versions[instance.name] is None
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    found = {name: version for name, version in versions.items() if version is not None}
+    pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
+    programs = {version.digest: version.program for version in found.values()}
+    tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
+    return {"tree": tree, "programs": programs, "nodes": item["nodes"]}, (*programs, *programs.values())
+
+
+def _unknown(instance: Instance) -> str:
+    return f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
+
+
+def _pin(instance: Instance, version: StoredVersion | None) -> Instance:
+    if version is None:
+        return instance
+    return instance.model_copy(update={"substructure": f"{version.name}@{version.digest}"})
+
+
+def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+    """Files ``program``, ``spec``, ``summary``; of every inline definition ``<instance>.program``, ``.content``.
+
+    Raises InvalidDocument, TooLarge.
+    """
+    spec, parts = tree_parts(item, blobs)
+    progress(0.1)
+    model = couple(spec, parts, item["nodes"])
+    progress(0.9)
+    files = {"program": model.program.to_bytes(), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
+    for instance in spec.instances:
+        if instance.definition is not None:
+            content = part_content(parts[instance.name]).files()
+            files |= {f"{instance.name}.{name}": data for name, data in content.items()}
+    summary = {
+        "name": spec.name,
+        "digest": spec.digest,
+        "program": model.program.digest,
+        "nodes": len(model.program),
+        "dof": model.dof,
+        "operations": model.operations["total"],
+        "parts": {name: part.definition.digest for name, part in parts.items()},
+    }
+    return Outcome(summary, files)
+
+
+def tree_parts(item: Item, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
+    """The document of a pinned tree and its parts by instance. Raises InvalidDocument, TooLarge."""
+    spec = TreeSpec.read(item["tree"])
+    return spec, {i.name: _part(k, i, item, blobs) for k, i in enumerate(spec.instances)}
+
+
+def _part(index: int, instance: Instance, item: Item, blobs: Blobs) -> Part:
+    if instance.definition is None:
+        digest = (instance.substructure or "").partition("@")[2]
+        return part_of(digest, item["programs"][digest], blobs)
+    try:
+        return derive(instance.definition, item["nodes"])
+    except InvalidDocument as error:
+        step = f"/instances/{index}/definition"
+        raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
+
+
+ASSEMBLE = Kind(_spread, pinned_tree, _run)

@@ -1,0 +1,101 @@
+"""Items from a template: every combination of the choices, put into copies of it.
+
+A choice is named by an RFC 6901 pointer into the template (``/request/parameters/arm.m2``), or, in a tree document, by
+an instance (what it is) or ``instance.parameter`` (what that is bound to). The last choice varies fastest.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping
+from itertools import product
+from math import prod
+from typing import Any
+
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument
+
+MAX_NAME = 64
+
+
+def combinations(template: Any, choices: Any, limit: int) -> list[Any]:
+    """Copies of the template. Raises InvalidDocument with pointers ``/template`` and ``/choices``."""
+    if not isinstance(template, dict):
+        raise InvalidDocument.at("/template", "object-expected", "an object is needed")
+    if not isinstance(choices, Mapping) or not choices:
+        raise InvalidDocument.at("/choices", "missing", "an object of lists of choices is needed")
+    faults = [
+        Fault("/choices" + pointer_step(key), "list-expected", f"a list of choices is needed for '{key[:80]}'")
+        for key, values in choices.items()
+        if not isinstance(values, list) or not values
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    count = prod(len(values) for values in choices.values())
+    if count > limit:
+        raise InvalidDocument.at("/choices", "too-many-items", f"{count:,} combinations; the limit is {limit:,}")
+    paths = {key: _path(template, key) for key in choices}
+    rows = [dict(zip(choices, row, strict=True)) for row in product(*choices.values())]
+    items = [_filled(template, paths, row) for row in rows]
+    return _named(items, rows) if _is_tree(template) and "/name" not in choices else items
+
+
+def _is_tree(template: Mapping[str, Any]) -> bool:
+    return isinstance(template.get("name"), str) and isinstance(template.get("instances"), list)
+
+
+def _path(template: Any, key: str) -> tuple[str | int, ...]:
+    """The steps of a choice; all but the last exist, and the last one too in a list."""
+    if not key.startswith("/"):
+        return _short(template, key)
+    steps: list[str | int] = []
+    here = template
+    raw = [step.replace("~1", "/").replace("~0", "~") for step in key.split("/")[1:]]
+    for k, step in enumerate(raw):
+        is_last = k == len(raw) - 1
+        if isinstance(here, list) and step.isascii() and step.isdigit() and len(step) < 6 and int(step) < len(here):
+            steps.append(int(step))
+        elif isinstance(here, dict) and (step in here or is_last):
+            steps.append(step)
+        else:
+            raise _unknown(key, f"the template has nothing at '{key[:200]}'")
+        here = None if is_last else here[steps[-1]]
+    return tuple(steps)
+
+
+def _short(template: Any, key: str) -> tuple[str | int, ...]:
+    instance, dot, parameter = key.partition(".")
+    instances = template.get("instances") if isinstance(template.get("instances"), list) else []
+    for k, each in enumerate(instances):
+        if isinstance(each, dict) and each.get("name") == instance:
+            return ("instances", k, "parameters", parameter) if dot else ("instances", k, "substructure")
+    raise _unknown(key, f"the template has no instance '{instance[:80]}'")
+
+
+def _unknown(key: str, message: str) -> InvalidDocument:
+    return InvalidDocument.at("/choices" + pointer_step(key), "unknown-choice", message)
+
+
+def _filled(template: Any, paths: Mapping[str, tuple[str | int, ...]], row: Mapping[str, Any]) -> Any:
+    item = copy.deepcopy(template)
+    for key, value in row.items():
+        here = item
+        *steps, last = paths[key]
+        for step in steps:
+            here = here.setdefault(step, {}) if isinstance(here, dict) else here[step]
+        here[last] = value
+    return item
+
+
+def _named(items: list[Any], rows: list[dict[str, Any]]) -> list[Any]:
+    """Tree names out of the choices, ``cell-puma560-gripper``; numbered where these would be too long or not differ."""
+    names = ["-".join([item["name"], *map(_word, row.values())]) for item, row in zip(items, rows, strict=True)]
+    if len(set(names)) < len(names) or max(map(len, names)) > MAX_NAME:
+        width = len(str(len(items)))
+        names = [f"{item['name'][: MAX_NAME - width - 1]}-{k:0{width}d}" for k, item in enumerate(items, start=1)]
+    return [{**item, "name": name} for item, name in zip(items, names, strict=True)]
+
+
+def _word(value: Any) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", str(value).lower()).strip("-") or "x"

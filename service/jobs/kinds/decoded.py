@@ -1,0 +1,48 @@
+"""Parts and models out of blobs, kept decoded from one item to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from service.cache import Cache
+from service.jobs.kinds.library import StoredTree
+from substructures.definition import Definition
+from substructures.documents import read_json
+from substructures.model import Model
+from substructures.part import Part
+
+CAPACITY = 300_000  # operations
+
+_parts: Cache[Part] = Cache(CAPACITY, lambda part: len(part.program))
+_models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.program))
+
+
+def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
+    """The part with these digests; its certificate is left out. Raises InvalidProgram."""
+    key = definition, program
+    part = _parts.get(key)
+    if part is None:
+        part = Part.load(Definition.read(read_json(blobs[definition])), blobs[program], {})
+        _parts.put(key, part)
+    return part
+
+
+def pinned_model(tree: StoredTree) -> dict[str, Any]:
+    """What a model is beside its program, as plain data for an item."""
+    summary = read_json(tree.summary.encode())
+    parameters = {
+        name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
+    }
+    kept = ("coordinates", "joints", "frames", "closures")
+    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters}
+
+
+def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
+    """The model of an item with the fields ``tree``, ``program`` and ``model``. Raises InvalidProgram."""
+    key = item["tree"], item["program"]
+    model = _models.get(key)
+    if model is None:
+        model = Model.load({**item["model"], "certificate": {}}, blobs[item["program"]])
+        _models.put(key, model)
+    return model

@@ -1,0 +1,201 @@
+"""evaluate: numbers of a tree for many states, in items of bounded size.
+
+An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
+states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
+named there are 0). Its parts have a field ``range``, the first state and the one behind the last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from service.arrays import as_npz
+from service.cache import Cache
+from service.jobs.engine import Outcome
+from service.jobs.kinds.assemble import pinned_tree, tree_parts
+from service.jobs.kinds.decoded import model_of, pinned_model
+from service.jobs.kinds.joint_limits import joint_limits
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
+from service.jobs.kinds.library import Library, StoredTree
+from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
+from service.settings import Limits
+from substructures.compile import Kernel, compile_program
+from substructures.documents import read_json
+from substructures.errors import Fault, InvalidDocument
+from substructures.evaluation import (
+    QUANTITIES,
+    REGRESSOR,
+    Sources,
+    evaluate,
+    interpreted,
+    numbers_per_state,
+    read_quantities,
+)
+from substructures.expr.program import Program
+from substructures.model import Model
+from substructures.regressor import RegressorModel, regressor
+from substructures.states import Array
+
+WRITERS = {"npz": (as_npz, "application/x-npz")}
+#: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
+COMPILED = 1000
+CAPACITY = 2_000_000
+
+_regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
+_kernels: Cache[Kernel] = Cache(
+    CAPACITY, lambda kernel: 100 + 10 * sum(len(o.entries) for o in kernel.outputs.values())
+)
+
+
+def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
+    check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
+    tree = known_tree(item, library)
+    summary = read_json(tree.summary.encode())
+    request = _request(item)
+    size = 8 * numbers_per_state(read_quantities(request), len(summary["coordinates"]), len(summary["frames"]))
+    chunk = max(1, min(limits.job_states, limits.binary_bytes // size))
+    described = _described(item, tree, summary, library)
+    count = _count(described) if described else _listed(request)
+    if count is not None and count > chunk * limits.job_items:
+        message = f"{count:,} states; the limit is {chunk * limits.job_items:,}"
+        raise InvalidDocument.at("/" + next(iter(described or ("request",))), "too-many-states", message)
+    common = {"tree": item["tree"], "format": item.get("format", "npz"), "request": request, "nodes": limits.job_nodes}
+    if count is None:
+        return [common]
+    ranges = [[start, min(start + chunk, count)] for start in range(0, count, chunk)]
+    if described:
+        return [{**common, **described, "range": each} for each in ranges]
+    return [{**common, "request": _sliced(request, count, *each), "range": each} for each in ranges]
+
+
+def _request(item: Item) -> dict[str, Any]:
+    request = item["request"]
+    if not isinstance(request, dict):
+        raise InvalidDocument.at("/request", "object-expected", "an object is needed")
+    described = [name for name in ("grid", "sample") if name in item]
+    if len(described) + ("q" in request) > 1 or (described and "qd" in request):
+        raise InvalidDocument.at("/request", "states", "states come from 'q' and 'qd', or a 'grid', or a 'sample'")
+    if item.get("format", "npz") not in tuple(WRITERS):
+        known = ", ".join(WRITERS)
+        raise InvalidDocument.at("/format", "unknown-format", f"unknown format; there are {known}")
+    try:
+        read_quantities(request)
+    except InvalidDocument as error:
+        raise InvalidDocument(Fault("/request" + f.pointer, f.code, f.message) for f in error.faults) from None
+    return request
+
+
+def _described(item: Item, tree: StoredTree, summary: Mapping[str, Any], library: Library) -> Item:
+    """The grid or sample, complete; empty when the states are listed."""
+    coordinates = summary["coordinates"]
+    known = {*coordinates, *summary["parameters"]}
+    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates}
+    if "grid" in item:
+        return {"grid": read_grid(item["grid"], known)}
+    if "sample" in item:
+        return {"sample": read_sample(item["sample"], known, joint_limits(tree, library))}
+    return {}
+
+
+def _count(described: Item) -> int:
+    return grid_size(described["grid"]) if "grid" in described else int(described["sample"]["count"])
+
+
+def _listed(request: Mapping[str, Any]) -> int | None:
+    """The number of states, None for one without a leading axis; faults are found when they are read."""
+    q = request.get("q")
+    if isinstance(q, Mapping):
+        return max((len(column) for column in q.values() if isinstance(column, list)), default=None)
+    return len(q) if isinstance(q, list) and q and isinstance(q[0], list) else None
+
+
+def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> dict[str, Any]:
+    """The request for some of its states: what is given for each of them is cut."""
+
+    def cut(value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {name: cut(each) for name, each in value.items()}
+        return value[start:stop] if isinstance(value, list) and len(value) == count else value
+
+    def is_one(name: str, value: Any) -> bool:
+        """Whether a list belongs to every state."""
+        flat = isinstance(value, list) and not (value and isinstance(value[0], list))
+        return name == "quantities" or (name in ("qd", "qdd") and flat)
+
+    return {name: value if is_one(name, value) else cut(value) for name, value in request.items()}
+
+
+def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    tree = known_tree(item, library)
+    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
+    if all(QUANTITIES[name].source != REGRESSOR for name in read_quantities(item["request"])):
+        return {**item, **pinned}, (tree.program,)
+    parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library)
+    return {**item, **pinned, "parts": parts}, (tree.program, *blobs)
+
+
+def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+    """File ``result``: the answer of an evaluation, and the states where they were described as ``states.<name>``."""
+    model = model_of(item, blobs)
+    progress(0.1)
+    columns = _columns(item)
+    sources = Sources(model, regressor=lambda: _regressor(item, blobs)) if "parts" in item else None
+    answer = evaluate(model, _with_columns(model, item["request"], columns), None, _engine, sources)
+    progress(0.9)
+    write, media_type = WRITERS[item["format"]]
+    data = write({**answer, "states": columns} if columns else answer)
+    summary = {
+        "tree": item["tree"],
+        "range": item.get("range", [0, 1]),
+        "media_type": media_type,
+        "bytes": len(data),
+        "failures": len(answer["failures"]),
+    }
+    return Outcome(summary, {"result": data})
+
+
+def _regressor(item: Item, blobs: Blobs) -> RegressorModel:
+    found = _regressors.get(item["tree"])
+    if found is None:
+        found = regressor(*tree_parts(item["parts"], blobs), item["nodes"])
+        _regressors.put(item["tree"], found)
+    return found
+
+
+def _columns(item: Item) -> dict[str, Array]:
+    if "grid" in item:
+        return grid_states(item["grid"], *item["range"])
+    return sample_states(item["sample"], *item["range"]) if "sample" in item else {}
+
+
+def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str, Array]) -> dict[str, Any]:
+    if not columns:
+        return dict(request)
+    zeros = np.zeros(len(next(iter(columns.values()))))
+    rest = {name: x for name, x in columns.items() if name.removesuffix("'") not in model.coordinates}
+    inputs = {name: x for name, x in rest.items() if name.startswith("tau.")}
+    return {
+        **request,
+        "q": {name: columns.get(name, zeros) for name in model.coordinates},
+        "qd": {name: columns.get(f"{name}'", zeros) for name in model.coordinates},
+        "inputs": {**request.get("inputs", {}), **inputs},
+        "parameters": {**request.get("parameters", {}), **{n: x for n, x in rest.items() if n not in inputs}},
+    }
+
+
+def _engine(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+    """Which engine answers depends on the item alone, so that its numbers never depend on what came before."""
+    if states < COMPILED:
+        return interpreted(program, values, names, states)
+    key = program.digest, tuple(names)
+    kernel = _kernels.get(key)
+    if kernel is None:
+        kernel = compile_program(program, names)
+        _kernels.put(key, kernel)
+    return kernel.evaluate(values, threads=1)
+
+
+EVALUATE = Kind(_spread, _resolve, _run)

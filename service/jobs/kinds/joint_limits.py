@@ -1,0 +1,45 @@
+"""The joint limits of a stored tree, as numbers: the ranges of a random sample when none are given."""
+
+from __future__ import annotations
+
+from math import pi
+
+from service.jobs.kinds.library import Library, StoredTree
+from substructures.definition import Definition
+from substructures.documents import read_json
+from substructures.errors import InvalidDocument
+from substructures.skeleton import JointEntry, skeleton
+from substructures.states import default_number
+from substructures.tree import Instance, TreeSpec
+
+
+def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, float] | None]:
+    """By coordinate of the tree; -pi to pi for a revolute joint without limits, None where a range has to be given."""
+    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    result = {}
+    for instance in spec.instances:
+        definition = _definition(instance, library)
+        for joint in skeleton(definition).joints:
+            result[f"{instance.name}.{joint.coordinate}"] = _limits(definition, joint)
+    return result
+
+
+def _definition(instance: Instance, library: Library) -> Definition:
+    if instance.definition is not None:
+        return instance.definition
+    digest = (instance.substructure or "").partition("@")[2]
+    content = library.blob(digest)
+    if content is None:
+        raise LookupError(f"the definition {digest} is missing")
+    return Definition.read(read_json(content))
+
+
+def _limits(definition: Definition, joint: JointEntry) -> tuple[float, float] | None:
+    limits = definition.bodies[joint.body].joint.limits
+    if limits is None:
+        return None if joint.s else (-pi, pi)
+    low, high = limits[joint.step] if isinstance(limits[0], tuple) else limits
+    try:
+        return default_number(low), default_number(high)
+    except InvalidDocument:  # an expression in parameters
+        return None

@@ -1,0 +1,52 @@
+"""What a kind of job consists of: spread an item given, resolve it against the store, compute it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from service.jobs.engine import Outcome
+from service.jobs.kinds.library import Library, StoredTree
+from service.settings import Limits
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument
+
+Item = dict[str, Any]
+Blobs = Mapping[str, bytes]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind. Pointers of all faults are relative to the item as it was given.
+
+    ``spread(item, limits, library)``: the items that one item given stands for. ``resolve(item, library)``: such an
+    item with references pinned to digests, and the digests of the blobs it needs. ``run(item, blobs, progress)``: its
+    outcome; reads nothing but its arguments.
+    """
+
+    spread: Callable[[Item, Limits, Library], list[Item]]
+    resolve: Callable[[Item, Library], tuple[Item, tuple[str, ...]]]
+    run: Callable[[Item, Blobs, Progress], Outcome]
+
+
+def check_fields(item: Item, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
+    """Raise InvalidDocument for fields that are missing or unknown."""
+    faults = [
+        Fault(pointer_step(key), "unknown-field", f"unknown field '{key[:80]}'")
+        for key in item
+        if key not in (*required, *optional)
+    ]
+    faults += [Fault(pointer_step(key), "missing", f"'{key}' is needed") for key in required if key not in item]
+    if faults:
+        raise InvalidDocument(faults)
+
+
+def known_tree(item: Item, library: Library) -> StoredTree:
+    """The tree that an item refers to. Raises InvalidDocument."""
+    reference = item["tree"]
+    tree = library.tree(reference) if isinstance(reference, str) else None
+    if tree is None:
+        raise InvalidDocument.at("/tree", "unknown-tree", f"there is no tree '{str(reference)[:160]}'")
+    return tree

@@ -1,0 +1,47 @@
+"""What the kinds of jobs need to know of the store before an item is queued: references become digests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True)
+class StoredVersion:
+    """A version of a substructure: its name, the digest of its definition, and that of its program.
+
+    The blob of ``digest`` is the canonical definition (:meth:`substructures.definition.Definition.canonical`), the
+    blob of ``program`` the canonical program.
+    """
+
+    name: str
+    digest: str
+    program: str
+
+
+@dataclass(frozen=True)
+class StoredTree:
+    """A revision of a tree: name, digest, the digest of its program (a blob), ``spec`` and ``summary`` as JSON."""
+
+    name: str
+    digest: str
+    program: str
+    spec: str
+    summary: str
+
+
+class Library(Protocol):
+    """Read access to the store while a submission is being resolved; answers are expected to be cached."""
+
+    def version(self, reference: str) -> StoredVersion | None:
+        """The version that a reference means (``name``, ``name@3``, ``name@alias``, ``name@sha256:...``)."""
+
+    def tree(self, reference: str) -> StoredTree | None:
+        """The revision of a tree that a reference means."""
+
+    def catalogue(self) -> Sequence[str]:
+        """References ``name@3`` to all versions that are not yanked."""
+
+    def blob(self, digest: str) -> bytes | None:
+        """The content of a definition or program."""

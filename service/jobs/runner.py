@@ -1,0 +1,107 @@
+"""The process that computes items: ``python -m service.jobs.runner <report fd> <parent pid>``, started by an engine.
+
+Works arrive on its standard input, reports leave by a descriptor of their own, so that nothing printed can disturb
+them. It serves many items, ends with its input, and on Linux with its parent. The kernel enforces the budget of an
+item: memory by RLIMIT_DATA, CPU time by an interval timer whose signal, SIGPROF, ends the process.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import signal
+import sys
+from collections.abc import Callable
+from time import monotonic
+
+from service.jobs.engine import Budget, Outcome, Report, Work
+from service.jobs.kinds import failed, run
+from service.jobs.wire import Frame, Reader, read_work, report_frame
+from service.refusals import Refused
+
+CHUNK = 2**20
+NICE = 10  # a service that answers requests goes first
+PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+INTERVAL = 0.2  # between reports of progress, seconds
+
+
+def main(arguments: list[str]) -> int:
+    """Serve until the input ends."""
+    reports, parent = map(int, arguments)
+    _end_with(parent)
+    os.nice(NICE)
+    _send(reports, Frame({"ready": os.getpid()}))
+    reader = Reader()
+    blobs: dict[str, bytes] = {}
+    while data := os.read(sys.stdin.fileno(), CHUNK):
+        for frame in reader.feed(data):
+            if not _serve(read_work(frame, blobs), reports):
+                return 0
+    return 0
+
+
+def _end_with(parent: int) -> None:
+    """Let the kernel end this process when the thread that started it is gone; elsewhere the input does."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
+    if os.getppid() != parent:
+        sys.exit(0)
+
+
+def _serve(work: Work, reports: int) -> bool:
+    """Compute and report; False when the process should not be used again."""
+    outcome, is_sound = _computed(work, _throttled(lambda fraction: _send(reports, _progress(work, fraction))))
+    _send(reports, report_frame(Report(work.id, 1.0, outcome), last=not is_sound))
+    return is_sound
+
+
+def _computed(work: Work, progress: Callable[[float], None]) -> tuple[Outcome, bool]:
+    _limit(work.budget)
+    try:
+        try:
+            return run(work.kind, dict(work.item), work.blobs, progress), True
+        finally:
+            _limit(None)  # before anything else is done: even that would need memory
+    except MemoryError:
+        return failed(out_of_memory(work.budget)), False
+
+
+def _limit(budget: Budget | None) -> None:
+    """Enforce a budget; None: no longer."""
+    signal.setitimer(signal.ITIMER_PROF, budget.cpu_seconds if budget else 0.0)
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    memory = budget.memory_bytes if budget else hard
+    resource.setrlimit(resource.RLIMIT_DATA, (memory if hard == resource.RLIM_INFINITY else min(memory, hard), hard))
+
+
+def out_of_memory(budget: Budget) -> Refused:
+    """The problem of an item that needs more memory than it may use."""
+    limit = budget.memory_bytes
+    return Refused(422, "memory-limit", f"the item needs more than {limit:,} bytes of memory", limit=limit)
+
+
+def _progress(work: Work, fraction: float) -> Frame:
+    return report_frame(Report(work.id, fraction))
+
+
+def _throttled(send: Callable[[float], None]) -> Callable[[float], None]:
+    latest = monotonic()
+
+    def progress(fraction: float) -> None:
+        nonlocal latest
+        if monotonic() - latest >= INTERVAL:
+            latest = monotonic()
+            send(fraction)
+
+    return progress
+
+
+def _send(descriptor: int, frame: Frame) -> None:
+    data = memoryview(frame.to_bytes())
+    while data:
+        data = data[os.write(descriptor, data) :]
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

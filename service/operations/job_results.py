@@ -1,0 +1,53 @@
+"""What is written when an item succeeds: a tree, a version of a substructure, or files kept as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from service.database import Connection
+from service.jobs.engine import Outcome
+from service.operations import catalogue, trees
+from service.operations.catalogue import Submission
+from service.queries import results
+from service.queries.attempts import Attempt
+from service.summaries import PartContent
+from service.views import tree_path, version_path
+from substructures.documents import read_json, write_json
+from substructures.tree import TreeSpec
+
+#: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned
+BASE, IS_EXACT = "base", "is_exact"
+
+
+def keep(connection: Connection, ended: Iterable[tuple[Attempt, Outcome]]) -> None:
+    """Store outcomes under the keys of their items, in the transaction that completes the items."""
+    results.put_results(connection, [_result(connection, *each) for each in ended])
+
+
+def _result(connection: Connection, attempt: Attempt, outcome: Outcome) -> results.Result:
+    stored: dict[str, Any] = {}
+    files: Mapping[str, bytes] = {}
+    match attempt.kind:
+        case "assemble":
+            stored = _tree(connection, read_json(attempt.item.encode()), outcome)
+        case "derive":
+            stored = _version(connection, outcome)
+        case _:
+            files = outcome.files
+    return results.Result(attempt.key, attempt.kind, write_json({**outcome.summary, **stored}).decode(), files)
+
+
+def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
+    spec, files = TreeSpec.read(read_json(outcome.files["spec"])), outcome.files
+    inline = [PartContent.of_files(files, f"{i.name}.") for i in spec.instances if i.definition is not None]
+    figures, parts = (outcome.summary["nodes"], outcome.summary["dof"]), outcome.summary["parts"]
+    coupled = trees.Coupled(spec, files["program"], *figures, files["summary"], parts, inline)
+    tree, _ = trees.store(connection, coupled, item.get(BASE), bool(item.get(IS_EXACT)))
+    return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
+
+
+def _version(connection: Connection, outcome: Outcome) -> dict[str, Any]:
+    part = PartContent.of_files(outcome.files)
+    version, _ = catalogue.submit(connection, Submission(part.name, part.digest, part))
+    return {"version": version.version, "location": version_path(version)}

@@ -1,0 +1,156 @@
+"""Submit, look at and cancel jobs. Everything is checked and resolved before anything is queued."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from time import sleep
+from typing import Any
+
+from service.database import Connection
+from service.jobs import kinds
+from service.operations.library import StoreLibrary
+from service.queries import jobs
+from service.queries.jobs import Job, NewItem
+from service.refusals import Refused, not_found
+from service.settings import Limits
+from service.store import Store
+from substructures.documents import write_json
+from substructures.errors import Fault, InvalidDocument, TooLarge
+
+SHOWN = 20  # faults
+STORING = ("assemble", "derive")  # kinds whose results are trees and versions
+RECENT = 30.0  # seconds over which the rate is measured
+
+
+@dataclass(frozen=True, slots=True)
+class Submission:
+    """A job ready to be queued."""
+
+    kind: str
+    items: Sequence[NewItem]
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a job is: items done per second, of late, and the time left at this rate."""
+
+    fraction: float
+    rate: float | None
+    eta_seconds: float | None
+
+
+def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -> Submission:
+    """Resolve all items of ``{"kind", "items"}``; ``members`` are added to each.
+
+    Raises InvalidDocument or Refused 422 with pointers to the items; nothing is queued then.
+    """
+    if not isinstance(body, Mapping):
+        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    kind = body.get("kind")
+    if not isinstance(kind, str):
+        raise InvalidDocument.at("/kind", "missing", f"'kind' is needed: one of {', '.join(kinds.KINDS)}")
+    with store.database.read() as connection:
+        library = StoreLibrary(connection)
+        expanded = kinds.expand(kind, body, store.settings.limits, library)
+        items = _resolved(kind, expanded, library, _places(body, len(expanded)))
+        return Submission(kind, [_new_item(kind, {**item, **(members or {})}, blobs) for item, blobs in items])
+
+
+def prepare_one(
+    store: Store, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
+) -> Submission:
+    """A job of one item in place of a request; ``step`` is where the body of the request is in the item. Raises as
+    :func:`prepare`, with pointers into that body."""
+    place = f"/items/0{step}"
+    try:
+        return prepare(store, {"kind": kind, "items": [item]}, members)
+    except (InvalidDocument, Refused) as error:
+        raise InvalidDocument(Fault(f.pointer.removeprefix(place), f.code, f.message) for f in error.faults) from None
+
+
+def _places(body: Mapping[str, Any], count: int) -> Iterator[tuple[str, str]]:
+    """For every item where in the request its faults are, and what to say before the message."""
+    given = body.get("items")
+    is_plain = isinstance(given, list) and len(given) == count
+    for k in range(count):
+        yield (f"/items/{k}", "") if is_plain else ("/template" if given is None else "/items", f"item {k}: ")
+
+
+def _resolved(
+    kind: str, items: Iterable[Mapping[str, Any]], library: StoreLibrary, places: Iterator[tuple[str, str]]
+) -> list[tuple[Mapping[str, Any], tuple[str, ...]]]:
+    resolved: list[tuple[Mapping[str, Any], tuple[str, ...]]] = []
+    faults: list[Fault] = []
+    bad = 0
+    for item, (place, note) in zip(items, places, strict=True):
+        sleep(0)  # other requests need not wait until all items are done
+        try:
+            resolved.append(kinds.resolve(kind, dict(item), library))
+        except InvalidDocument as error:
+            bad += 1
+            faults += [Fault(place + f.pointer, f.code, note + f.message) for f in error.faults]
+        except TooLarge as error:
+            bad += 1
+            faults.append(Fault(place, "too-large", note + str(error)))
+    if faults:
+        shown = f"; the first {SHOWN} of {len(faults)} faults are shown" if len(faults) > SHOWN else ""
+        detail = f"{bad} of {bad + len(resolved)} items cannot be computed, so nothing was queued{shown}: {faults[0]}"
+        raise Refused(422, "invalid-items", detail, faults[:SHOWN], count=len(faults))
+    return resolved
+
+
+def _new_item(kind: str, item: Mapping[str, Any], blobs: Sequence[str]) -> NewItem:
+    content = write_json(item)
+    key = "sha256:" + hashlib.sha256(f"{kind}\n".encode() + content).hexdigest()
+    return NewItem(key, content.decode(), write_json(list(blobs)).decode())
+
+
+def submit(connection: Connection, submission: Submission, principal: str, limits: Limits) -> Job:
+    """Queue a job. Raises Refused 503 when the queue is full."""
+    new = len(submission.items)
+    for whose, waiting, limit in (
+        ("the queue", jobs.waiting(connection), limits.job_queue),
+        ("your part of the queue", jobs.waiting(connection, principal), limits.job_queue_per_key),
+    ):
+        if waiting + new > limit:
+            detail = f"{whose} is full: {waiting:,} items wait, the limit is {limit:,}; nothing was queued"
+            raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
+    return find(connection, jobs.add_job(connection, submission.kind, principal, submission.items))
+
+
+def find(connection: Connection, identifier: str) -> Job:
+    """A job. Raises Refused 404."""
+    job = jobs.get_job(connection, identifier)
+    if job is None:
+        raise not_found(f"there is no job '{identifier[:80]}'", "unknown-job")
+    return job
+
+
+def find_item(connection: Connection, identifier: str, position: int) -> jobs.Item:
+    """One item of a job. Raises Refused 404."""
+    found = jobs.page_items(connection, find(connection, identifier).id, None, position - 1, 1)
+    if not found or found[0].position != position:
+        raise not_found(f"the job has no item {position}", "unknown-item")
+    return found[0]
+
+
+def cancel(connection: Connection, identifier: str) -> Job:
+    """Cancel what is not finished. Raises Refused 404."""
+    jobs.cancel(connection, find(connection, identifier).id)
+    return find(connection, identifier)
+
+
+def progress(connection: Connection, job: Job) -> Progress:
+    """The progress of a job; the rate is that of the last half minute, or of the whole run when nothing ended since."""
+    partial = 0.0 if job.is_final else jobs.partial_work(connection, job.id)
+    fraction = min(1.0, (job.done + partial) / job.total)
+    if job.is_final or job.started is None:
+        return Progress(fraction, None, None)
+    age = max(jobs.seconds_since(job.started), 1e-3)
+    window = min(age, RECENT)
+    recent = jobs.finished_since(connection, job.id, window)
+    rate = recent / window if recent else (job.done + partial) / age
+    left = job.total - job.done - partial
+    return Progress(fraction, rate, left / rate if rate > 0 else None)

@@ -1,0 +1,68 @@
+"""Results of items by key, and their files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import Connection, select
+
+from service.job_tables import result_files, results
+from service.queries.common import now, put_all
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file of a result."""
+
+    key: str
+    name: str
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of an item; ``summary`` is JSON."""
+
+    key: str
+    kind: str
+    summary: str
+    files: Mapping[str, bytes]
+
+
+def put_results(connection: Connection, found: Sequence[Result]) -> None:
+    """Keep results; of equal ones the first stays."""
+    created = now()
+    put_all(connection, results, [{**_row(each), "created": created} for each in found])
+    files = [
+        {"key": each.key, "name": name, "size": len(data), "content": data}
+        for each in found
+        for name, data in each.files.items()
+    ]
+    put_all(connection, result_files, files)
+
+
+def _row(result: Result) -> dict[str, str]:
+    return {"key": result.key, "kind": result.kind, "summary": result.summary}
+
+
+def get_summary(connection: Connection, key: str) -> str | None:
+    """The summary of a result, JSON."""
+    return connection.execute(select(results.c.summary).where(results.c.key == key)).scalar()
+
+
+def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]:
+    """The files of results, by key."""
+    found: dict[str, list[File]] = {}
+    for start in range(0, len(keys), 500):
+        chosen = result_files.c.key.in_(keys[start : start + 500])
+        columns = select(result_files.c.key, result_files.c.name, result_files.c.size)
+        for row in connection.execute(columns.where(chosen).order_by(result_files.c.name)):
+            found.setdefault(row.key, []).append(File(*row))
+    return found
+
+
+def get_file(connection: Connection, key: str, name: str) -> bytes | None:
+    """The content of one file."""
+    chosen = (result_files.c.key == key) & (result_files.c.name == name)
+    return connection.execute(select(result_files.c.content).where(chosen)).scalar()

@@ -1,0 +1,73 @@
+"""What cannot be served, and what a client is told about it: the part of a problem document that needs no request.
+
+::
+
+    Refused                a request that cannot be served: status, code, detail
+    InvalidDocument        422, one error for every fault, with a pointer into the document
+    TooLarge, MissingValue 422
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
+
+
+class Refused(Exception):
+    """A request that cannot be served. ``code`` is for programs, ``detail`` for people."""
+
+    def __init__(
+        self,
+        status: int,
+        code: str,
+        detail: str,
+        faults: Sequence[Fault] = (),
+        headers: Mapping[str, str] | None = None,
+        **members: Any,
+    ) -> None:
+        super().__init__(detail)
+        self.status, self.code, self.detail = status, code, detail
+        self.faults, self.headers, self.members = tuple(faults), dict(headers or {}), members
+
+
+def not_found(detail: str, code: str = "not-found") -> Refused:
+    """404."""
+    return Refused(404, code, detail)
+
+
+def unprocessable(code: str, detail: str, pointer: str = "", **members: Any) -> Refused:
+    """422 with a pointer to the culprit."""
+    return Refused(422, code, detail, [Fault(pointer, code, detail)], **members)
+
+
+def known_refusal(error: Exception) -> Refused | None:
+    """What a client is told about an exception that is raised on purpose; None for any other."""
+    match error:
+        case Refused():
+            return error
+        case InvalidDocument():
+            detail = "; ".join(str(fault) for fault in error.faults[:3])
+            return Refused(422, "invalid-document", detail, error.faults)
+        case TooLarge():
+            return unprocessable("too-large", str(error), what=error.what, size=error.size, limit=error.limit)
+        case MissingValue():
+            return unprocessable("missing-value", str(error), "/parameters" + pointer_step(error.name))
+    return None
+
+
+def problem(refused: Refused, **request: str) -> dict[str, Any]:
+    """The problem document (RFC 9457); ``request``: what is known of the request it answers."""
+    return {
+        "type": f"urn:problem-type:substructures:{refused.code}",
+        "title": HTTPStatus(refused.status).phrase,
+        "status": refused.status,
+        "detail": refused.detail,
+        **request,
+        "code": refused.code,
+        "errors": [{"pointer": f.pointer, "code": f.code, "message": f.message} for f in refused.faults],
+        **refused.members,
+    }

@@ -1,0 +1,52 @@
+"""Requests that become jobs: what takes too long, and what is asked for with ``Prefer: respond-async``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from service.answers import Answer, json_answer
+from service.database import Connection
+from service.job_schemas import JobView
+from service.job_views import job_path, job_view
+from service.once import Commit, Once
+from service.operations import jobs
+from service.queries.jobs import Job
+from service.store import Store
+from service.views import dump
+
+FRESH = {"Cache-Control": "no-store"}
+#: ``responses`` of an endpoint that may answer with a job
+ACCEPTED: dict[int | str, dict[str, Any]] = {202: {"description": "It became a job", "model": JobView}}
+
+
+def answer(connection: Connection, job: Job, status: int = 200) -> Answer:
+    """A job with its progress."""
+    view = job_view(job, jobs.progress(connection, job))
+    headers = {**FRESH, "Location": job_path(job.id)} if status == 202 else FRESH
+    return json_answer(dump(view), status, headers)
+
+
+def committed(store: Store, submission: jobs.Submission, principal: str) -> Commit:
+    """What queues a submission and answers 202."""
+
+    def commit(connection: Connection) -> Answer:
+        return answer(connection, jobs.submit(connection, submission, principal, store.settings.limits), 202)
+
+    return commit
+
+
+def deferred(
+    once: Once, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
+) -> Callable[[], Commit]:
+    """What prepares the job that does what a request asks for; arguments as of ``jobs.prepare_one``.
+
+    Raises Refused 403 when the API key may not submit jobs.
+    """
+
+    def prepare() -> Commit:
+        once.require("jobs")
+        submission = jobs.prepare_one(once.store, kind, item, step, members)
+        return committed(once.store, submission, once.principal)
+
+    return prepare

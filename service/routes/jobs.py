@@ -1,0 +1,124 @@
+"""``/v1/jobs``: submit, watch, cancel, and read results, also in part while a job runs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.answers import Answer, json_answer
+from service.database import Connection
+from service.job_schemas import CancelRequest, ItemPage, ItemState, JobPage, JobState, JobView
+from service.job_views import BINARY, item_view, job_view, media_type
+from service.once import OnceOf
+from service.operations import jobs
+from service.paging import limited, link_header, next_link, read_token, write_token
+from service.queries import jobs as rows
+from service.queries import results
+from service.refusals import not_found
+from service.requests import JsonBody, OptionalJsonBody, StoreOf, needs
+from service.routes.bodies import binary, body_of
+from service.routes.deferred import FRESH, answer, committed
+from service.views import dump
+from substructures.definition import read_model
+
+router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
+READ, JOBS = [needs("read")], [needs("jobs")]
+PageSize = Annotated[int, Query(ge=1)]
+Token = Annotated[str | None, Query(max_length=2000)]
+FILE: dict[int | str, Any] = {200: {"description": "The file", "content": {BINARY: binary()}}}
+
+
+@router.post("", status_code=202, response_model=JobView, dependencies=JOBS, openapi_extra=body_of("JobRequest"))
+def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+    """Queue a job. 202 when it is on the disk; before that every item has been checked."""
+    if isinstance(body, dict) and body.get("kind") in jobs.STORING:
+        once.require("write")
+    return once.submit(lambda: committed(store, jobs.prepare(store, body), once.principal))
+
+
+@router.get("", response_model=JobPage, dependencies=READ)
+def list_jobs(
+    request: Request,
+    store: StoreOf,
+    state: JobState | None = None,
+    kind: Annotated[str | None, Query(max_length=40)] = None,
+    page_size: PageSize = 50,
+    page_token: Token = None,
+) -> Response:
+    """A page of jobs, the newest first."""
+    size, search = limited(page_size, store.settings.limits), ("jobs", state, kind)
+    before = read_token(search, page_token, str)
+    with store.database.read() as connection:
+        found = rows.page_jobs(connection, state, kind, before[0] if before else None, size + 1)
+        items = [job_view(each, jobs.progress(connection, each)) for each in found[:size]]
+    token = write_token(search, found[size - 1].id) if len(found) > size else None
+    link = next_link(request, token)
+    view = {"items": items, "next_page_token": token, "links": {"next": link}}
+    return json_answer(dump(view), headers={**FRESH, **link_header(link)}).response()
+
+
+@router.get("/{job}", response_model=JobView, dependencies=READ)
+def get_job(job: str, store: StoreOf) -> Response:
+    """A job with its progress."""
+    with store.database.read() as connection:
+        return answer(connection, jobs.find(connection, job)).response()
+
+
+@router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
+def cancel(job: str, body: OptionalJsonBody, store: StoreOf, once: OnceOf) -> Response:
+    """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
+    read_model(CancelRequest, body)
+
+    def commit(connection: Connection) -> Answer:
+        if jobs.find(connection, job).principal != once.principal:
+            once.require("admin")
+        return answer(connection, jobs.cancel(connection, job))
+
+    response = once.submit(lambda: commit)
+    store.wake.set()
+    return response
+
+
+@router.get("/{job}/items", response_model=ItemPage, dependencies=READ)
+def list_items(
+    job: str,
+    request: Request,
+    store: StoreOf,
+    state: ItemState | None = None,
+    page_size: PageSize = 50,
+    page_token: Token = None,
+) -> Response:
+    """The items of a job with their states, results and problems."""
+    size, search = limited(page_size, store.settings.limits), ("items", job, state)
+    after = read_token(search, page_token, int)
+    with store.database.read() as connection:
+        jobs.find(connection, job)
+        found = rows.page_items(connection, job, state, after[0] if after else -1, size + 1)
+        files = results.list_files(connection, [item.key for item in found if item.summary is not None])
+    views = [item_view(job, item, files.get(item.key, ()) if item.summary else ()) for item in found[:size]]
+    token = write_token(search, found[size - 1].position) if len(found) > size else None
+    link = next_link(request, token)
+    view = {"items": views, "next_page_token": token, "links": {"next": link}}
+    return json_answer(dump(view), headers={**FRESH, **link_header(link)}).response()
+
+
+router.add_api_route(
+    "/{job}/result",
+    list_items,
+    methods=["GET"],
+    response_model=ItemPage,
+    dependencies=READ,
+    summary="The result of every item, or its problem; in part while the job runs",
+)
+
+
+@router.get("/{job}/items/{position}/files/{name}", dependencies=READ, response_class=Response, responses=FILE)
+def get_file(job: str, position: int, name: str, store: StoreOf) -> Response:
+    """A file of a result."""
+    with store.database.read() as connection:
+        item = jobs.find_item(connection, job, position)
+        content = results.get_file(connection, item.key, name) if item.summary is not None else None
+    if content is None:
+        raise not_found(f"item {position} has no file '{name[:80]}'", "unknown-file")
+    return Answer(200, content, {"Content-Type": media_type(item, name)}).response()

@@ -1,0 +1,92 @@
+"""What is stored of trees and parts beside their programs; made where they are computed, which takes its time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from substructures.documents import read_json, write_json
+from substructures.model import Model
+from substructures.part import Part
+from substructures.tree import TreeSpec
+
+
+def tree_summary(spec: TreeSpec, model: Model) -> bytes:
+    """Canonical JSON: the summary of the model, with gravity and instances as they were given."""
+    given = read_json(spec.canonical())
+    shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
+    return write_json({**model.summary(), **shown})
+
+
+@dataclass(frozen=True, slots=True)
+class PartContent:
+    """What is stored of a part.
+
+    ``row``: columns of the table; ``formulas``: of every addressable formula position, quantity, body, coordinate,
+    shape, symmetry, operations, output and index.
+    """
+
+    program: bytes
+    nodes: int
+    tags: Sequence[str]
+    row: Mapping[str, Any]
+    formulas: Sequence[Sequence[Any]]
+
+    @property
+    def name(self) -> str:
+        """Name of the definition."""
+        return str(read_json(self.row["definition"].encode())["name"])
+
+    @property
+    def digest(self) -> str:
+        """Digest of the definition."""
+        return str(self.row["digest"])
+
+    def files(self) -> dict[str, bytes]:
+        """As files of an outcome."""
+        members = {"nodes": self.nodes, "tags": self.tags, "row": self.row, "formulas": self.formulas}
+        return {"program": self.program, "content": write_json(members)}
+
+    @classmethod
+    def of_files(cls, files: Mapping[str, bytes], prefix: str = "") -> PartContent:
+        """Out of the files of an outcome."""
+        return cls(files[f"{prefix}program"], **read_json(files[f"{prefix}content"]))
+
+
+def part_content(part: Part) -> PartContent:
+    """What is stored of a part; the operations of its formulas are counted one by one."""
+    definition = part.definition
+    words = (definition.name, definition.title, definition.description, *definition.tags)
+    row = {
+        "digest": definition.digest,
+        "program": part.program.digest,
+        "definition": definition.canonical().decode(),
+        "title": _plain(definition.title),
+        "description": _plain(definition.description),
+        "searchable": _plain("\n".join(words).lower()),
+        "dof": part.dof,
+        "joints": part.joints,
+        "tags": _json(definition.tags),
+        "coordinates": _json(part.coordinates),
+        "bodies": _json(part.bodies),
+        "ports": _json(part.ports),
+        "parameters": _json(part.parameters),
+        "operations": _json(part.operations),
+        "certificate": _json(part.certificate),
+    }
+    formulas = [
+        (k, f.quantity, f.body, f.coordinate, _json(f.shape), f.symmetry, f.operations, f.output, _json(f.index))
+        for k, f in enumerate(part.formulas())
+    ]
+    tags = tuple(dict.fromkeys(definition.tags))
+    return PartContent(part.program.to_bytes(), len(part.program), tags, row, formulas)
+
+
+def _plain(text: str) -> str:
+    """Without NUL, which PostgreSQL cannot store outside of JSON's escapes."""
+    return text.replace("\0", "")
+
+
+def _json(value: Any) -> str:
+    return write_json(value).decode()

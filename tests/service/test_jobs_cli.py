@@ -1,0 +1,129 @@
+"""The commands for jobs, against a server that computes in real processes."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.cli import main
+from service.cli_jobs import Bar, text
+from service.client import Client, ProblemError
+from service.server import background
+from service.settings import Settings
+
+from .conftest import HAND, PENDULUM, TREE
+
+CELLS: dict[str, Any] = {
+    "kind": "assemble",
+    "template": {"name": "pair", "instances": [{"name": "a", "substructure": "pendulum"}]},
+    "choices": {"a.l": [1, 2, 3]},
+}
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    path = tmp_path_factory.mktemp("jobs") / "x.db"
+    with background(Settings(database=f"sqlite:///{path}", catalogue=False, workers=1)) as found:
+        with Client(found) as client:
+            client.submit(PENDULUM)
+            client.create_tree(TREE)
+        yield found
+
+
+def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, server = tmp_path / "cells.json", ["--server", address]
+    file.write_text(json.dumps(CELLS))
+    assert main(["jobs", "submit", str(file), "--wait", *server]) == 0
+    shown = capsys.readouterr()
+    job = shown.out.strip()
+    assert "succeeded  3 of 3" in shown.err
+    assert main(["jobs", "list", "--kind", "assemble", *server]) == 0
+    assert job in capsys.readouterr().out
+    assert main(["jobs", "show", job, *server]) == 0
+    assert json.loads(capsys.readouterr().out)["state"] == "succeeded"
+    assert main(["jobs", "result", job, *server]) == 0
+    assert "pair-2@1" in capsys.readouterr().out
+    assert main(["jobs", "result", job, "--output", str(tmp_path / "all.zip"), *server]) == 0
+    with zipfile.ZipFile(tmp_path / "all.zip") as archive:
+        assert "2/item.json" in archive.namelist()
+    assert main(["jobs", "watch", job, *server]) == 0
+    assert main(["jobs", "cancel", job, *server]) == 0
+    assert "succeeded" in capsys.readouterr().out
+    assert main(["jobs", "show", "none", *server]) == 1
+    assert "there is no job" in capsys.readouterr().err
+    file.write_text(json.dumps({**CELLS, "kind": "fly"}))
+    assert main(["jobs", "submit", str(file), *server]) == 1
+    assert "/kind:" in capsys.readouterr().err
+
+
+def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "wrong.yaml"
+    file.write_text("kind: export\nitems:\n  - {tree: cell, quantity: nothing, format: text}\n")
+    assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 1
+    shown = capsys.readouterr()
+    assert "1 failed" in shown.err
+    assert main(["jobs", "result", shown.out.strip(), "--server", address]) == 0
+    assert "0  failed  " in capsys.readouterr().out
+
+
+def test_client(address: str) -> None:
+    with Client(address) as client:
+        grid = {
+            "tree": "cell",
+            "request": {"quantities": ["metric"]},
+            "grid": {"arm.q": {"from": 0, "to": 1, "count": 5}},
+        }
+        job = client.submit_job({"kind": "evaluate", "items": [grid]})
+        events = list(client.events(job["id"]))
+        assert events[-1][2]["state"] == "succeeded"
+        assert list(client.events(job["id"], events[-2][0])) == events[-1:]
+        (item,) = client.job_items(job["id"])
+        assert client.request("GET", item["files"][0]["href"]).content[:2] == b"PK"
+        assert next(client.jobs(state="succeeded"))["id"] == job["id"]
+        with pytest.raises(ProblemError, match="no job"):
+            list(client.events("none"))
+        tree = client.couple("cell", HAND)
+        assert tree["revision"] == 2
+
+
+def test_requests_that_become_jobs(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    request = Client.request
+
+    def patient(self: Client, method: str, path: str, body: Any = None, **options: Any) -> Any:
+        headers = {"Prefer": "respond-async"} if method == "POST" else {}
+        return request(self, method, path, body, headers=headers, **options)
+
+    monkeypatch.setattr(Client, "request", patient)
+    with Client(address) as client:
+        version, _ = client.submit({**PENDULUM, "name": "late"})
+        assert (version["name"], version["version"]) == ("late", 1)
+        assert client.create_tree({**TREE, "name": "late"})["revision"] == 1
+        assert client.couple("late", HAND)["revision"] == 2
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_bar() -> None:
+    progress = {"done": 900, "total": 2000, "failed": 3, "fraction": 0.45, "rate": 120.0, "eta_seconds": 3670.0}
+    job = {"state": "running", "progress": progress}
+    line = text(job)
+    assert line.startswith(
+        "[#############.................]  45 %  running  900 of 2,000, 3 failed  120/s  1 h 1 min left"
+    )
+    for stream, count in ((Terminal(), 0), (io.StringIO(), 1)):
+        bar = Bar(stream)
+        for _ in range(3):
+            bar.show(job)
+        assert stream.getvalue().count("\n") == count
+        bar.end({**job, "state": "failed"})
+        assert stream.getvalue().endswith("\n")
+        assert "failed" in stream.getvalue()

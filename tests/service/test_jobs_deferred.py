@@ -1,0 +1,114 @@
+"""Requests that become jobs: what takes too long, and what is asked for with ``Prefer``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.keys import create
+from service.settings import Settings
+from service.store import Store
+
+from .conftest import HAND, PENDULUM, SLIDER, make_client
+from .fake_engine import FakeEngine, finished, running
+
+ASYNC = {"Prefer": "respond-async"}
+EVALUATION = {"quantities": ["metric"], "q": [[0.1], [0.2]]}
+
+
+def deferred(client: TestClient, path: str, body: Any, headers: dict[str, str], seconds: float = 10) -> Any:
+    """The only item of the job that a request became."""
+    answer = client.post(path, json=body, headers=headers)
+    assert answer.status_code == 202, answer.text
+    job = finished(client, answer.headers["location"].rpartition("/")[2], seconds)
+    assert job["progress"]["total"] == 1
+    return client.get(job["result"]).json()["items"][0]
+
+
+@pytest.mark.parametrize("headers", [ASYNC, {"Prefer": "wait=0"}, {"Prefer": "wait=10, Respond-Async"}])
+def test_everything_that_computes(filled: TestClient, store: Store, headers: dict[str, str]) -> None:
+    with running(store, FakeEngine()):
+        hand = deferred(filled, "/v1/trees/cell/couplings", HAND, headers)
+        assert (hand["result"]["tree"], hand["state"]) == ("cell@2", "succeeded")
+        tree = {"name": "other", "instances": [{"name": "a", "substructure": "slider"}]}
+        assert deferred(filled, "/v1/trees", tree, headers)["result"]["tree"] == "other@1"
+        part = deferred(filled, "/v1/substructures", {**PENDULUM, "name": "late"}, headers)
+        assert part["result"]["location"] == "/v1/substructures/late@1"
+        numbers = deferred(filled, "/v1/trees/cell@1/evaluations", EVALUATION, headers)
+        assert numbers["files"][0]["name"] == "result"
+    assert filled.get("/v1/trees/cell").json()["based_on"] == 1
+    assert filled.get("/v1/trees/cell").json()["coordinates"] == ["arm.q", "hand.q"]
+    twin = filled.post("/v1/trees/cell@1/couplings", json=HAND).json()
+    assert twin["digest"] == filled.get("/v1/trees/cell@2").json()["digest"]
+
+
+def test_too_long_requests_become_jobs(filled: TestClient, store: Store, rows: Any) -> None:
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
+    store.settings = store.settings.model_copy(update={"limits": limits})
+    before = rows()
+    with running(store, FakeEngine(is_open=False)) as engine:
+        first = filled.post("/v1/trees/cell/couplings", json=HAND, headers={"Idempotency-Key": "1"})
+        second = filled.post("/v1/trees/cell/couplings", json=HAND, headers={"Idempotency-Key": "1"})
+        assert (first.status_code, second.content) == (202, first.content)
+        assert rows()["trees"] == before["trees"]
+        engine.open()
+        finished(filled, first.json()["id"])
+        key = {"Idempotency-Key": "2"}
+        numbers = [filled.post("/v1/trees/cell/evaluations", json=EVALUATION, headers=key) for _ in range(2)]
+        assert numbers[1].content == numbers[0].content
+    assert rows()["trees"] == before["trees"] + 1
+    assert rows()["jobs"] == 2
+
+
+def test_faults_have_the_pointers_of_the_request(filled: TestClient, rows: Any) -> None:
+    before = rows()
+    for path, body, pointer in (
+        ("/v1/trees", {"name": "x", "instances": [{"name": "a", "substructure": "no"}]}, "/instances/0/substructure"),
+        ("/v1/trees/cell/couplings", {**HAND, "substructure": "no"}, "/substructure"),
+        ("/v1/substructures", {**SLIDER, "name": "No"}, "/name"),
+        ("/v1/trees/cell/evaluations", {"quantities": ["nothing"]}, "/quantities/0"),
+    ):
+        now, later = (filled.post(path, json=body, headers=headers) for headers in ({}, ASYNC))
+        assert (now.status_code, later.status_code) == (422, 422)
+        assert now.json()["errors"][0]["pointer"] == later.json()["errors"][0]["pointer"] == pointer
+    assert filled.post("/v1/trees/none/couplings", json=HAND, headers=ASYNC).status_code == 404
+    assert rows() == before
+
+
+def test_changes_of_a_changed_tree_are_conflicts(filled: TestClient, store: Store) -> None:
+    answer = filled.post("/v1/trees/cell/couplings", json=HAND, headers=ASYNC)
+    assert filled.post("/v1/trees/cell/couplings", json={**HAND, "name": "first"}).status_code == 201
+    with running(store, FakeEngine()):
+        job = finished(filled, answer.json()["id"])
+    item = filled.get(job["result"]).json()["items"][0]
+    assert (item["state"], item["problem"]["status"]) == ("failed", 409)
+
+
+def test_scopes(settings: Settings) -> None:
+    with open_store(settings) as store:
+        with store.database.write() as connection:
+            scopes = (["admin"], ["write"], ["jobs"], ["read"], ["jobs", "read"])
+            keys = {" ".join(s): {"Authorization": f"Bearer {create(connection, '', s, None)}"} for s in scopes}
+        client = make_client(store)
+        client.post("/v1/substructures", json=PENDULUM, headers=keys["admin"])
+        assemble = {
+            "kind": "assemble",
+            "items": [{"name": "x", "instances": [{"name": "a", "substructure": "pendulum"}]}],
+        }
+        verify = {"kind": "verify", "items": [{"substructure": "*"}]}
+
+        def post(path: str, body: Any, key: str, **headers: str) -> int:
+            return client.post(path, json=body, headers={**keys[key], **headers}).status_code
+
+        assert [post("/v1/jobs", verify, key) for key in ("read", "write", "jobs", "admin")] == [403, 403, 202, 202]
+        assert post("/v1/jobs", assemble, "jobs") == 403
+        assert post("/v1/substructures", PENDULUM, "write", Prefer="respond-async") == 403
+        job = client.post("/v1/jobs", json=verify, headers=keys["jobs read"]).json()["id"]
+        assert client.get(f"/v1/jobs/{job}", headers=keys["jobs"]).status_code == 403
+        assert client.get(f"/v1/jobs/{job}", headers=keys["read"]).status_code == 200
+        assert post(f"/v1/jobs/{job}/cancel", {}, "jobs") == 403  # another's
+        assert post(f"/v1/jobs/{job}/cancel", {}, "jobs read") == 200
+        assert post(f"/v1/jobs/{job}/cancel", {"x": 1}, "admin") == 422

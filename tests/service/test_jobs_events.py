@@ -1,0 +1,66 @@
+"""Server-sent events: complete, in order, resumed where a reader left off, and ended with the job."""
+
+from __future__ import annotations
+
+import json
+import threading
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.routes import job_streams
+from service.store import Store
+
+from .fake_engine import FakeEngine, eventually, export, finished, running, submitted
+
+Event = tuple[int, str, dict[str, Any]]
+
+
+def parsed(text: str) -> list[Event]:
+    blocks = [block for block in text.split("\n\n") if block and not block.startswith(":")]
+    fields = [dict(line.split(": ", 1) for line in block.split("\n")) for block in blocks]
+    return [(int(f["id"]), f["event"], json.loads(f["data"])) for f in fields]
+
+
+def read(client: TestClient, job: str, after: int | None = None) -> list[Event]:
+    headers = {} if after is None else {"Last-Event-ID": str(after)}
+    answer = client.get(f"/v1/jobs/{job}/events", headers=headers)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/event-stream")
+    return parsed(answer.text)
+
+
+def test_events_resume(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    with running(store, FakeEngine()):
+        job = submitted(filled, export("cell", "metric", "gravity", "forces"))
+        finished(filled, job)
+    events = read(filled, job)
+    assert [event[0] for event in events] == list(range(1, len(events) + 1))
+    assert events[0][2]["state"] == "queued"
+    assert (events[-1][1], events[-1][2]["state"]) == ("state", "succeeded")
+    succeeded = [position for _, _, data in events for position in data.get("succeeded", ())]
+    assert sorted(succeeded) == [0, 1, 2]
+    for after in (0, 1, len(events) - 1, len(events), 10**15):
+        assert read(filled, job, after) == events[after:]
+    assert filled.get(f"/v1/jobs/{job}/events", headers={"Last-Event-ID": "odd"}).text.startswith("id: 1\n")
+    monkeypatch.setattr(job_streams, "EVENTS", 2)
+    assert read(filled, job) == events
+    assert filled.get("/v1/jobs/none/events").status_code == 404
+
+
+def test_events_as_they_happen(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(job_streams, "HEARTBEAT", 0.05)
+    monkeypatch.setattr(job_streams, "POLL", 0.01)
+    with running(store, FakeEngine(slots=1, is_open=False)) as engine:
+        job = submitted(filled, export("cell", "metric", "gravity"))
+        texts: list[str] = []
+        reader = threading.Thread(target=lambda: texts.append(filled.get(f"/v1/jobs/{job}/events").text))
+        reader.start()
+        eventually(filled, job, lambda view: view["state"] == "running")
+        reader.join(0.2)
+        assert reader.is_alive()
+        engine.open()
+        reader.join(10)
+    assert ": still here" in texts[0]
+    assert parsed(texts[0])[-1][2]["state"] == "succeeded"

@@ -1,0 +1,35 @@
+"""The pages of the jobs: progress without a script, and nothing of a job can be more than text."""
+
+from __future__ import annotations
+
+from fastapi.testclient import TestClient
+
+from service.store import Store
+
+from .fake_engine import FakeEngine, eventually, export, finished, running, submitted
+from .reading import read
+
+EVIL = "<script>alert(1)</script>"
+
+
+def test_pages_of_jobs(filled: TestClient, store: Store) -> None:
+    assert "None yet" in filled.get("/jobs").text
+    with running(store, FakeEngine(slots=1, is_open=False)) as engine:
+        job = submitted(filled, export("cell", "metric", EVIL))
+        eventually(filled, job, lambda view: view["state"] == "running")
+        for path in ("/jobs", f"/jobs/{job}"):
+            page = filled.get(path)
+            assert '<meta http-equiv="refresh" content="2">' in page.text
+            assert "<progress" in page.text
+            assert "script-src" in page.headers["content-security-policy"]
+            read(filled, path)
+        engine.open()
+        finished(filled, job)
+    page = filled.get(f"/jobs/{job}").text
+    assert "refresh" not in page
+    assert "2 of 2" in page
+    assert "1 failed" in page
+    assert "alert(1)" in page
+    assert EVIL not in page
+    assert "refresh" not in filled.get("/jobs").text
+    assert filled.get("/jobs/none").status_code == 404

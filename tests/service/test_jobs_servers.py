@@ -1,0 +1,170 @@
+"""Servers that are killed in mid-batch, and servers that share a queue: nothing lost, nothing doubled."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+
+from service.app import open_store
+from service.cli import main
+from service.client import Client
+from service.jobs.engine import Outcome, Work
+from service.settings import Settings
+from service.supervisor import Supervisor
+
+from .conftest import PENDULUM, TREE, make_client
+from .fake_engine import FakeEngine, export, finished, running, submitted
+from .test_jobs_queue import fresh
+
+
+def cells(count: int, name: str = "c") -> dict[str, Any]:
+    """A job that assembles so many trees."""
+    template = {"name": name, "instances": [{"name": "a", "substructure": "pendulum"}]}
+    return {"kind": "assemble", "template": template, "choices": {"a.l": list(range(1, count + 1))}}
+
+
+def exports(count: int) -> dict[str, Any]:
+    items = [{**export("cell", "metric")["items"][0], "bind": f"arm.l:{k}"} for k in range(1, count + 1)]
+    return {"kind": "export", "items": items}
+
+
+class Slow(FakeEngine):
+    """Takes long enough for another to have its turn."""
+
+    def compute(self, work: Work) -> Outcome:
+        time.sleep(0.01)
+        return super().compute(work)
+
+
+class Server:
+    """A server process; its workers are to end with it."""
+
+    def __init__(self, address: str, *options: str, command: str = "serve") -> None:
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = free.getsockname()[1]
+        words = [sys.executable, "-m", "service.cli", command, "--database", address, "--workers", "1", *options]
+        if command == "serve":
+            words += ["--port", str(self.port)]
+        environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false", "SUBSTRUCTURES_LIMIT_LEASE_SECONDS": "2"}
+        self.process = subprocess.Popen(words, env=environment)
+        self.client = Client(f"http://127.0.0.1:{self.port}")
+
+    def ready(self) -> Client:
+        for _ in range(600):
+            try:
+                self.client.request("GET", "/readyz")
+                return self.client
+            except httpx2.TransportError:
+                time.sleep(0.05)
+        raise TimeoutError
+
+    def stop(self, how: signal.Signals = signal.SIGKILL) -> int:
+        self.client.close()
+        self.process.send_signal(how)
+        return self.process.wait(20)
+
+
+@contextmanager
+def serving(*arguments: Any, **options: Any) -> Iterator[Server]:
+    server = Server(*arguments, **options)
+    try:
+        yield server
+    finally:
+        if server.process.poll() is None:
+            server.stop()
+
+
+def until(condition: Callable[[], bool], seconds: float = 30) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_a_killed_server_loses_and_doubles_nothing(tmp_path: Path) -> None:
+    address = f"sqlite:///{tmp_path / 'x.db'}"
+    with serving(address) as server:
+        client = server.ready()
+        client.submit(PENDULUM)
+        job = client.submit_job(cells(40))["id"]
+        until(lambda: client.job(job)["progress"]["done"] >= 10)
+        server.stop()
+    with serving(address) as server:
+        client = server.ready()
+        view = client.wait(job)
+        assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
+        names = [item["result"]["name"] for item in client.job_items(job)]
+        assert server.stop(signal.SIGTERM) == 0
+    with closing(sqlite3.connect(tmp_path / "x.db")) as connection:
+        trees = connection.execute("SELECT name, count(*) FROM trees GROUP BY name").fetchall()
+        assert sorted(trees) == sorted((name, 1) for name in names)
+        assert len(names) == 40
+        assert connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+
+
+def test_a_stopped_supervisor_hands_its_items_back(settings: Settings) -> None:
+    with open_store(settings) as store:
+        client = make_client(store)
+        client.post("/v1/substructures", json=PENDULUM)
+        client.post("/v1/trees", json=TREE)
+        engine = FakeEngine(slots=2, is_open=False)
+        supervisor = Supervisor(store, lambda: engine)
+        supervisor.start()
+        job = submitted(client, export("cell", "metric", "gravity", "forces"))
+        until(lambda: len(engine.started) == 2)
+        supervisor.close()
+        assert engine.is_closed
+        states = [item["state"] for item in client.get(f"/v1/jobs/{job}/items").json()["items"]]
+        assert states == ["queued"] * 3
+        with running(store, FakeEngine()):
+            view = finished(client, job)
+        assert (view["state"], view["attempts"]) == ("succeeded", 5)
+
+
+def test_supervisors_share_a_queue_on_postgresql(tmp_path: Path) -> None:
+    with fresh("postgresql", tmp_path) as address:
+        settings = Settings(database=address, catalogue=False)
+        with open_store(settings) as one, open_store(settings) as two:
+            client = make_client(one)
+            client.post("/v1/substructures", json=PENDULUM)
+            client.post("/v1/trees", json=TREE)
+            engines = Slow(), Slow()
+            with running(one, engines[0]), running(two, engines[1]):
+                jobs = [submitted(client, exports(60)), submitted(make_client(two), exports(80))]
+                assert {finished(client, job, 30)["state"] for job in jobs} == {"succeeded"}
+        works = [work.item["bind"] for engine in engines for work in engine.started]
+        assert len(works) == len(set(works)) == 80  # equal items of both jobs were computed once
+        assert all(engine.started for engine in engines)
+
+
+@pytest.mark.deep
+def test_a_killed_worker_on_postgresql_is_replaced(tmp_path: Path) -> None:
+    with fresh("postgresql", tmp_path) as address, serving(address, "--engine", "none") as server:
+        client = server.ready()
+        client.submit(PENDULUM)
+        job = client.submit_job(cells(40))["id"]
+        with serving(address, command="worker"):
+            until(lambda: client.job(job)["progress"]["done"] >= 5)
+        with serving(address, command="worker"):
+            view = client.wait(job)
+        assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
+        assert len({item["result"]["tree"] for item in client.job_items(job)}) == 40
+
+
+def test_a_worker_needs_a_shared_database(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["worker", "--database", f"sqlite:///{tmp_path / 'x.db'}"]) == 1
+    assert "PostgreSQL" in capsys.readouterr().err
+    assert main(["serve", "--engine", "dask", "--database", f"sqlite:///{tmp_path / 'x.db'}"]) == 1
+    assert "--engine-address" in capsys.readouterr().err
