@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import httpx2
 import orjson
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options
@@ -110,8 +109,8 @@ def _numbers(options: argparse.Namespace, name: str) -> int:
         told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
     else:
         with Client(options.server, options.key) as client:
-            answer = client.analysis(options.tree, name, request, media)
-        data, told = answer.content, _told(answer)
+            data, told = client.analysis(options.tree, name, request, media)
+        told = orjson.loads(data) if media == JSON else told
     return _tell(told, data, options.out)
 
 
@@ -121,15 +120,6 @@ def _media(out: Path | None, name: str) -> str:
         known = [f".{suffix}" for suffix, each in MEDIA_TYPES.items() if each in ANALYSES[name].media]
         raise ValueError(f"the result of '{name}' can be written as {', '.join(known)}")
     return media
-
-
-def _told(answer: httpx2.Response) -> dict[str, Any]:
-    """The JSON answer, or what the headers of another say."""
-    headers = answer.headers
-    if headers["content-type"] == JSON:
-        return dict(answer.json())
-    right = headers.get("trajectory-right", "true") == "true"
-    return {"status": headers.get("trajectory-status", "finished"), "is_right": right}
 
 
 def _tell(told: Mapping[str, Any], data: bytes, out: Path | None) -> int:

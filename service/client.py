@@ -109,18 +109,29 @@ class Client:
 
     def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
         """Numbers that follow from the equations of motion: ``linearisations``, ``equilibria``, ``root-loci``, ..."""
-        return dict(self.analysis(tree, analysis, request).json())
+        return dict(json.loads(self.analysis(tree, analysis, request)[0]))
 
     def simulate(self, tree: str, **request: Any) -> dict[str, Any]:
         """A motion with its checks; ``t``, ``q``, ``qd`` and ``series`` are arrays."""
-        found = nested(view_npz(np.frombuffer(self.analysis(tree, "simulations", request, NPZ).content, np.uint8)))
+        content, _ = self.analysis(tree, "simulations", request, NPZ)
+        found = nested(view_npz(np.frombuffer(content, np.uint8)))
         return {**json.loads(str(found.pop("summary"))), **found}
 
-    def analysis(self, tree: str, analysis: str, request: Any, media_type: str = "application/json") -> httpx2.Response:
-        """The answer to a request for numbers in one of its media types; headers tell whether a motion is right."""
+    def analysis(
+        self, tree: str, analysis: str, request: Any, media_type: str = "application/json"
+    ) -> tuple[bytes, dict[str, Any]]:
+        """The answer to a request for numbers in one of its media types, and ``status`` and ``is_right`` of a motion.
+
+        Waits where it takes so long that it becomes a job.
+        """
         plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in request.items()}
         path, headers = f"/v1/trees/{tree}/{analysis}", {"Accept": media_type}
-        return self.request("POST", path, plain, headers=headers)
+        answer = self.request("POST", path, plain, headers=headers)
+        if answer.status_code != 202:
+            right = answer.headers.get("trajectory-right", "true") == "true"
+            return answer.content, {"status": answer.headers.get("trajectory-status", "finished"), "is_right": right}
+        item = self._item_of_job(answer.json()["id"])
+        return self.request("GET", item["files"][0]["href"]).content, item["result"]
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
@@ -151,11 +162,16 @@ class Client:
 
     def _made_by_job(self, job: str) -> dict[str, Any]:
         """What a request has made that took so long that it became a job of one item."""
+        return dict(self.request("GET", self._item_of_job(job)["result"]["location"]).json())
+
+    def _item_of_job(self, job: str) -> dict[str, Any]:
         self.wait(job)
         (item,) = self.job_items(job)
         if item["problem"] is not None:
             raise ProblemError(item["problem"]["status"], item["problem"])
-        return dict(self.request("GET", item["result"]["location"]).json())
+        if item["state"] != "succeeded":
+            raise ProblemError(409, {"detail": f"the job {job} was {item['state']}"})
+        return item
 
     def submit_job(self, submission: Any) -> dict[str, Any]:
         """Queue ``{"kind", "items"}`` or ``{"kind", "template", "choices"}``: the job."""

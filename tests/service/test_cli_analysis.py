@@ -11,7 +11,7 @@ import pytest
 from service.cli import main
 from service.client import Client
 from service.server import background
-from service.settings import Settings
+from service.settings import Limits, Settings
 
 from .conftest import PENDULUM, TREE
 
@@ -98,3 +98,21 @@ def test_on_a_server(folder: Path, settings: Settings, capsys: pytest.CaptureFix
         assert "energy in J, constant" in capsys.readouterr().out
         assert main(["analyse", "cell", "simulations", *server]) == 1
         assert "/q: " in capsys.readouterr().err
+
+
+def test_what_takes_long_is_waited_for(folder: Path, settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    """The request becomes a job, which a process of its own computes."""
+    slow = settings.model_copy(update={"workers": 1, "limits": Limits(sync_seconds=0.02)})
+    with background(slow) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        found = client.simulate("cell", q=[0.5], span=[0, 200], count=21, relative_tolerance=1e-12)
+        assert found["is_right"]
+        assert found["q"].shape == (21, 1)
+        (job,) = [each for each in client.jobs() if each["kind"] == "analyse"]
+        assert job["state"] == "succeeded"
+        text = "q: [0.5]\nspan: [0, 400]\nfixed_step: {step: 0.005, method: rk4}\ndrift_limit: 1.0e-14\n"
+        (folder / "rough.yaml").write_text(text)
+        command = ["simulate", "cell", str(folder / "rough.yaml"), "--out", str(folder / "x.csv"), "--server", address]
+        assert main(command) == 1
+        assert "finished WRONG" in capsys.readouterr().out

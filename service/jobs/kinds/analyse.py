@@ -86,7 +86,7 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
     model, name = model_of(item, blobs), item["analysis"]
     source = Source(model, item["tree"].partition("@")[2], _no_parts, Limits(**item["limits"]))
-    result = ANALYSES[name].compute(source, item["request"], progress)
+    result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
     media = MEDIA_TYPES[item["format"]]
     data = written(result, media, model)
     told = orjson.loads(data if media == JSON else written(_brief(result), JSON, model))
