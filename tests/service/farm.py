@@ -1,0 +1,186 @@
+"""Servers in processes of their own, on one database, that are killed and started again."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import httpx2
+
+from service.client import Client, ProblemError
+
+START = 60.0
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return int(listener.getsockname()[1])
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process has started."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            fields = status.read_text().rpartition(")")[2].split()
+            if int(fields[1]) == pid and fields[0] != "Z":
+                found.append(int(status.parent.name))
+    return found
+
+
+class Server:
+    """One server, always on the same port."""
+
+    def __init__(self, database: str, log: Path, settings: Sequence[str] = ()) -> None:
+        self.port, self.log = free_port(), log
+        command = [sys.executable, "-m", "service.cli", "serve", "--port", str(self.port), "--database", database]
+        self.command = [*command, *settings]
+        self.environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"}
+        self.process: subprocess.Popen[bytes] | None = None
+        self.kills = 0
+
+    @property
+    def address(self) -> str:
+        """Where it answers."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def start(self) -> None:
+        """Start it, and wait until it answers."""
+        with self.log.open("ab") as log:
+            self.process = subprocess.Popen(self.command, stderr=log, stdout=log, env=self.environment)
+        end = time.monotonic() + START
+        while time.monotonic() < end and self.process.poll() is None:
+            with contextlib.suppress(httpx2.HTTPError):
+                if httpx2.get(f"{self.address}/readyz", timeout=5).status_code == 200:
+                    return
+            time.sleep(0.02)
+        raise RuntimeError(f"the server did not start: {self.log.read_text()[-2000:]}")
+
+    def kill(self) -> None:
+        """kill -9."""
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait(30)
+            self.kills += 1
+
+    def stop(self) -> None:
+        """As by a service manager."""
+        if self.process is not None:
+            self.process.terminate()
+            self.process.wait(30)
+
+    def workers(self) -> list[int]:
+        """The processes that compute for it."""
+        return children(self.process.pid) if self.process is not None and self.process.poll() is None else []
+
+
+@contextlib.contextmanager
+def running(servers: Sequence[Server]) -> Iterator[None]:
+    """All of them, stopped at the end whatever happens."""
+    try:
+        for server in servers:
+            server.start()
+        yield
+    finally:
+        for server in servers:
+            server.stop()
+
+
+class Assassin:
+    """Kills workers at random moments, and servers when told to."""
+
+    def __init__(self, servers: Sequence[Server], seed: int, longest: float) -> None:
+        self.servers, self.longest = servers, longest
+        self.random, self.kills = random.Random(seed), 0
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._work)
+
+    def __enter__(self) -> Assassin:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _work(self) -> None:
+        while not self._over.wait(self.random.uniform(0.05, self.longest)):
+            pids = [pid for server in self.servers for pid in server.workers()]
+            if pids:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(self.random.choice(pids), signal.SIGKILL)
+                    self.kills += 1
+
+
+class Submitter:
+    """Submits small jobs all the time, each under a key of its own, again and again until it is acknowledged."""
+
+    def __init__(self, servers: Sequence[Server], body: Callable[[int], dict[str, Any]], pause: float) -> None:
+        self.servers, self.body, self.pause = servers, body, pause
+        self.acknowledged: dict[str, str] = {}
+        self.sent = 0
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._work)
+
+    def __enter__(self) -> Submitter:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _work(self) -> None:
+        while not self._over.wait(self.pause):
+            self.acknowledged[f"small-{self.sent}"] = submit(self.servers, self.body(self.sent), f"small-{self.sent}")
+            self.sent += 1
+
+
+def submit(servers: Sequence[Server], body: dict[str, Any], key: str, seconds: float = 120.0) -> str:
+    """The id of a job, after as many attempts as it takes."""
+    end = time.monotonic() + seconds
+    while True:
+        for server in servers:
+            try:
+                with Client(server.address, timeout=30) as client:
+                    headers = {"Idempotency-Key": key}
+                    return str(client.request("POST", "/v1/jobs", body, headers=headers).json()["id"])
+            except (httpx2.HTTPError, ProblemError) as error:
+                is_final = isinstance(error, ProblemError) and error.status not in (409, 500, 503)
+                if is_final or time.monotonic() > end:
+                    raise
+        time.sleep(0.05)
+
+
+def finished(client: Client, job: str, seconds: float) -> dict[str, Any]:
+    """A job when it is final; what it is when the time is over."""
+    end = time.monotonic() + seconds
+    while True:
+        view = dict(client.request("GET", f"/v1/jobs/{job}").json())
+        if view["state"] in ("succeeded", "failed", "cancelled") or time.monotonic() > end:
+            return view
+        time.sleep(0.1)
+
+
+def items(client: Client, job: str) -> list[dict[str, Any]]:
+    """All items of a job."""
+    found: list[dict[str, Any]] = []
+    token = ""
+    while True:
+        wanted = {"page_size": 1000, **({"page_token": token} if token else {})}
+        page = client.request("GET", f"/v1/jobs/{job}/result", params=wanted).json()
+        found += page["items"]
+        token = page["next_page_token"]
+        if not token:
+            return found

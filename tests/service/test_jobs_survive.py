@@ -1,0 +1,151 @@
+"""Everything acknowledged survives: servers and workers are killed (-9) at random moments while a batch runs."""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.client import Client
+from substructures import catalogue
+
+from .farm import Assassin, Server, Submitter, finished, items, running, submit
+from .test_postgres import address, server
+
+__all__ = ["address"]  # a fixture
+
+BATCH = 2000
+SERVER_KILLS = 100
+WORKER_KILLS = 100
+PARTS = ("puma560", "parallel-gripper", "cart-pendulum", "simple-pendulum")
+pytestmark = pytest.mark.deep
+
+
+def tree(i: int) -> dict[str, Any]:
+    """A small assembly; all are different, and some have loads to carry."""
+    arm = {"name": "arm", "substructure": "puma560" if i % 4 == 0 else "cart-pendulum"}
+    at = "arm.flange" if i % 4 == 0 else "arm.base"
+    hand = {
+        "name": "hand",
+        "substructure": "parallel-gripper",
+        "at": at,
+        "placement": {"position": [0, 0, f"{i}/1000"]},
+    }
+    return {"name": f"cell-{i}", "gravity": [0, 0, "-9.81"], "instances": [arm, hand]}
+
+
+def small(i: int) -> dict[str, Any]:
+    """A job of one evaluation."""
+    request = {"quantities": ["metric", "forces"], "parameters": {"arm.l": 1 + i / 1000}}
+    sample = {"count": 50, "seed": i, "ranges": {"arm.q1": [-3, 3]}}
+    return {"kind": "evaluate", "items": [{"tree": "probe", "request": request, "sample": sample}]}
+
+
+def prepared(client: Client) -> None:
+    """The parts, and a tree to be evaluated."""
+    for name in PARTS:
+        client.submit(catalogue.load(name))
+    client.create_tree({"name": "probe", "instances": [{"name": "arm", "substructure": "simple-pendulum"}]})
+
+
+def results(client: Client, job: str) -> dict[int, tuple[str, str]]:
+    """What came of every item, and the hash of its files."""
+    found = {}
+    for item in items(client, job):
+        assert item["state"] == "succeeded", item
+        contents = hashlib.sha256()
+        for file in sorted(item["files"], key=lambda each: str(each["name"])):
+            contents.update(client.request("GET", file["href"]).content)
+        found[int(item["position"])] = (str(item["result"]), contents.hexdigest())
+    return found
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[int, tuple[str, str]]:
+    """The results of the batch when nobody is killed."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    one = Server(f"sqlite:///{folder}/store.db", folder / "log")
+    with running([one]), Client(one.address) as client:
+        prepared(client)
+        job = submit([one], {"kind": "assemble", "items": [tree(i) for i in range(BATCH)]}, "batch")
+        assert finished(client, job, 600)["state"] == "succeeded"
+        return results(client, job)
+
+
+@pytest.fixture(params=["sqlite, one server", "postgresql, two servers"])
+def farm(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Server]]:
+    """Servers on one database."""
+    log = tmp_path / "log"
+    if request.param.startswith("sqlite"):
+        yield [Server(f"sqlite:///{tmp_path}/store.db", log)]
+        return
+    if server() is None:
+        pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
+    database = request.getfixturevalue("address")
+    both = [Server(database, log) for _ in range(2)]
+    for one in both:
+        one.environment["SUBSTRUCTURES_WORKERS"] = "1"
+    yield both
+
+
+def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
+    for one in farm:
+        one.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "3"
+    with running(farm):
+        with Client(farm[0].address) as client:
+            prepared(client)
+        batch = submit(farm, {"kind": "assemble", "items": [tree(i) for i in range(BATCH)]}, "batch")
+        with Submitter(farm, small, 0.3) as submitter, Assassin(farm, 7, 1.0) as assassin:
+            while sum(one.kills for one in farm) < SERVER_KILLS or assassin.kills < WORKER_KILLS:
+                victim = assassin.random.choice(farm)
+                time.sleep(assassin.random.uniform(0.0, 1.5))
+                victim.kill()
+                victim.start()
+        with Client(farm[0].address) as client:
+            assert finished(client, batch, 600)["state"] == "succeeded"
+            assert results(client, batch) == undisturbed
+            for job in submitter.acknowledged.values():
+                view = finished(client, job, 60)
+                assert (view["state"], view["progress"]["done"]) == ("succeeded", 1), view
+            check_nothing_doubled(client, batch, submitter)
+    print(f"{sum(one.kills for one in farm)} servers and {assassin.kills} workers killed; {submitter.sent} small jobs")
+    for file in tmp_path.glob("*.db"):
+        assert sqlite3.connect(file).execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def check_nothing_doubled(client: Client, batch: str, submitter: Submitter) -> None:
+    """One job for every key, one revision of every tree, one result for every item."""
+    listed = []
+    path = "/v1/jobs?page_size=1000"
+    while path:
+        page = client.request("GET", path).json()
+        listed += [job["id"] for job in page["items"]]
+        path = page["links"]["next"]
+    assert sorted(listed) == sorted({batch, *submitter.acknowledged.values()})
+    assert len(listed) == 1 + submitter.sent
+    for i in range(0, BATCH, 97):
+        assert client.request("GET", f"/v1/trees/cell-{i}").json()["revision"] == 1
+    answer = client.request("GET", f"/v1/jobs/{batch}").json()
+    assert answer["progress"]["done"] == answer["progress"]["total"] == BATCH
+
+
+def test_after_a_restart_nothing_is_stuck(tmp_path: Path) -> None:
+    """On SQLite no other owner can live: what a dead server left is computed at once, not after its lease."""
+    one = Server(f"sqlite:///{tmp_path}/store.db", tmp_path / "log")
+    one.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "3600"
+    with running([one]):
+        with Client(one.address) as client:
+            prepared(client)
+        job = submit([one], {"kind": "assemble", "items": [tree(4 * i) for i in range(100)]}, "batch")
+        with Client(one.address) as client:
+            while not [item for item in items(client, job) if item["state"] == "running"]:
+                time.sleep(0.01)
+        one.kill()
+        one.start()
+        with Client(one.address) as client:
+            assert finished(client, job, 120)["state"] == "succeeded"
