@@ -15,7 +15,6 @@ from service.operations import trees
 from service.operations.sources import sources_of
 from service.printing import Style, made_text
 from service.queries.trees import Tree
-from service.refusals import Refused
 from service.store import Store
 from substructures.model import Model
 
@@ -51,8 +50,7 @@ def _printed(source: Source, found: Made, style: Style) -> Answer:
 def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answer:
     """The result of an analysis of ANALYSES in one of its media types.
 
-    Raises Refused 404, or 503 when it takes longer than the limit of a request, InvalidDocument, MissingValue,
-    TooLarge.
+    Raises Refused 404, InvalidDocument, MissingValue, TooLarge, TimeoutError.
     """
     analysis = ANALYSES[name]
     with store.database.read() as connection:
@@ -68,13 +66,12 @@ def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answ
 
 
 class Deadline:
-    """A listener of progress that ends the work when its time is over."""
+    """A listener of progress that ends the work when its time is over: nobody waits for it any longer."""
 
     def __init__(self, seconds: float) -> None:
-        self.seconds, self._end = seconds, perf_counter() + seconds
+        self._end = perf_counter() + seconds
 
     def __call__(self, share: float) -> None:
-        """Raises Refused 503."""
+        """Raises TimeoutError, which answers as work that is waited for too long: with a job or 503."""
         if perf_counter() > self._end:
-            detail = f"{100 * share:.0f} % was done in {self.seconds:g} s, the limit of a request; nothing was stored"
-            raise Refused(503, "took-too-long", detail, limit=self.seconds)
+            raise TimeoutError(f"{100 * share:.0f} % was done in the time of a request")

@@ -301,16 +301,17 @@ def test_wrong_requests(client: TestClient, name: str, request_: dict[str, Any],
 
 
 def test_what_takes_long_becomes_a_job(tmp_path: Path) -> None:
-    limits = Limits(sync_seconds=0.5)
-    with open_store(Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False, limits=limits)) as store:
+    with open_store(Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False)) as store:
         client = make_client(store)
         submit(client, "simple-pendulum")
         assert client.post("/v1/trees", json=TREES[0]).status_code == 201
+        limits = store.settings.limits
+        store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.3)})
         request = {"q": [1], "span": [0, 1e6], "method": "RK23", "max_steps": 10**8}
         answer = client.post("/v1/trees/clock/simulations", json=request)
         assert (answer.status_code, answer.json()["kind"]) == (202, "analyse")
         large = {"q": [1], "span": [0, 1e6], "count": 1_000_000}
-        store.settings = store.settings.model_copy(update={"limits": Limits(binary_bytes=10**6)})
+        store.settings = store.settings.model_copy(update={"limits": limits.model_copy(update={"binary_bytes": 10**6})})
         assert client.post("/v1/trees/clock/simulations", json=large).json()["code"] == "too-large"
 
 
