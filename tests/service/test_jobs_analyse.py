@@ -70,6 +70,19 @@ def test_any_analysis(library: MemoryLibrary) -> None:
     assert found[1].summary["media_type"] == "application/x-npz"
 
 
+def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
+    common = {"tree": "cell", "format": "text", "bind": "defaults"}
+    options = {"options": {"outputs": ["sin(arm.q)"]}}
+    items = [{**common, "quantity": "first_integrals"}, {**common, "quantity": "state_space", **options}]
+    first, second = (o.files["text"].decode() for o in outcomes(library, "export", {"items": items}))
+    assert "energy in J, constant" in first
+    assert "output" in second
+    (item,) = library.items("export", {"items": [{**common, "quantity": "base_parameters"}]})
+    refused = run("export", item, library.blobs, lambda _: None).problem
+    assert refused is not None
+    assert refused["errors"][0]["code"] == "needs-parts"
+
+
 @pytest.mark.parametrize(
     ("kind", "item", "pointer"),
     [
@@ -82,6 +95,7 @@ def test_any_analysis(library: MemoryLibrary) -> None:
         ("analyse", {"tree": "cell", "analysis": "magic", "request": {}}, "/items/0/analysis"),
         ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),
         ("analyse", {"tree": "cell", "request": {}}, "/items/0/analysis"),
+        ("export", {"tree": "cell", "quantity": "x", "format": "text", "options": {"a": "b"}}, "/items/0/options"),
     ],
 )
 def test_wrong_items(library: MemoryLibrary, kind: str, item: dict[str, Any], pointer: str) -> None:

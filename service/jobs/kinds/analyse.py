@@ -13,15 +13,13 @@ import orjson
 
 from service.analyses.numbers import ANALYSES, check_request
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
-from service.analyses.source import Source
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import model_of, pinned_model
+from service.jobs.kinds.decoded import model_of, pinned_model, source_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
-from substructures.regressor import RegressorModel
 
 #: analyses that need no more than the formulas of the tree
 KNOWN = tuple(name for name, analysis in ANALYSES.items() if analysis.needs_model_only)
@@ -85,7 +83,7 @@ def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
     model, name = model_of(item, blobs), item["analysis"]
-    source = Source(model, item["tree"].partition("@")[2], _no_parts, Limits(**item["limits"]))
+    source = source_of(item, model, item["limits"])
     result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
     media = MEDIA_TYPES[item["format"]]
     data = written(result, media, model)
@@ -97,7 +95,3 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
 def _brief(result: Any) -> Any:
     motion = trajectory_of(result)
     return result if motion is None else motion.summary()
-
-
-def _no_parts() -> RegressorModel:
-    raise InvalidDocument.at("/analysis", "needs-parts", "this analysis needs the parts of the tree")
