@@ -16,6 +16,8 @@ LEFT, RIGHT, TOP, BOTTOM = 76.0, 150.0, 34.0, 40.0
 #: points of one line; more of them cannot be seen
 POINTS = 1500
 COLOURS = ("#1f5f8b", "#b4552d", "#3d7a3d", "#7a4b94", "#8a6d1f", "#4a5560", "#0f7f7f", "#a63d6b")
+#: what is larger is left out, as what is not finite
+LARGEST = 1e300
 #: entries of a legend
 NAMED = 8
 
@@ -100,7 +102,7 @@ def _panel(panel: Panel, top: float) -> list[str]:
 def _range(columns: Sequence[Array]) -> tuple[float, float]:
     """From the least to the largest finite number, never empty."""
     flat = np.concatenate([np.ravel(c) for c in columns]) if columns else np.zeros(1)
-    flat = flat[np.isfinite(flat)]
+    flat = flat[np.abs(flat) < LARGEST]
     low, high = (float(flat.min()), float(flat.max())) if len(flat) else (0.0, 1.0)
     room = 0.05 * (high - low)
     if room <= 1e-9 * max(abs(low), abs(high)):
@@ -110,12 +112,13 @@ def _range(columns: Sequence[Array]) -> tuple[float, float]:
 
 def _thinned(line: Line) -> tuple[Array, Array]:
     keep = np.linspace(0, len(line.x) - 1, min(len(line.x), POINTS)).astype(np.int64)
-    return line.x[keep], line.y[keep]
+    x, y = line.x[keep], line.y[keep]
+    good = (np.abs(x) < LARGEST) & (np.abs(y) < LARGEST)
+    return x[good], y[good]
 
 
 def _line(line: Line, x: Array, y: Array, colour: str) -> str:
-    good = np.isfinite(x) & np.isfinite(y)
-    pairs = zip(x[good].tolist(), y[good].tolist(), strict=True)
+    pairs = zip(x.tolist(), y.tolist(), strict=True)
     if line.dots:
         return "\n".join(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2" fill="{colour}"/>' for a, b in pairs)
     points = " ".join(f"{a:.1f},{b:.1f}" for a, b in pairs)

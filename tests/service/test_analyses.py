@@ -6,6 +6,7 @@ import csv
 import io
 import math
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -334,6 +335,15 @@ def test_jobs_compute_the_same(client: TestClient, store: Store, headers: dict[s
         assert content == answer.content
     else:
         assert client.get(file["href"]).json()["q"] == answer.json()["q"]
+
+
+def test_many_at_a_time(client: TestClient) -> None:
+    """Requests share compiled kernels, but no states."""
+    starts = [{"q": [0.1 * k, 0.3], "span": [0, 2], "count": 20} for k in range(8)]
+    alone = [ask(client, "cart/simulations", **start)["q"] for start in starts]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda start: ask(client, "cart/simulations", **start)["q"], starts * 2))
+    assert together == alone * 2
 
 
 def test_an_idempotency_key_is_accepted(client: TestClient) -> None:
