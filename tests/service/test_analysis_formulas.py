@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from service.analyses.formulas import QUANTITIES
+from service.app import open_store
 from service.negotiation import MEDIA_TYPES
+from service.settings import Settings
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 
-from .conftest import HAND
+from .conftest import HAND, PENDULUM, TREE, make_client
 
 PUCK: dict[str, Any] = {
     "name": "puck",
@@ -38,13 +41,21 @@ PUCK: dict[str, Any] = {
 }
 
 
-@pytest.fixture
-def double(filled: TestClient) -> TestClient:
+@pytest.fixture(scope="module")
+def double(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """The double pendulum cell@2, and a mass that slides freely on a turning arm."""
-    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
-    answer = filled.post("/v1/trees", json=PUCK)
-    assert answer.status_code == 201, answer.text
-    return filled
+    path = tmp_path_factory.mktemp("formulas") / "store.db"
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        client = make_client(store)
+        for place, body in (
+            ("substructures", PENDULUM),
+            ("trees", TREE),
+            ("trees/cell/couplings", HAND),
+            ("trees", PUCK),
+        ):
+            answer = client.post(f"/v1/{place}", json=body)
+            assert answer.status_code == 201, answer.text
+        yield client
 
 
 @pytest.mark.parametrize("name", MEDIA_TYPES)
