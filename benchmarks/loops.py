@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
-from substructures.analysis.closed_requests import LoopRequest
 from substructures.analysis.constrained import Constrained
 from substructures.analysis.loops import analyse_loops
-from substructures.analysis.reductions import METHODS
+from substructures.analysis.reductions import REDUCTIONS
+from substructures.analysis.requests import LoopRequest
 from substructures.analysis.simulate_closed import simulate_closed
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers: start, and values at t = 0.03 s
@@ -58,7 +58,7 @@ def requests(model: Model, name: str) -> dict[str, Any]:
 def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
     """Seconds for q'' at one state: compiled formulas and the linear equations."""
     state = analyse_loops(model, {k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
-    s = Constrained(model, LoopRequest())
+    s = Constrained(model, LoopRequest.read({"q": request["q"]}))
     s.move(0, state.q, state.qd)
     rows = s.independent_rows()
     start = perf_counter()
@@ -71,7 +71,7 @@ def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
 def measure(name: str, method: str) -> dict[str, Any]:
     """Figures of one mechanism."""
     model = closed(name)
-    request = requests(model, name) | {"method": method}
+    request = requests(model, name) | {"reduction": method}
     seconds = []
     for _ in range(5):
         start = perf_counter()
@@ -91,7 +91,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
-    rows = [measure(name, method) for name in PINS for method in METHODS]
+    rows = [measure(name, method) for name in PINS for method in REDUCTIONS]
     for row in rows:
         error = f", relative error at the end {row['error']:.1e}" if "error" in row else ""
         run = f"{row['span']} s in {row['seconds']:.3f} s, {row['steps']} steps, q'' in {1e6 * row['per_call']:.0f} us"

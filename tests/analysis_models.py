@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 from random_trees import Kind, model_of, random_definition, with_parameters
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
@@ -13,11 +15,22 @@ from substructures.states import default_number
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
 
 
+def seeds(quick: int, count: int) -> list[Any]:
+    """``count`` seeds, of which the first ``quick`` are in the default tests."""
+    return [*range(quick), *(pytest.param(k, marks=pytest.mark.deep) for k in range(quick, count))]
+
+
 def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81), **parameters: Any) -> Model:
     """A catalogue entry alone at the world, as instance x."""
     part = derive(Definition.read(catalogue.load(name)))
     one = {"name": "x", "substructure": name, "parameters": parameters}
     return couple(TreeSpec.read({"name": "t", "gravity": list(gravity), "instances": [one]}), {"x": part})
+
+
+@cache
+def shipped(name: str) -> Model:
+    """A catalogue entry alone at the world with gravity, exactly -9.81 m/s^2, and its parameters."""
+    return catalogue_model(name, (0, 0, "-9.81"))
 
 
 def random_model(number: int, **changes: Any) -> Model:

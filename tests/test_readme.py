@@ -33,15 +33,26 @@ def curl(command: str, address: str) -> str:
     return done.stdout
 
 
+def run(text: str, folder: Path) -> str:
+    """What an example prints."""
+    script = folder / "example.py"
+    script.write_text(text)
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 @pytest.mark.skipif(shutil.which("curl") is None, reason="the README's requests need curl")
 def test_requests_in_order(tmp_path: Path) -> None:
     requests = [line for block in blocks("sh") for line in re.split(r"\n(?=curl)", block.strip()) if line[:4] == "curl"]
     assert len(requests) >= 6
     with background(Settings(database=f"sqlite:///{tmp_path / 'readme.db'}")) as address:
         answers = [curl(request, address) for request in requests]
+        shape = run(blocks("python")[0].replace(ADDRESS, address), tmp_path)
     assert '"cell"' in answers[0]
     assert "metric[1, 1]" in answers[1]
-    assert '"revision":2' in answers[-1]
+    assert '"revision":2' in next(answer for answer in answers if '"arm","eye"' in answer or '"eye"' in answer)
+    assert shape == "(1000, 8, 8)\n"
 
 
 def test_own_part() -> None:
@@ -51,14 +62,16 @@ def test_own_part() -> None:
 
 
 def test_python_example(tmp_path: Path) -> None:
-    script = tmp_path / "example.py"
-    script.write_text(blocks("python")[0])
-    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "cos(arm.q2)" in done.stdout
+    assert "cos(arm.q2)" in run(blocks("python")[1], tmp_path)
 
 
-@pytest.mark.parametrize("word", ["demo", "serve", "derive", "submit", "key create"])
+@pytest.mark.parametrize(
+    "word",
+    [
+        *("demo", "serve", "worker", "derive", "submit", "simulate", "analyse", "backup", "restore", "key create"),
+        *("jobs submit", "jobs list", "jobs watch", "jobs result"),
+    ],
+)
 def test_commands_exist(word: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "service.cli", *word.split(), "--help"], capture_output=True, text=True, check=False

@@ -9,6 +9,7 @@ where c = G' q' for closures and -s'' for prescribed coordinates, whose multipli
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,15 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.closed_requests import ClosedRequest, LoopRequest, StateRequest
-from substructures.analysis.given import check_names, parameter_values, read_inputs
-from substructures.analysis.signals import Signals
+from substructures.analysis.inputs import VaryingInputs, read_along, state_names
+from substructures.analysis.prescribed import Prescribed
+from substructures.analysis.requests import ClosedRequest, LoopRequest
 from substructures.analysis.work import POWER, with_power
 from substructures.compile import compile_program
+from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
 #: singular values of the Jacobian below this part of the largest one count as zero
@@ -41,14 +43,6 @@ class Singular(ArithmeticError):
     """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
 
 
-@dataclass(frozen=True)
-class Prescribed:
-    """Coordinates whose motion is given: their indices and the motions."""
-
-    index: tuple[int, ...] = ()
-    motions: Signals | None = None
-
-
 class Constrained:
     """A state at a time and what follows from it, in arrays that the next :meth:`move` overwrites.
 
@@ -59,13 +53,16 @@ class Constrained:
     def __init__(self, model: Model, request: LoopRequest | ClosedRequest, folder: Path | None = None) -> None:
         """``folder``: a cache of compiled kernels. Raises InvalidDocument (pointers into the request), MissingValue."""
         self.model, self.n = model, model.dof
-        self._inputs = read_inputs(model, request)
-        self.prescribed = _prescribed(model, request)
+        _check_fixed(model, request.fixed)
+        span = request.span if isinstance(request, ClosedRequest) else (request.t, request.t)
+        needs = [*NEEDS, *(CLOSURES if model.closures else ())]
+        self.along = read_along(model, request, span, needs)
+        self.prescribed = Prescribed(model, request.prescribed, span)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
         self.closed = len(self.labels)
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
-        self._bind(request, folder)
+        self._bind(list(request.inputs), folder)
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
@@ -75,35 +72,32 @@ class Constrained:
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
-    def _bind(self, request: StateRequest, folder: Path | None) -> None:
-        model, m, inputs = self.model, self.closed, self._inputs.names
-        outputs = [*NEEDS, *(CLOSURES if m else ())]
-        found = parameter_values(model, request, outputs)
-        source = with_power(model, outputs, inputs)
+    def _bind(self, inputs: list[str], folder: Path | None) -> None:
+        outputs = [*NEEDS, *(CLOSURES if self.closed else ())]
+        source = with_power(self.model, outputs, inputs)
         self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
-        rates = [f"{name}'" for name in model.coordinates]
-        columns = [*model.coordinates, *rates, "t", *inputs]
-        self._x = np.zeros((1, len(columns)))
+        self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
+        self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
-        self.values = {name: x for name, x in found.items() if name not in columns}
         kernel = compile_program(source, list(self._out), folder)
-        self._run = kernel.bind(self._out, self.values, columns=[(columns, self._x)])
+        columns = [(state_names(self.model), self._x), *self.inputs.columns]
+        self._run = kernel.bind(self._out, self.along.values | {"t": self._t}, columns=columns)
         self.g = self._out["metric"][0]
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
         n, x, out = self.n, self._x[0], self._out
         self.t, self.q, self.qd = t, q, qd
-        x[:n], x[n : 2 * n], x[2 * n] = q, qd, t
-        x[2 * n + 1 :] = self._inputs.at(t)[:, 0]
+        x[:n], x[n:], self._t[0] = q, qd, t
+        self.inputs.fill()
         self._run()
         np.subtract(out["forces"][0], out["bias"][0], out=self.f)
         m = self.closed
         if m:
             self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
             self.G[:m] = out["closure.jacobian"][0]
-        if self.prescribed.motions is not None:
-            motion = self.prescribed.motions.at(t)
+        if self.prescribed.index:
+            motion = self.prescribed.at(t)
             self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
             self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
 
@@ -142,7 +136,7 @@ class Constrained:
         if not self.closed:
             return np.zeros(empty)
         rates = [f"{name}'" for name in self.model.coordinates]
-        values = self.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
+        values = self.along.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
         values |= dict(zip(self.model.coordinates, self.q, strict=True))
         return interpret(self.model.program, values, [name])[name]
 
@@ -201,9 +195,7 @@ def rank_of(G: Array) -> int:
     return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
 
 
-def _prescribed(model: Model, request: LoopRequest | ClosedRequest) -> Prescribed:
-    given = request.prescribed
-    check_names(given, set(model.coordinates), "coordinate", "/prescribed")
-    if not given:
-        return Prescribed()
-    return Prescribed(tuple(model.coordinates.index(n) for n in given), Signals(given, "/prescribed", smooth=True))
+def _check_fixed(model: Model, fixed: Sequence[str]) -> None:
+    for i, name in enumerate(fixed):
+        if name not in model.coordinates:
+            raise InvalidDocument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")

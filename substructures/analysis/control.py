@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import numpy as np
 from pydantic import Field
 
+from substructures.analysis.formulas import inputs_of, require_open
 from substructures.definition import Model as Document
 from substructures.definition import escape, read_model
 from substructures.errors import Fault, InvalidDocument
@@ -68,6 +69,7 @@ P = TypeVar("P", bound=Problem)
 
 def read_problem(kind: type[P], model: Model, data: Mapping[str, Any]) -> P:
     """A request of this kind, with all names checked. Raises InvalidDocument with pointers."""
+    require_open(model)
     problem = read_model(kind, data)
     known = inputs_of(model)
     faults = [
@@ -98,11 +100,6 @@ def _unknown(field: str, given: Mapping[str, Any], known: Iterable[str]) -> list
         for name in given
         if name not in known
     ]
-
-
-def inputs_of(model: Model) -> list[str]:
-    """The names of all inputs that the forces depend on."""
-    return [s.name for s in model.program.symbols if s.kind == "input"]
 
 
 def initial_state(model: Model, problem: Problem) -> Array:

@@ -7,22 +7,20 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import least_squares
 
-from substructures.analysis.formulas import require_motion
+from substructures.analysis.formulas import require_tree
 from substructures.analysis.known import program_kernel
 from substructures.analysis.linearise import Linearisation, linearise
 from substructures.analysis.perturbation import perturbation
-from substructures.analysis.requests import Positive, Real
+from substructures.analysis.request_fields import Positive, Real
 from substructures.definition import Model as Document
 from substructures.definition import read_model
 from substructures.errors import InvalidDocument
 from substructures.model import Model
-from substructures.states import numeric, read_states, symbol_values
+from substructures.states import Array, numeric, read_states, symbol_values
 
-Array = NDArray[np.float64]
 #: two equilibria closer than this are one [rad, m]
 SAME = 1e-6
 #: singular values of K below this share of the largest leave a direction undetermined
@@ -77,7 +75,7 @@ def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equili
 
     Raises InvalidDocument (pointers; ``not-smooth``) and MissingValue.
     """
-    require_motion(model)
+    require_tree(model)
     read = read_model(EquilibriaRequest, request or {})
     search = _Search(model, read)
     starts = search.starts()

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.formulas import Entries, ModelFormulas
+from substructures.analysis.formulas import Entries, ModelFormulas, require_open
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
@@ -60,8 +60,10 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     """Everything constant that follows from symmetry, with the energy (also where it is not constant).
 
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
-    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
+    Raises InvalidDocument for closures, for a coordinate without inertia, and for unknown names (``/inputs``,
+    ``/parameters``).
     """
+    require_open(model)
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     inputs, zero = list(inputs), list(zero)
     faults = [

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.integrate import Function, Motion, Progress
-from substructures.analysis.requests import FixedStep
+from substructures.analysis.request_fields import FixedStep
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 Step = Callable[[Function, float, Array, float], Array]
 
 

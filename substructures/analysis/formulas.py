@@ -17,10 +17,27 @@ LENGTH = {"R": "rad", "P": "m"}
 Entries = dict[tuple[int, ...], Expr]
 
 
-def require_motion(model: Model) -> None:
-    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves."""
+def require_tree(model: Model) -> None:
+    """Raises InvalidDocument: ``no-coordinates`` for a model in which nothing moves, and as :func:`require_open`."""
     if not model.dof:
         raise InvalidDocument.at("", "no-coordinates", "the tree has no joint: there is nothing that moves")
+    require_open(model)
+
+
+def inputs_of(model: Model) -> tuple[str, ...]:
+    """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
+    return tuple(s.name for s in model.program.symbols if s.kind == "input")
+
+
+def require_open(model: Model) -> None:
+    """Raises InvalidDocument (``has-closures``) for a model with closed loops: its coordinates are not independent."""
+    if model.closures:
+        names = ", ".join(f"'{rows.name}'" for rows in model.closures)
+        message = (
+            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
+            "use loops, simulations or quasi-velocities with constraints of the type 'closure', or leave them out"
+        )
+        raise InvalidDocument.at("", "has-closures", message)
 
 
 class ModelFormulas:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from substructures.analysis.formulas import LENGTH
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Output, Symbol
 from substructures.expr.replay import replay
 from substructures.model import KINEMATICS, Model
 from substructures.scope import Scope
 
-LENGTH = {"R": "rad", "P": "m"}
 Elements = dict[tuple[int, ...], Expr]
 
 
@@ -34,10 +34,6 @@ class Formulation:
     def symbols(self) -> dict[str, Symbol]:
         """Descriptions of all symbols by name."""
         return self.scope.symbols
-
-    def coordinate(self, a: int) -> Expr:
-        """q^a."""
-        return self.graph.symbol(self.model.coordinates[a])
 
     def outputs(self, names: Sequence[str], bindings: Mapping[str, Expr] | None = None) -> dict[str, Elements]:
         """All non-zero elements of outputs of the model, symmetric ones included."""

@@ -11,11 +11,11 @@ from functools import partial
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 from scipy.optimize import brentq
 
-Array = NDArray[np.float64]
+from substructures.states import Array
+
 Function = Callable[[float, Array], Array]
 #: told the time reached; False stops
 Progress = Callable[[float], bool | None]
@@ -27,23 +27,31 @@ KEPT = 20_000
 PATIENCE, TINY = 200, 1e-12
 
 
+#: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver
+Stepper = Callable[..., Any]
+STIFF = "try the method 'Radau' for stiff equations"
+
+
 @dataclass(frozen=True)
 class Settings:
-    """``stepper``: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver."""
+    """``advice``: what to change when the integrator gives up, beside state, span and tolerances."""
 
-    stepper: Callable[[Function, float, Array, float], Any]
+    stepper: Stepper
     max_steps: int
+    advice: str = STIFF
 
 
-def scipy_stepper(method: str, rtol: float, atol: float) -> Callable[[Function, float, Array, float], Any]:
+def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
     """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
-    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol)
+    most = np.inf if max_step is None else max_step
+    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol, max_step=most)
 
 
 @dataclass(frozen=True)
 class Watch:
     """Zeros of g(t, x) that are looked for: ``direction`` +1 rising, -1 falling, 0 both."""
 
+    name: str
     function: Callable[[float, Array], float]
     direction: int = 0
     stops: bool = True
@@ -91,12 +99,15 @@ def integrate(
 ) -> Motion:
     """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``.
 
+    A motion that ends early has the last state that was reached, too.
+
     ``enter``: told the times between which f is called next, from break to break.
     """
     run = _Run(f, span, outputs, settings, watches, progress)
     motion = run.motion
     motion.step_t.append(span[0])
     motion.step_x.append(x)
+    run.last = span[0], x
     run.collect(span[0], lambda _: x)
     run.levels = [w.function(span[0], x) for w in watches]
     ends = [*breaks, span[1]]
@@ -109,6 +120,8 @@ def integrate(
             if motion.status != "finished":
                 break
             start = end
+    if motion.status != "finished":
+        run.keep_last()
     return motion
 
 
@@ -128,10 +141,18 @@ class _Run:
         self.levels: list[float] = []
         self.span, self.tiny = span[1] - span[0], 0
         self.motion = Motion()
+        self.last: tuple[float, Array] | None = None
+
+    def keep_last(self) -> None:
+        """The last state that was reached, as a result."""
+        motion = self.motion
+        if self.last is not None and (not motion.t or motion.t[-1] < self.last[0]):
+            motion.t.append(self.last[0])
+            motion.x.append(self.last[1])
 
     def segment(self, start: float, x: Array, end: float) -> Array:
         """Integrate from start to end; the last state."""
-        s, motion = self.settings, self.motion
+        s, motion, solver = self.settings, self.motion, None
         try:
             solver = s.stepper(self.f, start, x, end)
             while solver.status == "running" and motion.status == "finished":
@@ -141,16 +162,16 @@ class _Run:
                     break
                 self._accepted(solver)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
-            last = motion.step_t[-1]
-            motion.end("failed", self._advice(last, str(error)))
-            return motion.step_x[-1]
-        motion.evaluations += solver.nfev
+            motion.end("failed", self._advice(start if self.last is None else self.last[0], str(error)))
+            return x
+        finally:
+            motion.evaluations += 0 if solver is None else solver.nfev
         return np.asarray(solver.y, dtype=np.float64)
 
     def _advice(self, t: float, message: str) -> str:
         return (
             f"the integrator could not go on at t = {t:.9g} s ({message.strip()}): the motion may be singular there; "
-            "look at the state, end the span before it, or try the method 'Radau' for stiff equations"
+            f"look at the state, end the span before it, loosen 'relative_tolerance', or {self.settings.advice}"
         )
 
     def _accepted(self, solver: Any) -> None:
@@ -159,6 +180,7 @@ class _Run:
             motion.end("failed", self._advice(solver.t_old, "the state is not finite"))
             return
         motion.keep(solver.t, solver.y.copy())
+        self.last = float(solver.t), solver.y.copy()
         self.tiny = self.tiny + 1 if solver.t - solver.t_old < TINY * self.span else 0
         if self.tiny > PATIENCE:
             motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
@@ -167,7 +189,7 @@ class _Run:
         last = self._watch(solver, dense)
         self.collect(last, dense)
         if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
-            advice = "raise 'max_steps', loosen the tolerances, or try the method 'Radau' for stiff equations"
+            advice = f"raise 'max_steps', loosen the tolerances, or {self.settings.advice}"
             motion.end("failed", f"{motion.steps:,} steps reached only t = {solver.t:.9g} s: {advice}")
         if self.progress is not None and self.progress(solver.t) is False and motion.status == "finished":
             motion.end("stopped", f"cancelled at t = {solver.t:.9g} s")
@@ -194,11 +216,9 @@ class _Run:
             x = np.array(dense(t), dtype=np.float64)
             self.motion.found.append((k, t, x))
             if self.watches[k].stops:
-                self.motion.end("stopped", f"stopped by an event at t = {t:.9g} s")
+                self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
-                if not self.motion.t or self.motion.t[-1] < t:
-                    self.motion.t.append(t)
-                    self.motion.x.append(x)
+                self.last = t, x
                 self.motion.step_t[-1], self.motion.step_x[-1] = t, x
                 return t
         return float(solver.t)

@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.first_integrals import FirstIntegrals, Integral
 from substructures.analysis.trajectory import Check, Rule
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 #: of a sum, relative to its value
 ROUNDING = 1e-14
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
@@ -55,29 +54,37 @@ def judge(model: Model, integrals: FirstIntegrals, states: States, limit: float)
         value, scale = series[integral.name], scales.of(integral)
         noise = ROUNDING * float(np.abs(value).max(initial=0))
         if integral.rule == "constant":
-            checks.append(_check(integral, "constant", value - value[:1], states.t, scale, limit, noise))
+            checks.append(Check.of(_about(integral, "constant"), value - value[:1], states.t, scale, limit, noise))
             continue
         balanced = value - states.work
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
         scale = max(scale, float(np.abs(states.work).max(initial=0)))
-        checks.append(_check(entry, "constant", balanced - balanced[:1], states.t, scale, limit, noise))
+        checks.append(Check.of(_about(entry, "constant"), balanced - balanced[:1], states.t, scale, limit, noise))
         power = series["power"]
         if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
             rise = value - np.minimum.accumulate(value)
             entry = replace(integral, reason="the power of all forces without potential is nowhere positive")
-            checks.append(_check(entry, "falling", rise, states.t, scale, limit, noise))
+            checks.append(Check.of(_about(entry, "falling"), rise, states.t, scale, limit, noise))
     return tuple(checks)
 
 
-def _check(
-    integral: Integral, rule: Rule, violation: Array, t: Array, scale: float, limit: float, noise: float
-) -> Check:
-    size = np.abs(violation)
-    bad = np.flatnonzero(~(size <= limit * scale + noise))
-    first = float(t[bad[0]]) if len(bad) else None
-    worst = float(np.nanmax(size, initial=0.0))
-    return Check(integral.name, rule, integral.reason, integral.unit, worst, scale, limit, first)
+def _about(integral: Integral, rule: Rule) -> tuple[str, Rule, str, str]:
+    return integral.name, rule, integral.reason, integral.unit
+
+
+def energy_balance(t: Array, columns: Mapping[str, Array], conservative: bool, limit: float) -> Check:
+    """T + V - work is constant; relative to the largest of T, the change of V and the work.
+
+    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each.
+    """
+    T, V, work = (columns[name] for name in ("kinetic_energy", "potential_energy", "work"))
+    scale = max(float(np.abs(x).max(initial=0)) for x in (T, V - V[0], work)) or 1.0
+    reason = "T + V is constant: the forces have a potential, constraints do no work"
+    if not conservative:
+        reason = "T + V changes by the work of forces without potential and of prescribed motions only"
+    total = T + V - work
+    return Check.of(("energy", "constant", reason, "J"), total - total[0], t, scale, limit)
 
 
 class _Scales:

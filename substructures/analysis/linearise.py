@@ -12,8 +12,8 @@ from pydantic import Field
 
 from substructures.analysis.expressions import read_expressions
 from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.formulas import require_motion
-from substructures.analysis.perturbation import inputs_of, perturbation, require_inputs
+from substructures.analysis.formulas import inputs_of, require_tree
+from substructures.analysis.perturbation import perturbation, require_inputs
 from substructures.analysis.vibrations import Mode, Stability, first_order, modes, stability
 from substructures.definition import Model as Document
 from substructures.definition import Number, read_model
@@ -25,9 +25,8 @@ from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
 from substructures.model import Model
 from substructures.solve import cholesky_solve
-from substructures.states import States, read_states, symbol_values
+from substructures.states import Array, States, read_states, symbol_values
 
-Array = NDArray[np.float64]
 DYNAMICS = ("metric", "bias", "forces")
 #: accelerations of an equilibrium, relative to the accelerations that its forces would cause one by one
 AT_REST = 1e-8
@@ -101,7 +100,7 @@ def linearise(model: Model, request: Mapping[str, Any]) -> Linearisation:
     ``q`` (n,) or (N, n): arrays of the result have the leading axis N in the second case. Raises InvalidDocument
     (pointers; ``not-smooth`` for forces without derivative) and MissingValue.
     """
-    require_motion(model)
+    require_tree(model)
     read = read_model(LinearisationRequest, request)
     states = read_states(model, {"q": read.q, "qd": read.qd, "qdd": read.qdd}, None)
     chosen = inputs_of(model) if read.of_inputs is None else read.of_inputs

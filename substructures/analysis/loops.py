@@ -11,18 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.closed_requests import LoopRequest
-from substructures.analysis.constrained import (
-    RANK,
-    SINGULAR,
-    Array,
-    Constrained,
-    Singular,
-    rank_of,
-)
-from substructures.analysis.given import check_fixed, read_state
+from substructures.analysis.constrained import RANK, SINGULAR, Constrained, Singular, rank_of
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
+from substructures.analysis.requests import LoopRequest
 from substructures.model import Model
+from substructures.states import Array
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
 NEARBY = 1e-3
@@ -94,9 +87,8 @@ def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None 
     result.
     """
     asked = LoopRequest.read(request)
-    check_fixed(model, asked.fixed)
-    s, (q, qd), t = Constrained(model, asked, folder), read_state(model, asked), asked.t
-    state = consistent_state(s, t, q, qd, asked.fixed)
+    s, t = Constrained(model, asked, folder), asked.t
+    state = consistent_state(s, t, s.along.q, s.along.qd, asked.fixed)
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)

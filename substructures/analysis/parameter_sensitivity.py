@@ -7,22 +7,22 @@ start, dx/dx_0, obey S' = f_x S, S(0) = 1. f_x S + f_p is one directional deriva
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.inputs import Along, VaryingInputs, state_names
 from substructures.analysis.integrate import Settings, integrate, scipy_stepper
 from substructures.analysis.known import Known, program_kernel
 from substructures.analysis.perturbation import require_smooth
+from substructures.analysis.progress import Report, share_of
 from substructures.analysis.requests import TAYLOR, SimulationRequest
-from substructures.analysis.simulate import Report, Setup, read_setup
-from substructures.analysis.time_inputs import break_times, formulas_of
+from substructures.analysis.simulate_tree import read_tree
 from substructures.analysis.trajectory import Trajectory
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
@@ -30,8 +30,8 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 QUANTITIES = ("metric", "christoffel", "forces")
 
 
@@ -109,25 +109,20 @@ def sensitivities(
     """
     require_parameters(model, parameters)
     require_smooth(model)
-    setup = read_setup(model, SimulationRequest.read(request))
-    _require_plain(setup)
-    f = _Variation(setup, parameters, of_start, folder)
-    settings = setup.request
-    stepper = scipy_stepper(settings.method, settings.relative_tolerance, settings.absolute_tolerance)
-    start, end = settings.span
-
-    def told(t: float) -> bool | None:
-        return None if progress is None else progress((t - start) / (end - start))
-
+    asked = SimulationRequest.read(request)
+    along = read_tree(model, asked)
+    _require_plain(along, asked)
+    f = _Variation(along, parameters, of_start, folder)
+    stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
     motion = integrate(
         f,
         f.start(),
-        settings.span,
-        settings.outputs(),
-        Settings(stepper, settings.max_steps),
-        breaks=break_times(setup.curves, settings.span),
-        progress=told,
-        enter=f.enter,
+        asked.span,
+        asked.outputs(),
+        Settings(stepper, asked.max_steps),
+        breaks=along.breaks(asked.span),
+        progress=share_of(asked.span, progress),
+        enter=f.inputs.enter,
     )
     n, k = model.dof, len(parameters)
     x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
@@ -140,9 +135,8 @@ def sensitivities(
     )
 
 
-def _require_plain(setup: Setup) -> None:
+def _require_plain(along: Along, request: SimulationRequest) -> None:
     """Raises InvalidDocument for what has no place in the variational equations."""
-    request = setup.request
     faults = [
         Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
         for name in ("events", "fixed_step", "series")
@@ -150,7 +144,7 @@ def _require_plain(setup: Setup) -> None:
     ]
     if request.method == TAYLOR:
         faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
-    named = {s.name for s in setup.source.symbols if s.kind != "time"}
+    named = {s.name for s in along.source.symbols if s.kind != "time"}
     if named:
         culprits = ", ".join(f"'{name}'" for name in sorted(named))
         faults.append(Fault("/inputs", "not-supported", f"inputs may depend on t only here, not on {culprits}"))
@@ -161,51 +155,35 @@ def _require_plain(setup: Setup) -> None:
 class _Variation:
     """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel."""
 
-    def __init__(self, setup: Setup, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
-        model, n = setup.model, setup.model.dof
-        self.setup, self.n, self.of_start = setup, n, of_start
+    def __init__(self, along: Along, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
+        model, n = along.model, along.model.dof
+        self.along, self.n, self.of_start = along, n, of_start
         self.columns = len(parameters) + (2 * n if of_start else 0)
         batch = max(self.columns, 1)
         self.t, self.x = np.zeros(1), np.zeros((1, 2 * n))
         self.d = np.zeros((batch, 2 * n))
         self.out = {"acceleration": np.zeros((batch, n)), "variation": np.zeros((batch, n))}
-        names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-        state = [(names, self.x)]
-        given = formulas_of(setup.request)
-        self.inputs = np.zeros((1, len(given)))
-        self.table = np.zeros((1, len(setup.curves)))
-        columns = [*state, ([f"d.{name}" for name in names], self.d)]
-        columns += [(list(given), self.inputs), (list(setup.curves), self.table)]
+        names = state_names(model)
+        self.inputs = VaryingInputs(along, self.t, self.x, folder)
+        columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
         seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}
         kernel = program_kernel(variational(model, parameters), folder)
-        self.run = kernel.bind(self.out, setup.values | {"t": self.t} | seeds, columns=columns)
-        self.fill: Callable[[], None] | None = None
-        if given:
-            source = program_kernel(setup.source, folder)
-            self.fill = source.bind({"inputs": self.inputs}, setup.values | {"t": self.t}, columns=state)
+        self.run = kernel.bind(self.out, along.values | {"t": self.t} | seeds, columns=columns)
 
     def start(self) -> Array:
         """The start, S = 0 for parameters and S = 1 for the start itself."""
         rows = np.zeros((self.columns + 1, 2 * self.n))
-        rows[0] = self.setup.start
+        rows[0] = self.along.start
         if self.of_start:
             rows[-2 * self.n :] = np.eye(2 * self.n)
         return rows.ravel()
-
-    def enter(self, start: float, end: float) -> None:
-        """Times are between two breaks of the curves until the next call."""
-        for curve in self.setup.curves.values():
-            curve.enter(start, end)
 
     def __call__(self, t: float, flat: Array) -> Array:
         rows = flat.reshape(self.columns + 1, 2 * self.n)
         n = self.n
         self.t[0], self.x[0] = t, rows[0]
         self.d[: self.columns] = rows[1:]
-        for k, curve in enumerate(self.setup.curves.values()):
-            self.table[0, k] = curve(t)
-        if self.fill is not None:
-            self.fill()
+        self.inputs.fill()
         self.run()
         result = np.empty_like(rows)
         result[:, :n] = rows[:, n:]

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from substructures.analysis.expressions import read_expressions
-from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.formulas import ModelFormulas, inputs_of, require_open
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import gradient
@@ -28,11 +28,6 @@ from substructures.sensitivity import inverse_dynamics_jacobians
 #: operations without a derivative at a zero of their argument
 JUMPS = ("abs", "sign")
 SMOOTHER = "replace |x| by sqrt(x^2 + e^2) and sign(x) by x/sqrt(x^2 + e^2) with a small e, or leave the load out"
-
-
-def inputs_of(model: Model) -> tuple[str, ...]:
-    """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
-    return tuple(s.name for s in model.program.symbols if s.kind == "input")
 
 
 def require_smooth(model: Model) -> None:
@@ -57,8 +52,9 @@ def perturbation(model: Model) -> Program:
     """M, D, K, F as formulas: outputs ``metric``, ``damping``, ``stiffness`` (n, n), ``input`` (n, inputs_of(model)),
     and ``residual`` (n,): g q'' + Gamma q' q' - Q, zero where q'' is that of the motion.
 
-    Raises InvalidDocument for forces without derivative.
+    Raises InvalidDocument for closures and for forces without derivative.
     """
+    require_open(model)
     return _perturbation(Known(model.program.digest, model))
 
 
@@ -94,6 +90,7 @@ def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[s
     ``outputs``: expressions in coordinates, velocities, inputs, parameters and t; ``inputs``: default all. Raises
     InvalidDocument: bad expressions (``/outputs/i``), unknown inputs, forces without derivative, singular metric.
     """
+    require_open(model)
     require_smooth(model)
     chosen = inputs_of(model) if inputs is None else tuple(inputs)
     require_inputs(model, chosen)

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.constrained import RANK, SINGULAR, Array, Constrained, Singular
+from substructures.analysis.constrained import RANK, SINGULAR, Constrained, Singular
 from substructures.analysis.project import CLOSED, project
+from substructures.states import Array
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
 WORN = 0.3
@@ -26,11 +27,18 @@ ROUNDING = 1e-10
 
 
 class Reduction(ABC):
-    """The vector y of the integrator for a state (q, q'); its last element is the work of lossy and driving forces."""
+    """The vector y of the integrator for a state (q, q'); its last element is the work of lossy and driving forces.
+
+    ``close``: a position is singular when the share of the smallest singular value in the largest one has fallen to
+    this part of what it was at best along the motion.
+    """
+
+    close = 1e-4
 
     def __init__(self, s: Constrained, rank: int) -> None:
         self.s, self.n, self.rank = s, s.n, rank
         self.rows = s.independent_rows()
+        self.best_share = 0.0
 
     @abstractmethod
     def pack(self, q: Array, qd: Array, work: float) -> Array:
@@ -72,7 +80,9 @@ class Reduction(ABC):
         if not self.rank:
             return
         values = svdvals(self.s.G)
-        if len(values) < self.rank or not values[self.rank - 1] > 100 * RANK * values[0]:
+        share = 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
+        self.best_share = max(self.best_share, share)
+        if not share > max(100 * RANK, self.close * self.best_share):
             raise Singular(SINGULAR)
         if anew or svdvals(self.s.G[self.rows])[-1] < WORN * values[self.rank - 1]:
             pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
@@ -104,7 +114,9 @@ class Projected(Reduction):
 
 
 class Partitioned(Reduction):
-    """y = (q, q' of the independent coordinates, work)."""
+    """y = (q, q' of the independent coordinates, work); rounding in the others grows as singular values fall."""
+
+    close = 1e-3
 
     def __init__(self, s: Constrained, rank: int) -> None:
         super().__init__(s, rank)
@@ -169,4 +181,4 @@ class Partitioned(Reduction):
         return True
 
 
-METHODS: dict[str, type[Reduction]] = {"projection": Projected, "partitioning": Partitioned}
+REDUCTIONS: dict[str, type[Reduction]] = {"projection": Projected, "partitioning": Partitioned}

@@ -1,100 +1,72 @@
-"""The request of a simulation as plain data; every fault has a pointer into it."""
+"""Requests about motions of trees, closed loops and rolling bodies as plain data; every fault has a pointer.
+
+All simulations have the fields of SpanRequest: state, parameters, inputs, times, events, series, tolerances.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from decimal import Decimal
-from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from substructures.definition import Model, Name, Number, read_model
+from substructures.analysis.request_fields import (
+    Event,
+    FixedStep,
+    Positive,
+    Real,
+    Reals,
+    Signal,
+    Span,
+    require_increasing,
+)
+from substructures.analysis.velocity_constraints import VelocityConstraints
+from substructures.definition import Model as Document
+from substructures.definition import Name, Number, read_model
 
 MAX_OUTPUTS = 1_000_000
 MAX_EVENTS = 100
-
-
-def _real(value: Any) -> Any:
-    """A finite number; no text, no truth value."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, np.floating, np.integer)):
-        raise PydanticCustomError("number-expected", "a number is needed")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise PydanticCustomError("number-not-finite", "the number is not finite")
-    return number
-
-
-Real = Annotated[float, BeforeValidator(_real), WithJsonSchema({"type": "number"})]
-Positive = Annotated[Real, Field(gt=0)]
 TAYLOR = "Taylor"
-Method = Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"]
+R = TypeVar("R", bound="StateRequest")
 
 
-class Table(Model):
-    """An input by a table of values over time [s]: piecewise constant, linear, or a cubic spline."""
+class StateRequest(Document):
+    """A state, parameters and inputs."""
 
-    times: Annotated[tuple[Real, ...], Field(min_length=2, max_length=100_000)]
-    values: Annotated[tuple[Real, ...], Field(min_length=2, max_length=100_000)]
-    interpolation: Literal["hold", "linear", "cubic"] = "linear"
+    q: Any = Field(None, description="coordinates: a list, or an object by name; rad, m")
+    qd: Any = Field(None, description="velocities, 0 by default; rad/s, m/s")
+    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    inputs: dict[str, Signal] = Field({}, description="number, expression in q, q' and t, or table; N m or N")
 
-    @model_validator(mode="after")
-    def _ordered(self) -> Table:
-        if len(self.times) != len(self.values):
-            raise PydanticCustomError("wrong-length", "as many 'values' as 'times' are needed")
-        if any(b <= a for a, b in pairwise(self.times)):
-            raise PydanticCustomError("not-increasing", "'times' must increase")
-        return self
+    @classmethod
+    def read(cls: type[R], data: Any) -> R:
+        """From plain data, or with numpy arrays. Raises InvalidDocument with a pointer to every fault."""
+        return read_model(cls, data)
 
 
-class Event(Model):
-    """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
-
-    name: Name
-    quantity: Number
-    level: Real = 0.0
-    direction: Literal["rising", "falling", "both"] = "both"
-    action: Literal["stop", "record"] = "stop"
-
-
-class FixedStep(Model):
-    """Real-time mode: every step takes the same, known time. Semi-implicit Euler, or Runge-Kutta of fourth order."""
-
-    step: Positive = Field(description="s")
-    method: Literal["semi-implicit-euler", "rk4"] = "rk4"
-
-
-class SimulationRequest(Model):
-    """q'' = g^-1 (Q - Gamma q' q') from a start, over a span of time.
+class SpanRequest(StateRequest):
+    """A motion from a start over a span of time.
 
     At most one of ``times``, ``step`` and ``count`` says where results are wanted (default: 101 of equal distance).
     """
 
-    q: Any = Field(description="coordinates at the start: a list, or an object by name; rad, m")
-    qd: Any = Field(None, description="velocities at the start, 0 by default; rad/s, m/s")
-    span: tuple[Real, Real] = Field(description="s")
-    times: Annotated[tuple[Real, ...], Field(max_length=MAX_OUTPUTS)] | None = Field(None, description="s")
+    span: Span = Field(description="s")
+    times: Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None = Field(None, description="s")
     step: Positive | None = Field(None, description="s")
     count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Number | Table] = Field({}, description="number, expression in q, q' and t, or table")
     events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = ()
     series: dict[Name, Number] = Field({}, max_length=MAX_EVENTS, description="expressions to be followed")
-    method: Method = "DOP853"
-    relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-9
+    relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-10
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
+    max_step: Positive | None = Field(None, description="s")
     max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
     drift_limit: Positive = Field(1e-6, description="largest relative drift of first integrals of a right result")
-    fixed_step: FixedStep | None = None
 
     @model_validator(mode="after")
-    def _one_grid(self) -> SimulationRequest:
+    def _one_grid(self) -> SpanRequest:
         if sum(x is not None for x in (self.times, self.step, self.count)) > 1:
             raise PydanticCustomError("one-grid", "give one of 'times', 'step' and 'count'")
         if self.span[1] <= self.span[0]:
@@ -104,15 +76,14 @@ class SimulationRequest(Model):
         return self
 
     @model_validator(mode="after")
-    def _inside(self) -> SimulationRequest:
+    def _inside(self) -> SpanRequest:
         times = self.times or ()
-        if any(b <= a for a, b in pairwise(times)):
-            raise PydanticCustomError("not-increasing", "'times' must increase")
+        require_increasing(times)
         if times and not self.span[0] <= times[0] <= times[-1] <= self.span[1]:
             raise PydanticCustomError("outside", "'times' must lie in the span")
         return self
 
-    def outputs(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+    def outputs(self) -> NDArray[np.float64]:
         """The times where results are wanted."""
         start, end = self.span
         if self.times is not None:
@@ -123,12 +94,39 @@ class SimulationRequest(Model):
             return np.minimum(grid, end) if end - grid[-1] < 1e-9 * self.step else np.append(grid, end)
         return np.linspace(start, end, self.count or 101)
 
-    @classmethod
-    def read(cls, data: Mapping[str, Any]) -> SimulationRequest:
-        """A request from plain data, or with numpy arrays. Raises InvalidDocument with a pointer to every fault."""
-        plain = data if not isinstance(data, Mapping) else {k: _listed(v, k) for k, v in data.items()}
-        return read_model(cls, plain)
+
+class SimulationRequest(SpanRequest):
+    """q'' = g^-1 (Q - Gamma q' q') of a tree without closures."""
+
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
+    fixed_step: FixedStep | None = None
 
 
-def _listed(value: Any, key: str) -> Any:
-    return value.tolist() if isinstance(value, np.ndarray) and key in ("span", "times") else value
+class LoopRequest(StateRequest):
+    """Loops at a state. ``fixed`` coordinates keep their values while the loops are closed; ``prescribed`` coordinates
+    move as given: a number, an expression in t, or a table.
+    """
+
+    t: Real = 0.0
+    fixed: tuple[str, ...] = Field((), max_length=500)
+    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+
+
+class ClosedRequest(SpanRequest):
+    """A motion with closures from the closed state nearest to ``q``, ``qd``; see LoopRequest.
+
+    ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
+    """
+
+    fixed: tuple[str, ...] = Field((), max_length=500)
+    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+    method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
+    reduction: Literal["projection", "partitioning"] = "projection"
+
+
+class RollingRequest(SpanRequest, VelocityConstraints):
+    """A motion with velocity constraints from ``q`` and quasi-velocities ``v``, or velocities ``qd`` that meet them."""
+
+    v: Any = Field(None, description="quasi-velocities: a list, or an object by name; 0 by default")
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"] = "DOP853"
+    form: Literal["voronets", "boltzmann-hamel"] = "voronets"

@@ -6,21 +6,20 @@ algebra. W' is the power of the forces without potential; H - W is constant for 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from substructures.analysis.formulas import ModelFormulas
-from substructures.analysis.known import Known, program_kernel
-from substructures.analysis.time_inputs import Curve
+from substructures.analysis.inputs import Along, VaryingInputs, state_names
+from substructures.analysis.known import Known
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
 
 
@@ -52,8 +51,8 @@ def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None =
 class RightHandSide:
     """x' = f(t, x). ``values``: numbers of parameters and constant inputs; ``zero``: symbols that are 0.
 
-    ``formulas``: a program with the output ``inputs`` for the names ``given``, in state and time; ``curves``: inputs by
-    tables. Not for several threads at a time. Raises InvalidDocument as forward_dynamics, and MissingValue.
+    ``along``: inputs that vary. Not for several threads at a time. Raises InvalidDocument as forward_dynamics, and
+    MissingValue.
     """
 
     def __init__(
@@ -61,29 +60,18 @@ class RightHandSide:
         model: Model,
         values: Mapping[str, float],
         zero: Iterable[str] = (),
-        formulas: tuple[Program, tuple[str, ...]] | None = None,
-        curves: Mapping[str, Curve] | None = None,
+        along: Along | None = None,
         folder: Path | None = None,
     ) -> None:
         self.n = n = model.dof
-        self.curves = dict(curves or {})
         self.kernel = forward_kernel(model, zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
-        self._table = np.zeros((1, len(self.curves)))
-        names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-        state = [(names, self._x)]
-        numbers = {name: x for name, x in values.items() if name not in self.curves}
-        columns = [*state, (list(self.curves), self._table)]
-        self._inputs: Callable[[], None] | None = None
-        if formulas is not None and formulas[1]:
-            found = np.zeros((1, len(formulas[1])))
-            columns.append((list(formulas[1]), found))
-            kernel = program_kernel(formulas[0], folder)
-            self._inputs = kernel.bind({"inputs": found}, numbers | {"t": self._t}, columns=state)
+        self.inputs = None if along is None else VaryingInputs(along, self._t, self._x, folder)
+        columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
-        self._run = self.kernel.bind(outputs, numbers | {"t": self._t}, columns=columns)
+        self._run = self.kernel.bind(outputs, dict(values) | {"t": self._t}, columns=columns)
 
     @property
     def size(self) -> int:
@@ -91,23 +79,21 @@ class RightHandSide:
         return 2 * self.n + self.has_power
 
     def enter(self, start: float, end: float) -> None:
-        """Times are between two breaks of the curves until the next call."""
-        for curve in self.curves.values():
-            curve.enter(start, end)
+        """Times are between two breaks of the inputs until the next call."""
+        if self.inputs is not None:
+            self.inputs.enter(start, end)
 
     def leave(self) -> None:
         """Any time again."""
-        for curve in self.curves.values():
-            curve.leave()
+        if self.inputs is not None:
+            self.inputs.leave()
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""
         self._t[0] = t
         self._x[0] = x[: 2 * self.n]
-        for k, curve in enumerate(self.curves.values()):
-            self._table[0, k] = curve(t)
-        if self._inputs is not None:
-            self._inputs()
+        if self.inputs is not None:
+            self.inputs.fill()
         self._run()
         return self._out[0][0], self._out[1][0], float(self._out[2][0])
 

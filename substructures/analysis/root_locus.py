@@ -12,13 +12,13 @@ from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
 from substructures.analysis.equilibria import equilibria
-from substructures.analysis.requests import Real
+from substructures.analysis.request_fields import Real
 from substructures.definition import Model as Document
 from substructures.definition import read_model
 from substructures.errors import InvalidDocument
 from substructures.model import Model
+from substructures.states import Array
 
-Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 

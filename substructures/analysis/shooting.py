@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.adjoint import ADJOINT, MOTION, TERMINAL, WEIGHT, AdjointEquations, adjoint_equations
-from substructures.analysis.control import Problem, inputs_of
+from substructures.analysis.control import Problem
+from substructures.analysis.formulas import inputs_of
 from substructures.compile import compile_program
 from substructures.errors import MissingValue
 from substructures.model import Model

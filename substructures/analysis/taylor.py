@@ -13,29 +13,30 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from substructures.analysis.inputs import Along
 from substructures.analysis.right_hand_side import ACCELERATION, POWER, forward_dynamics
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.model import Model
+from substructures.states import Array
 
 try:
     import heyoka
 except ImportError:  # not installed: the method is refused
     heyoka = None
 
-Array = NDArray[np.float64]
 BINARY = {"add": "__add__", "sub": "__sub__", "mul": "__mul__", "div": "__truediv__"}
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")
 
 
-def require_taylor(tables: Sequence[str]) -> None:
-    """Raises InvalidDocument where heyoka is missing, or an input is a table."""
+def require_taylor(tables: Sequence[str], max_step: float | None) -> None:
+    """Raises InvalidDocument where heyoka is missing, an input is a table, or steps are limited."""
     if heyoka is None:
         message = "the method 'Taylor' needs the package 'heyoka': install it, or leave 'method' out"
         raise InvalidDocument.at("/method", "not-installed", message)
+    if max_step is not None:
+        message = "the method 'Taylor' chooses its steps: leave 'max_step' out, or take another method"
+        raise InvalidDocument.at("/max_step", "not-supported", message)
     if tables:
         message = f"the method 'Taylor' takes no tables ('{tables[0]}'): use an expression in t, or another method"
         raise InvalidDocument.at("/method", "not-supported", message)
@@ -54,19 +55,13 @@ class _System:
     source: Program = field(compare=False)
 
 
-def taylor_stepper(
-    model: Model,
-    values: Mapping[str, float],
-    zero: frozenset[str],
-    formulas: tuple[Program, tuple[str, ...]],
-    tolerance: float,
-    has_power: bool,
-) -> _Factory:
-    """Makes steppers with the interface of SciPy's for a model; arguments as for RightHandSide."""
-    source, inputs = formulas
+def taylor_stepper(along: Along, tolerance: float, has_power: bool) -> _Factory:
+    """Makes steppers with the interface of SciPy's for a request that was read."""
+    model, source = along.model, along.source
     key = (model.program.digest, source.digest)
-    integrator, names = _compiled(_System(key, zero, inputs, max(tolerance, 1e-15), has_power, model, source))
-    return _Factory(integrator, [values[name] for name in names])
+    system = _System(key, along.zero, along.formulas, max(tolerance, 1e-15), has_power, model, source)
+    integrator, names = _compiled(system)
+    return _Factory(integrator, [along.values[name] for name in names])
 
 
 @lru_cache(maxsize=16)

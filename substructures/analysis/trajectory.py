@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from substructures.analysis.request_fields import Event
+from substructures.states import Array
+
 Rule = Literal["constant", "falling", "zero"]
 
 
@@ -31,6 +32,16 @@ class Check:
     limit: float
     time: float | None = None
 
+    @classmethod
+    def of(
+        cls, about: tuple[str, Rule, str, str], violation: Array, t: Array, scale: float, limit: float, noise: float = 0
+    ) -> Check:
+        """``about``: name, rule, reason, unit; ``violation`` (K,): allowed up to limit * scale + noise."""
+        size = np.abs(violation)
+        bad = np.flatnonzero(~(size <= limit * scale + noise))
+        first = float(t[bad[0]]) if len(bad) else None
+        return cls(*about, float(np.nanmax(size, initial=0.0)), scale, limit, first)
+
     @property
     def holds(self) -> bool:
         """Whether the condition holds everywhere."""
@@ -50,6 +61,11 @@ class Crossing:
     t: float
     q: Array
     qd: Array
+
+
+def crossings(events: Sequence[Event], found: Sequence[tuple[int, float, Array]], n: int) -> tuple[Crossing, ...]:
+    """Zeros that an integration found (event, time, state (q, q', ...)) as crossings."""
+    return tuple(Crossing(events[k].name, t, x[:n], x[n : 2 * n]) for k, t, x in found)
 
 
 @dataclass(frozen=True)

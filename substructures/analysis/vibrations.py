@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eig, eigh
 
-Array = NDArray[np.float64]
+from substructures.states import Array
+
 ComplexArray = NDArray[np.complex128]
 Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
 

@@ -7,7 +7,8 @@ import io
 
 import numpy as np
 
-from substructures.analysis.trajectory import Array, Trajectory
+from substructures.analysis.trajectory import Trajectory
+from substructures.states import Array
 
 
 def to_npz(trajectory: Trajectory) -> bytes:

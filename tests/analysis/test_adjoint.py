@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import seeds, shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 from scipy.integrate import solve_ivp
 
-from substructures import Definition, InvalidDocument, MissingValue, Model, TreeSpec, catalogue, couple, derive
+from substructures import InvalidDocument, MissingValue, Model
 from substructures.analysis.adjoint import adjoint_equations
 from substructures.analysis.control import Cost, initial_state, inputs_of, read_problem
 from substructures.analysis.gradient import GradientRequest, cost_gradient
@@ -25,12 +25,6 @@ STENCIL = np.array([-2, -1, 1, 2])
 def central(values: Any, h: float) -> float:
     """Derivative from values at the points of STENCIL."""
     return float(values[0] - 8 * values[1] + 8 * values[2] - values[3]) / (12 * h)
-
-
-@cache
-def shipped(name: str) -> Model:
-    tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": name}]}
-    return couple(TreeSpec.read(tree), {"x": derive(Definition.read(catalogue.load(name)))})
 
 
 def random_problem(seed: int) -> tuple[Model, Plain]:
@@ -64,7 +58,7 @@ def random_problem(seed: int) -> tuple[Model, Plain]:
     return model, request | {"values": {name: list(rng.uniform(-1, 1, nodes)) for name in controls}}
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(3, 6))
 def test_gradient_against_finite_differences(seed: int) -> None:
     """By the controls, the states at the starts, and parameters, of the cost and of the state at an end: 1e-6."""
     model, request = random_problem(seed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model, random_model
+from analysis_models import catalogue_model, random_model, seeds
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument
@@ -29,7 +29,7 @@ def test_all_four_of_the_double_pendulum() -> None:
     assert list(verdicts.values()).count("unstable") == 3
 
 
-@pytest.mark.parametrize("number", range(5))
+@pytest.mark.parametrize("number", seeds(3, 5))
 def test_forces_vanish_on_random_trees(number: int) -> None:
     """What is found is an equilibrium by the independent way over evaluate."""
     model = random_model(number, loads=0)

@@ -7,20 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import shipped
 from random_trees import Plain, model_of
 from scipy.integrate import solve_ivp
 
-from substructures import Definition, InvalidDocument, Model, TreeSpec, catalogue, couple, derive
+from substructures import InvalidDocument, Model
 from substructures.analysis.control import read_problem
 from substructures.analysis.optimal_control import Optimum, optimal_control
 from substructures.analysis.shooting_program import OptimalControlRequest, ShootingProgram
 from substructures.evaluation import evaluate
-
-
-@cache
-def shipped(name: str) -> Model:
-    tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": name}]}
-    return couple(TreeSpec.read(tree), {"x": derive(Definition.read(catalogue.load(name)))})
 
 
 @cache

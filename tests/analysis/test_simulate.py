@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model, defaults, random_model
+from analysis_models import catalogue_model, defaults, random_model, seeds
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument, MissingValue
@@ -36,7 +36,7 @@ def names(trajectory: Trajectory) -> set[str]:
     return {check.name for check in trajectory.checks}
 
 
-@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize("number", seeds(4, 8))
 def test_the_right_hand_side_is_forward_dynamics(number: int) -> None:
     """L^T D L in the graph against Cholesky in numbers, on random trees with loads and inputs."""
     model = random_model(number)
@@ -93,7 +93,7 @@ def test_a_free_body_keeps_all_six_momenta() -> None:
     assert max(check.relative for check in motion.checks) < 1e-11
 
 
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize("number", seeds(4, 6))
 def test_balance_of_energy_on_random_trees(number: int) -> None:
     """With dampers, loads and inputs: H less the work of all forces without potential is constant."""
     model = random_model(number)
@@ -255,7 +255,7 @@ def test_a_motion_that_cannot_go_on_fails_with_advice(method: str) -> None:
     motion = simulate(model_of(definition, (0, 0, 0)), {"q": [0], "span": [0, 2], "step": 0.1, "method": method})
     assert motion.status == "failed"
     assert "the integrator could not go on" in motion.message
-    assert 10 <= len(motion.t) <= 16
+    assert 10 <= len(motion.t) <= 17
     # LSODA keeps its tolerance less strictly
     np.testing.assert_allclose(motion.qd[:15, 0], np.tan(motion.t[:15]), rtol=1e-4)
 
@@ -298,7 +298,7 @@ def test_steps_are_limited() -> None:
         ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9"),
         ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1"),
         ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1"),
+        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1/values"),
         ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity"),
         ({"series": {"a": "nothing"}}, "/series/a"),
         ({"series": {"energy": "x.q1"}}, "/series/energy"),

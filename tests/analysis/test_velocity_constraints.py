@@ -12,6 +12,7 @@ from random_trees import Kind, Plain, model_of, random_definition
 from substructures import InvalidDocument, Model
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.simulate import simulate
 from substructures.analysis.simulate_closed import simulate_closed
 from substructures.analysis.simulate_rolling import FORMS, simulate_rolling
 from substructures.evaluation import evaluate
@@ -265,6 +266,20 @@ def test_other_quasi_velocities_describe_the_same_motion() -> None:
     assert two.is_right
     np.testing.assert_allclose(two.q, one.q, atol=1e-8)
     assert np.abs(one.series["work"]).max() > 0.01
+
+
+def test_rolling_motions_have_events_series_and_inputs_of_all_kinds() -> None:
+    """A sleigh that is damped along by an input of its velocities, pushed by a table, and stopped by an event."""
+    push = {"times": [0, 0.5, 9], "values": [1, 0, 0], "interpolation": "hold"}
+    request: Plain = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0], "v": {"u": 0.1}, "span": [0, 9]}
+    request |= {"inputs": {"tau.s.x": "-s.x'/2", "tau.s.f": push}, "series": {"speed": "sqrt(s.x'^2 + s.y'^2)"}}
+    event = {"name": "turned", "quantity": "s.f", "level": 0.4}
+    motion = simulate(sleigh(), request | {"events": [event]})
+    assert (motion.status, [e.name for e in motion.events]) == ("stopped", ["turned"])
+    assert motion.is_right, motion.checks
+    np.testing.assert_allclose(motion.q[-1, 2], 0.4, atol=1e-10)
+    np.testing.assert_allclose(motion.series["tau.s.x"], -motion.qd[:, 0] / 2)
+    np.testing.assert_allclose(motion.series["speed"], np.hypot(motion.qd[:, 0], motion.qd[:, 1]))
 
 
 def test_closed_loops_in_independent_velocities() -> None:
