@@ -13,9 +13,10 @@ from service.analyses.source import Source
 from service.cache import Cache
 from substructures.analysis.adjoint import adjoint_equations
 from substructures.analysis.base_parameters import BaseParameters, base_parameters
-from substructures.analysis.control import Cost, inputs_of
+from substructures.analysis.control import Cost
 from substructures.analysis.curvature import curvature
 from substructures.analysis.first_integrals import first_integrals
+from substructures.analysis.formulas import inputs_of
 from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.perturbation import perturbation, state_space

@@ -18,7 +18,6 @@ from service.analyses.requests import (
 )
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Report, Source
-from substructures.analysis.closed_requests import ClosedRequest, LoopRequest, RollingRequest
 from substructures.analysis.curvature import curvature_values
 from substructures.analysis.equilibria import EquilibriaRequest, equilibria
 from substructures.analysis.gradient import GradientRequest, cost_gradient
@@ -27,27 +26,15 @@ from substructures.analysis.linearise import LinearisationRequest, linearise
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.optimal_control import optimal_control
 from substructures.analysis.parameter_sensitivity import sensitivities
-from substructures.analysis.requests import SimulationRequest
+from substructures.analysis.requests import ClosedRequest, LoopRequest, RollingRequest, SimulationRequest, SpanRequest
 from substructures.analysis.root_locus import RootLocusRequest, root_locus
 from substructures.analysis.shooting_program import OptimalControlRequest
 from substructures.analysis.simulate import simulate
-from substructures.analysis.simulate_closed import simulate_closed
-from substructures.analysis.simulate_rolling import simulate_rolling
-from substructures.analysis.trajectory import Trajectory
 from substructures.definition import read_model
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.states import read_states
 
 Request = Mapping[str, Any]
-#: fields that only a motion with velocity constraints has
-ROLLING = ("constraints", "velocities", "independent", "v", "form")
-
-
-MOTIONS: dict[type[RollingRequest | ClosedRequest | SimulationRequest], Callable[..., Trajectory]] = {
-    RollingRequest: simulate_rolling,
-    ClosedRequest: simulate_closed,
-    SimulationRequest: simulate,
-}
 
 
 @dataclass(frozen=True)
@@ -80,19 +67,19 @@ def check_request(name: str, request: Any, is_closed: bool) -> None:
     read_model(_motion_schema(given, is_closed) if name == "simulations" else ANALYSES[name].schema, given)
 
 
-def _motion_schema(request: Request, is_closed: bool) -> type[RollingRequest | ClosedRequest | SimulationRequest]:
-    if any(name in request for name in ROLLING):
+def _motion_schema(request: Request, is_closed: bool) -> type[SpanRequest]:
+    """As :func:`substructures.analysis.simulate.simulate` chooses."""
+    if request.get("constraints"):
         return RollingRequest
-    return ClosedRequest if is_closed or "prescribed" in request else SimulationRequest
+    return ClosedRequest if is_closed or request.get("prescribed") else SimulationRequest
 
 
 def _simulation(source: Source, request: Request, report: Report) -> Any:
     model, n = source.model, source.model.dof
-    schema = _motion_schema(request, bool(model.closures))
-    read = schema.read(request)
+    read = read_model(_motion_schema(request, bool(model.closures)), request)
     rows = sum(len(closure.rows) for closure in model.closures)
     _check_size(source, len(read.outputs()), 4 * n + rows + 10 + len(getattr(read, "series", ())) + len(read.inputs))
-    return MOTIONS[schema](model, request, report, source.folder)
+    return simulate(model, request, report, source.folder)
 
 
 def _sensitivities(source: Source, request: Request, report: Report) -> Any:

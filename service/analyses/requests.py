@@ -6,14 +6,13 @@ from typing import Any, Literal
 
 from pydantic import Field, RootModel
 
-from substructures.analysis.closed_requests import ClosedRequest, RollingRequest
-from substructures.analysis.requests import SimulationRequest
+from substructures.analysis.requests import ClosedRequest, RollingRequest, SimulationRequest
 from substructures.definition import Model as Document
 
 
 class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
-    """Of an open tree; of a tree with closures, or with prescribed coordinates; with velocity constraints (``v``,
-    ``constraints``, ``velocities``, ``independent`` or ``form`` is given).
+    """With ``constraints``: velocity constraints; else of a tree with closures, or with ``prescribed`` coordinates;
+    else of an open tree.
     """
 
 

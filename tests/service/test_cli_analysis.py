@@ -65,7 +65,7 @@ def test_errors_name_the_place(folder: Path, capsys: pytest.CaptureFixture[str])
         (["analyse", tree, "nothing"], "there is no quantity 'nothing'"),
         (["analyse", tree, "metric", swing], "no request"),
         (["analyse", tree, "adjoint", "--running", "nobody"], "/query/running"),
-        (["analyse", tree, "simulations"], "/q: "),
+        (["analyse", tree, "simulations"], "/span: "),
         (["simulate", str(folder / "nothing.yaml"), swing], "nothing.yaml: No such file"),
     ):
         assert main(arguments) == 1
@@ -97,7 +97,7 @@ def test_on_a_server(folder: Path, settings: Settings, capsys: pytest.CaptureFix
         assert main(["analyse", "cell", "first_integrals", "--bind", "defaults", *server]) == 0
         assert "energy in J, constant" in capsys.readouterr().out
         assert main(["analyse", "cell", "simulations", *server]) == 1
-        assert "/q: " in capsys.readouterr().err
+        assert "/span: " in capsys.readouterr().err
 
 
 def test_what_takes_long_is_waited_for(folder: Path, settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
