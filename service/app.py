@@ -18,6 +18,7 @@ from service.pages import routes as pages
 from service.queries import idempotency
 from service.routes import (
     aliases,
+    analyses,
     formulas,
     job_streams,
     jobs,
@@ -37,6 +38,7 @@ ROUTES = (
     formulas,
     pictures,
     trees,
+    analyses,
     models,
     kernels,
     jobs,

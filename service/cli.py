@@ -13,10 +13,12 @@ import httpx2
 
 from service import __version__, cli_jobs, demo, keys, logs, openapi
 from service.app import bare_app
+from service.cli_analysis import add_commands
 from service.client import Client, ProblemError
 from service.database import Database, DatabaseError
 from service.migrate import MigrationError
 from service.queries.keys import list_keys, revoke_key
+from service.refusals import Refused
 from service.server import serve, work
 from service.settings import Settings, SettingsError, from_environment
 from substructures.definition import Definition
@@ -25,7 +27,7 @@ from substructures.lean import lean
 from substructures.part import derive
 from substructures.printers import FORMATS, render
 
-EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError)
+EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -80,6 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     cli_jobs.add_server(command)
 
     cli_jobs.register(commands, _add, _add_database)
+    add_commands(commands, _add)
     _add(commands, "openapi", _openapi, "print the OpenAPI document")
     _add_key_commands(commands)
     return parser

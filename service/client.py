@@ -81,9 +81,17 @@ class Client:
         """Couple one more instance onto a tree; the new revision."""
         return self._made(f"/v1/trees/{tree}/couplings", instance)
 
-    def formula(self, tree: str, quantity: str, format: str = "text", form: str = "compact", bind: str = "") -> str:  # noqa: A002 -- the name in the contract
-        """A quantity of a tree as text in one of the formats."""
-        wanted = {"format": format, "form": form, "bind": bind}
+    def formula(
+        self,
+        tree: str,
+        quantity: str,
+        format: str = "text",  # noqa: A002 -- the name in the contract
+        form: str = "compact",
+        bind: str = "",
+        **options: str | list[str],
+    ) -> str:
+        """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..."""
+        wanted = {"format": format, "form": form, "bind": bind, **options}
         return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
@@ -98,6 +106,32 @@ class Client:
         body = b"".join(write_npz(given).pieces)
         with self._transfer(path, body, NPZ) as answer:
             return _result(view_npz(read_all(answer)))
+
+    def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
+        """Numbers that follow from the equations of motion: ``linearisations``, ``equilibria``, ``root-loci``, ..."""
+        return dict(json.loads(self.analysis(tree, analysis, request)[0]))
+
+    def simulate(self, tree: str, **request: Any) -> dict[str, Any]:
+        """A motion with its checks; ``t``, ``q``, ``qd`` and ``series`` are arrays."""
+        content, _ = self.analysis(tree, "simulations", request, NPZ)
+        found = nested(view_npz(np.frombuffer(content, np.uint8)))
+        return {**json.loads(str(found.pop("summary"))), **found}
+
+    def analysis(
+        self, tree: str, analysis: str, request: Any, media_type: str = "application/json"
+    ) -> tuple[bytes, dict[str, Any]]:
+        """The answer to a request for numbers in one of its media types, and ``status`` and ``is_right`` of a motion.
+
+        Waits where it takes so long that it becomes a job.
+        """
+        plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in request.items()}
+        path, headers = f"/v1/trees/{tree}/{analysis}", {"Accept": media_type}
+        answer = self.request("POST", path, plain, headers=headers)
+        if answer.status_code != 202:
+            right = answer.headers.get("trajectory-right", "true") == "true"
+            return answer.content, {"status": answer.headers.get("trajectory-status", "finished"), "is_right": right}
+        item = self._item_of_job(answer.json()["id"])
+        return self.request("GET", item["files"][0]["href"]).content, item["result"]
 
     def evaluate_batches(
         self, tree: str, batches: Iterable[Mapping[str, Any]], **constants: Any
@@ -128,11 +162,16 @@ class Client:
 
     def _made_by_job(self, job: str) -> dict[str, Any]:
         """What a request has made that took so long that it became a job of one item."""
+        return dict(self.request("GET", self._item_of_job(job)["result"]["location"]).json())
+
+    def _item_of_job(self, job: str) -> dict[str, Any]:
         self.wait(job)
         (item,) = self.job_items(job)
         if item["problem"] is not None:
             raise ProblemError(item["problem"]["status"], item["problem"])
-        return dict(self.request("GET", item["result"]["location"]).json())
+        if item["state"] != "succeeded":
+            raise ProblemError(409, {"detail": f"the job {job} was {item['state']}"})
+        return item
 
     def submit_job(self, submission: Any) -> dict[str, Any]:
         """Queue ``{"kind", "items"}`` or ``{"kind", "template", "choices"}``: the job."""

@@ -19,7 +19,7 @@ class JobRequest(Shape):
         extra="forbid", json_schema_extra={"oneOf": [{"required": ["items"]}, {"required": ["template"]}]}
     )
 
-    kind: str = Field(description="assemble, evaluate, export, derive, verify")
+    kind: str = Field(description="assemble, evaluate, export, derive, verify, simulate, optimise, analyse")
     items: list[dict[str, Any]] | None = Field(None, description="what an item is depends on the kind")
     template: dict[str, Any] | None = Field(None, description="an item that is copied for every combination of choices")
     choices: dict[str, list[Any]] | None = Field(None, description="values by place in the template")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from service.problems import Refused, unprocessable
+from collections.abc import Sequence
+
+from service.refusals import Refused, unprocessable
 from substructures.printers import FORMATS
 
 JSON = "json"
@@ -21,6 +23,15 @@ def choose_format(wanted: str | None, accept: str) -> str:
             if _matches(pattern, media.partition(";")[0]):
                 return name
     raise Refused(406, "not-acceptable", f"none of these formats is acceptable: {_known()}")
+
+
+def choose_media_type(accept: str, offered: Sequence[str]) -> str:
+    """One of the media types offered, the first when all are welcome. Raises Refused 406."""
+    for pattern in by_preference(accept or "*/*"):
+        for media in offered:
+            if _matches(pattern, media):
+                return media
+    raise Refused(406, "not-acceptable", f"answers are {', '.join(offered)}")
 
 
 def choose_form(wanted: str) -> str:

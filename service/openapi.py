@@ -7,10 +7,13 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from service.analyses.numbers import ANALYSES
 from service.job_schemas import CancelRequest, JobRequest
 from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
+from substructures.analysis.velocity_constraints import VelocityConstraints
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
 
@@ -21,8 +24,17 @@ PROBLEM: dict[int | str, dict[str, Any]] = {
         "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
     }
 }
+_ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
 _REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
-_READ_BY_US = (Definition, TreeSpec, Instance, *_REQUESTS, Problem)
+_READ_BY_US: tuple[type[BaseModel], ...] = (
+    Definition,
+    TreeSpec,
+    Instance,
+    *_REQUESTS,
+    VelocityConstraints,
+    *_ANALYSED,
+    Problem,
+)
 
 
 def document(app: FastAPI) -> dict[str, Any]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import orjson
 
+from service.analyses.formulas import QUANTITIES, Made
 from service.refusals import not_found, unprocessable
 from substructures.derived import DERIVED
 from substructures.errors import InvalidDocument, TooLarge
@@ -54,7 +55,8 @@ def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity."""
     if quantity in (*DERIVED, *OUTPUTS) or any(name in model.program.outputs for name in quantities(quantity)):
         return
-    known = ", ".join(dict.fromkeys([*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum"]))
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
+    known = ", ".join(dict.fromkeys(names))
     raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
 
 
@@ -117,6 +119,23 @@ def text_of(
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, coordinates)
     return _joined(members, text) if style.format == JSON and members else text
+
+
+def made_text(found: Made, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT) -> str:
+    """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
+    integrals in text. Raises as :func:`bound`, and TooLarge."""
+    text = render(bound(found.program, parameters, style.bind), style.format, style.form, limit=limit)
+    if style.format == JSON and found.members:
+        return _joined(found.members, text)
+    if style.format != "text":
+        return text
+    return "\n".join([text.rstrip("\n"), *_notes(found.members), ""])
+
+
+def _notes(members: Mapping[str, Any]) -> Iterator[str]:
+    """What is said for people about first integrals."""
+    for each in members.get("integrals", ()):
+        yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
 
 
 def _with_entries(text: str, program: Program, style: Style, coordinates: Sequence[str]) -> str:

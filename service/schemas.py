@@ -253,6 +253,17 @@ class KernelsView(Shape):
     kernels: list[KernelView]
 
 
+class AnalysisResult(BaseModel):
+    """The result of an analysis. What goes wrong on the way is a value: ``status`` and ``message``, with advice.
+
+    A trajectory has ``coordinates``, ``t`` (K,) in s, ``q``, ``qd`` (K, n), ``series`` by name, and ``checks``: each
+    with ``name``, ``rule``, ``reason``, ``unit``, ``worst``, ``scale``, ``limit``, ``holds`` and ``time``, when it was
+    violated first; ``is_right`` is false when one is violated. Numbers that are not finite are null.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+
 class LimitsView(BaseModel):
     """Every limit with its value."""
 

@@ -6,17 +6,19 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
+from service.analyses.formulas import QUANTITIES
 from service.answers import JSON, Answer, Stream, etag
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrow import MEDIA_TYPE as ARROW
 from service.negotiation import MEDIA_TYPES
 from service.once import Commit, OnceSpooled
-from service.operations import models, trees
+from service.operations import analyses, models, trees
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
 from service.requests import SpooledBody, StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, deferred
+from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
 from service.schemas import EvaluationResult
@@ -62,11 +64,21 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
-def get_quantity(ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf) -> Response:
-    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ..."""
+def get_quantity(
+    ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf
+) -> Response:
+    """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...
+
+    What follows from them (first_integrals, perturbation, curvature, ...) is described by further members of the JSON
+    answer.
+    """
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
+    if quantity in QUANTITIES:
+        source = analyses.source_of(store, tree, model)
+        tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
+        return conditional(request, tag, is_pinned(ref), lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
     tag = etag(tree.digest, quantity, *style.identity)
 

@@ -371,7 +371,8 @@ def test_what_cannot_be_resolved_is_refused_with_a_pointer(
 
 
 def test_every_kind_is_tried_here() -> None:
-    assert KINDS == ("assemble", "evaluate", "export", "derive", "verify")
+    assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
+    assert KINDS[5:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:

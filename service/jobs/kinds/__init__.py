@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.jobs.engine import Outcome
+from service.jobs.kinds.analyse import analysis_kind
 from service.jobs.kinds.assemble import ASSEMBLE
 from service.jobs.kinds.choices import combinations
 from service.jobs.kinds.derive import DERIVE
@@ -28,6 +29,9 @@ _KINDS: dict[str, Kind] = {
     "export": EXPORT,
     "derive": DERIVE,
     "verify": VERIFY,
+    "simulate": analysis_kind("simulations"),
+    "optimise": analysis_kind("optimal-controls"),
+    "analyse": analysis_kind(),
 }
 KINDS = tuple(_KINDS)
 FIELDS = ("kind", "items", "template", "choices")

@@ -1,0 +1,1 @@
+"""What follows from the equations of motion, by name: formulas and numbers, for routes, jobs and the command line."""

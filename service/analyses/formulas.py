@@ -1,0 +1,219 @@
+"""Formulas that follow from a model, as quantities of a tree with options: first integrals, perturbation, curvature.
+
+Options are texts by name, as in a query: ``{"controls": ("tau.arm.q1",), "running": ("tau.arm.q1^2",)}``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from service.analyses.source import Source
+from service.cache import Cache
+from substructures.analysis.adjoint import adjoint_equations
+from substructures.analysis.base_parameters import BaseParameters, base_parameters
+from substructures.analysis.control import Cost
+from substructures.analysis.curvature import curvature
+from substructures.analysis.first_integrals import first_integrals
+from substructures.analysis.formulas import inputs_of
+from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
+from substructures.analysis.parameter_sensitivity import sensitivity_formulas
+from substructures.analysis.perturbation import perturbation, state_space
+from substructures.analysis.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.routh import routh
+from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.expr.program import Program
+
+Options = Mapping[str, tuple[str, ...]]
+OPTIONS = {
+    "inputs": "inputs that may have any value (first_integrals; default none), columns of B and D (state_space; all)",
+    "zero": "parameters that are 0 (first_integrals)",
+    "cyclic": "cyclic coordinates that are removed (routhian; default all)",
+    "outputs": "expressions y in coordinates, velocities, inputs, parameters and t (state_space)",
+    "parameters": "by which is differentiated (parameter_sensitivity; default all), also those of the cost (adjoint)",
+    "quantities": "that are differentiated (parameter_sensitivity; default metric, christoffel, forces)",
+    "controls": "inputs that are controlled (adjoint; default all)",
+    "running": "cost per second, an expression in coordinates, velocities, inputs, parameters and t (adjoint)",
+    "terminal": "cost at the end, an expression in coordinates, velocities, parameters and t (adjoint)",
+    "drives": "armature, viscous, coulomb, offset: columns of drives (base_parameters, base_regressor)",
+}
+
+
+@dataclass(frozen=True)
+class Made:
+    """A program, and what there is to say about it beside the formulas."""
+
+    program: Program
+    members: Mapping[str, Any] = field(default_factory=dict)
+    value: Any = None
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    """``outputs``: those of the program that are shown, default all; ``called``: what the science calls an option."""
+
+    make: Callable[[Source, Options], Made]
+    options: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    called: Mapping[str, str] = field(default_factory=dict)
+
+    def pointer(self, given: str) -> str:
+        """The place in the query that a pointer of the science means."""
+        first, *rest = given.removeprefix("/cost").split("/")[1:] or [""]
+        option = next((name for name, called in self.called.items() if called == first), first)
+        return "/".join(["/query", option, *rest]).rstrip("/")
+
+
+_made: Cache[Made] = Cache(2_000_000, lambda made: len(made.program))
+
+
+def made(source: Source, name: str, options: Options) -> Made:
+    """A quantity of QUANTITIES; what was made before is kept.
+
+    Raises InvalidDocument (with pointers into the query), also for an option that the quantity does not have; TooLarge.
+    """
+    quantity = _QUANTITIES[name]
+    given = {key: texts for key, texts in options.items() if texts}
+    for key in given:
+        if key not in quantity.options:
+            known = ", ".join(quantity.options) or "none"
+            message = f"'{name}' has no option '{key}'; it has {known}"
+            raise InvalidDocument.at(f"/query/{key}", "unknown-option", message)
+    found = _remembered(source, quantity, given)
+    if not quantity.outputs:
+        return found
+    return Made(found.program.select(list(quantity.outputs)), found.members, found.value)
+
+
+def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:
+    key = source.digest, source.limits.program_nodes, quantity.make, tuple(sorted(options.items()))
+    found = _made.get(key)
+    if found is None:
+        try:
+            found = quantity.make(source, options)
+        except InvalidDocument as error:
+            moved = [Fault(quantity.pointer(f.pointer), f.code, f.message) for f in error.faults]
+            raise InvalidDocument(moved) from None
+        size, limit = len(found.program), source.limits.program_nodes
+        if size > limit:
+            raise TooLarge("the formulas (in operations)", size, limit)
+        _made.put(key, found)
+    return found
+
+
+def velocity_equations_of(source: Source, document: Mapping[str, Any]) -> Made:
+    """Voronets' and Boltzmann-Hamel equations of a model with velocity constraints.
+
+    Raises InvalidDocument with pointers into the document, TooLarge.
+    """
+    found = quasi_velocity_equations(source.model, document)
+    names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
+    members = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
+    size, limit = len(found.program), source.limits.program_nodes
+    if size > limit:
+        raise TooLarge("the formulas (in operations)", size, limit)
+    return Made(found.program, members)
+
+
+def base_of(source: Source, drives: tuple[str, ...]) -> BaseParameters:
+    """The base parameters of a tree, remembered. Raises InvalidDocument (``/drives/i``), TooLarge."""
+    try:
+        value = _remembered(source, _QUANTITIES["base_parameters"], {"drives": drives} if drives else {}).value
+    except InvalidDocument as error:
+        moved = [Fault(f.pointer.removeprefix("/query"), f.code, f.message) for f in error.faults]
+        raise InvalidDocument(moved) from None
+    if not isinstance(value, BaseParameters):
+        raise TypeError("base parameters expected")
+    return value
+
+
+def curvature_of(source: Source) -> Program:
+    """The formulas of the curvature, remembered."""
+    return _remembered(source, _QUANTITIES["curvature"], {}).program
+
+
+def _first_integrals(source: Source, options: Options) -> Made:
+    found = first_integrals(source.model, options.get("inputs", ()), options.get("zero", ()))
+    return Made(found.program, found.summary())
+
+
+def _routhian(source: Source, options: Options) -> Made:
+    found = routh(source.model, options.get("cyclic"))
+    names = {"coordinates": found.coordinates, "cyclic": found.cyclic, "momenta": found.momenta}
+    return Made(found.program, {name: list(value) for name, value in names.items()})
+
+
+def _perturbation(source: Source, _: Options) -> Made:
+    members = {"coordinates": list(source.model.coordinates), "inputs": inputs_of(source.model)}
+    return Made(perturbation(source.model), members)
+
+
+def _state_space(source: Source, options: Options) -> Made:
+    model, outputs, inputs = source.model, options.get("outputs", ()), options.get("inputs")
+    state = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    members = {"state": state, "inputs": list(inputs or inputs_of(model)), "expressions": list(outputs)}
+    return Made(state_space(model, outputs, inputs), members)
+
+
+def _sensitivity(source: Source, options: Options) -> Made:
+    parameters = options.get("parameters", tuple(source.model.parameters))
+    return Made(sensitivity_formulas(source.model, parameters, options.get("quantities", VARIED)))
+
+
+def _curvature(source: Source, _: Options) -> Made:
+    return Made(curvature(source.model, source.limits.program_nodes), {"coordinates": list(source.model.coordinates)})
+
+
+def _adjoint(source: Source, options: Options) -> Made:
+    cost = Cost(**{name: ",".join(options[name]) for name in ("running", "terminal") if name in options})
+    controls, varied = options.get("controls", tuple(inputs_of(source.model))), options.get("parameters", ())
+    _check_names("controls", "input", controls, inputs_of(source.model))
+    _check_names("parameters", "parameter", varied, source.model.parameters)
+    found = adjoint_equations(source.model, controls, cost, varied)
+    names = {"coordinates": found.coordinates, "controls": found.controls, "parameters": found.varied}
+    return Made(found.program, {name: list(value) for name, value in names.items()})
+
+
+def _check_names(field: str, kind: str, names: Iterable[str], known: Iterable[str]) -> None:
+    known = set(known)
+    faults = [
+        Fault(f"/{field}/{i}", f"unknown-{kind}", f"unknown {kind} '{name[:80]}'")
+        for i, name in enumerate(names)
+        if name not in known
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+
+
+def _base_parameters(source: Source, options: Options) -> Made:
+    found = base_parameters(source.regressor(), options.get("drives", ()))
+    members: dict[str, Any] = {
+        "standard": list(found.standard),
+        "units": list(found.units),
+        "base": list(found.names),
+        "unseen": list(found.unseen),
+        "drives": list(found.drives),
+    }
+    try:
+        members["combinations"] = found.combinations()
+    except TooLarge:
+        members["combinations"] = None
+    return Made(found.program, members, found)
+
+
+_QUANTITIES = {
+    "first_integrals": _Quantity(_first_integrals, ("inputs", "zero"), (), {"zero": "parameters"}),
+    "routhian": _Quantity(_routhian, ("cyclic",), (), {"cyclic": "coordinates"}),
+    "perturbation": _Quantity(_perturbation),
+    "state_space": _Quantity(_state_space, ("inputs", "outputs")),
+    "parameter_sensitivity": _Quantity(_sensitivity, ("parameters", "quantities")),
+    "curvature": _Quantity(_curvature),
+    "riemann": _Quantity(_curvature, (), ("riemann",)),
+    "ricci": _Quantity(_curvature, (), ("ricci",)),
+    "scalar_curvature": _Quantity(_curvature, (), ("scalar_curvature",)),
+    "adjoint": _Quantity(_adjoint, ("controls", "running", "terminal", "parameters")),
+    "base_parameters": _Quantity(_base_parameters, ("drives",), ("grouping", "base_parameters")),
+    "base_regressor": _Quantity(_base_parameters, ("drives",), ("base_regressor",)),
+}
+QUANTITIES = tuple(_QUANTITIES)

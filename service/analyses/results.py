@@ -1,0 +1,98 @@
+"""Results of analyses as JSON, npz, CSV, Arrow and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+import orjson
+
+from service import arrays, arrow
+from substructures.analysis.drawings import draw_root_locus, draw_trajectory
+from substructures.analysis.root_locus import RootLocus
+from substructures.analysis.trajectory import Trajectory
+from substructures.analysis.writers import to_csv
+from substructures.model import Model
+
+JSON, CSV, SVG = "application/json", "text/csv", "image/svg+xml"
+#: formats by their names in files and items of jobs
+MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "arrow": arrow.MEDIA_TYPE}
+#: what every result can be, what trajectories can be, and what root loci can be
+PLAIN = (JSON, arrays.MEDIA_TYPE)
+TRAJECTORY = (*PLAIN, CSV, SVG, arrow.MEDIA_TYPE)
+DRAWN = (*PLAIN, SVG)
+
+
+def written(result: Any, media: str, model: Model) -> bytes:
+    """A result in a media type that it can have."""
+    if media == JSON:
+        return orjson.dumps(plain(result), option=orjson.OPT_SERIALIZE_NUMPY, default=_listed)
+    if media == arrays.MEDIA_TYPE:
+        return _npz(result)
+    if isinstance(result, RootLocus):
+        return draw_root_locus(result).encode()
+    motion = trajectory_of(result)
+    if motion is None:
+        raise ValueError(f"no motion to be written as {media}")
+    if media == CSV:
+        return to_csv(motion).encode()
+    return _arrow(motion) if media == arrow.MEDIA_TYPE else draw_trajectory(motion, model.joints).encode()
+
+
+def trajectory_of(result: Any) -> Trajectory | None:
+    """The motion in a result, if there is one."""
+    motion = result if isinstance(result, Trajectory) else getattr(result, "trajectory", None)
+    return motion if isinstance(motion, Trajectory) else None
+
+
+def plain(value: Any) -> Any:
+    """Dataclasses as objects by field, complex numbers as pairs; arrays stay. In JSON what is not finite is null."""
+    if isinstance(value, Trajectory):
+        return {**value.summary(), "t": value.t, "q": value.q, "qd": value.qd, "series": dict(value.series)}
+    for name in ("summary", "plain"):
+        if callable(method := getattr(value, name, None)):
+            return plain(method())
+    if is_dataclass(value):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(name): plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    return _pairs(value) if isinstance(value, np.ndarray) else value
+
+
+def _pairs(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    if value.dtype.kind == "c":
+        return np.stack([value.real, value.imag], axis=-1)
+    return np.ascontiguousarray(value) if value.ndim else value
+
+
+def _listed(value: Any) -> Any:
+    """What orjson does not write itself: arrays in other orders, scalars of numpy."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"no JSON for {type(value).__name__}")
+
+
+def _npz(result: Any) -> bytes:
+    """Arrays by the names of the JSON answer, nested ones joined by dots, and ``summary``: the rest, as JSON."""
+    data = arrays.flat(plain(result))
+    found = {name: np.asarray(x) for name, x in data.items() if _is_array(x)}
+    rest = {name: x for name, x in data.items() if name not in found}
+    found["summary"] = np.array(orjson.dumps(rest, option=orjson.OPT_SERIALIZE_NUMPY, default=_listed).decode())
+    return b"".join(map(bytes, arrays.npz_pieces(arrays.member(name, x) for name, x in found.items())))
+
+
+def _is_array(x: Any) -> bool:
+    return isinstance(x, np.ndarray) or (isinstance(x, list) and bool(x) and all(isinstance(item, str) for item in x))
+
+
+def _arrow(motion: Trajectory) -> bytes:
+    """A row for every time: t, q, qd, and ``series.<name>``; the rest in the metadata of the schema, as JSON."""
+    columns = {"t": motion.t, "q": motion.q, "qd": motion.qd}
+    columns |= {f"series.{name}": np.asarray(x, dtype=np.float64) for name, x in motion.series.items()}
+    return b"".join(map(bytes, arrow.write_tables([arrow.Table(columns)], plain(motion.summary()))))

@@ -1,0 +1,27 @@
+"""A tree with everything that an analysis may need of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from service.settings import Limits
+from substructures.evaluation import Engine, interpreted
+from substructures.model import Model
+from substructures.regressor import RegressorModel
+
+#: told the finished share of the work
+Report = Callable[[float], bool | None]
+
+
+@dataclass(frozen=True)
+class Source:
+    """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept."""
+
+    model: Model
+    digest: str
+    regressor: Callable[[], RegressorModel]
+    limits: Limits
+    folder: Path | None = None
+    engine: Engine = interpreted

@@ -1,0 +1,97 @@
+"""simulate, optimise, analyse: numbers that follow from the equations of motion of a tree, one request an item.
+
+An item given is ``{"tree", "request", "format"}``, or ``{"tree", "requests", "format"}``, which stands for as many; for
+``analyse`` also ``"analysis"``, the name of an endpoint such as ``linearisations`` or ``root-loci``. ``request`` is the
+body for that endpoint; ``format`` is json (default), npz, or what else the result can be.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import orjson
+
+from service.analyses.numbers import ANALYSES, check_request
+from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
+from service.jobs.engine import Outcome
+from service.jobs.kinds.decoded import model_of, pinned_model, source_of
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
+from service.jobs.kinds.library import Library
+from service.settings import Limits
+from substructures.documents import read_json
+from substructures.errors import Fault, InvalidDocument
+
+#: analyses that need no more than the formulas of the tree
+KNOWN = tuple(name for name, analysis in ANALYSES.items() if analysis.needs_model_only)
+TOLD = ("status", "message", "is_right", "cost")
+
+
+def analysis_kind(name: str | None = None) -> Kind:
+    """The kind for one analysis; without a name every item says which."""
+
+    def spread(item: Item, limits: Limits, library: Library) -> list[Item]:
+        which = ("analysis",) if name is None else ()
+        what = "requests" if "requests" in item else "request"
+        check_fields(item, ("tree", what, *which), ("format",))
+        common = {"tree": item["tree"], "analysis": name or item["analysis"], "format": item.get("format", "json")}
+        _check(common)
+        is_closed = "closures" in read_json(known_tree(item, library).summary.encode())
+        requests = _requests(common["analysis"], item, is_closed)
+        return [{**common, "request": each, **_limits(limits)} for each in requests]
+
+    return Kind(spread, _resolve, _run)
+
+
+def _limits(limits: Limits) -> Item:
+    return {"limits": {"program_nodes": limits.job_nodes, "binary_bytes": limits.binary_bytes}}
+
+
+def _check(item: Item) -> None:
+    name, form = item["analysis"], item["format"]
+    if name not in KNOWN:
+        message = f"unknown analysis '{str(name)[:40]}'; there are {', '.join(KNOWN)}"
+        raise InvalidDocument.at("/analysis", "unknown-analysis", message)
+    known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
+    if form not in known:
+        message = f"unknown format '{str(form)[:40]}'; '{name}' can be {', '.join(known)}"
+        raise InvalidDocument.at("/format", "unknown-format", message)
+
+
+def _requests(name: str, item: Item, is_closed: bool) -> list[Any]:
+    """The requests that an item stands for, each of the right shape."""
+    if "requests" not in item:
+        given, places = [item["request"]], ["/request"]
+    elif isinstance(item["requests"], list) and item["requests"]:
+        given = item["requests"]
+        places = [f"/requests/{k}" for k in range(len(given))]
+    else:
+        raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
+    for request, place in zip(given, places, strict=True):
+        try:
+            check_request(name, request, is_closed)
+        except InvalidDocument as error:
+            raise InvalidDocument(Fault(place + f.pointer, f.code, f.message) for f in error.faults) from None
+    return given
+
+
+def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    tree = known_tree(item, library)
+    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
+    return {**item, **pinned}, (tree.program,)
+
+
+def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+    """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
+    model, name = model_of(item, blobs), item["analysis"]
+    source = source_of(item, model, item["limits"])
+    result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
+    media = MEDIA_TYPES[item["format"]]
+    data = written(result, media, model)
+    told = orjson.loads(data if media == JSON else written(_brief(result), JSON, model))
+    summary = {"tree": item["tree"], "analysis": name, "media_type": media, "bytes": len(data)}
+    return Outcome({**summary, **{key: told[key] for key in TOLD if key in told}}, {"result": data})
+
+
+def _brief(result: Any) -> Any:
+    motion = trajectory_of(result)
+    return result if motion is None else motion.summary()

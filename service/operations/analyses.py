@@ -1,0 +1,77 @@
+"""Analyses of stored trees: what they work on, their limit of time, and their answers."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+from service.analyses.formulas import Made, Options, made, velocity_equations_of
+from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.results import trajectory_of, written
+from service.analyses.source import Source
+from service.answers import Answer
+from service.negotiation import MEDIA_TYPES
+from service.operations import trees
+from service.operations.sources import sources_of
+from service.printing import Style, made_text
+from service.queries.trees import Tree
+from service.store import Store
+from substructures.model import Model
+
+
+def source_of(store: Store, tree: Tree, model: Model) -> Source:
+    """What analyses of a stored tree work on."""
+    columns = sources_of(store, tree, model).columns
+    return Source(model, tree.digest, columns, store.settings.limits, store.kernels.folder, store.kernels)
+
+
+def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
+    """A quantity that follows from the model, in the format chosen; its description is in the JSON answer.
+
+    Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
+    """
+    return _printed(source, made(source, quantity, options), style)
+
+
+def velocity_equations(store: Store, ref: str, document: Any, style: Style) -> Answer:
+    """The equations of a stored tree with velocity constraints as formulas. Raises as :func:`printed`, Refused 404."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+    source = source_of(store, tree, model)
+    return _printed(source, velocity_equations_of(source, require_object(document)), style)
+
+
+def _printed(source: Source, found: Made, style: Style) -> Answer:
+    text = made_text(found, source.model.parameters, style)
+    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
+
+
+def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answer:
+    """The result of an analysis of ANALYSES in one of its media types.
+
+    Raises Refused 404, InvalidDocument, MissingValue, TooLarge, TimeoutError.
+    """
+    analysis = ANALYSES[name]
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+    deadline = Deadline(store.settings.limits.sync_seconds)
+    result = analysis.compute(source_of(store, tree, model), require_object(request), deadline)
+    headers = {"Content-Type": media}
+    motion = trajectory_of(result)
+    if motion is not None:  # a CSV file has no place for them
+        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": str(motion.is_right).lower()}
+    return Answer(200, written(result, media, model), headers)
+
+
+class Deadline:
+    """A listener of progress that ends the work when its time is over: nobody waits for it any longer."""
+
+    def __init__(self, seconds: float) -> None:
+        self._end = perf_counter() + seconds
+
+    def __call__(self, share: float) -> None:
+        """Raises TimeoutError, which answers as work that is waited for too long: with a job or 503."""
+        if perf_counter() > self._end:
+            raise TimeoutError(f"{100 * share:.0f} % was done in the time of a request")

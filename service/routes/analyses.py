@@ -1,0 +1,75 @@
+"""``POST /v1/trees/{ref}/simulations``, ``.../linearisations``, ...: numbers that follow from a tree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+
+from service.analyses.numbers import ANALYSES, Analysis
+from service.analyses.results import JSON, MEDIA_TYPES
+from service.negotiation import MEDIA_TYPES as PRINTED
+from service.negotiation import choose_media_type
+from service.once import OnceOf
+from service.operations.analyses import analyse, velocity_equations
+from service.requests import JsonBody, StoreOf, needs
+from service.routes.bodies import binary, body_of, printed
+from service.routes.deferred import ACCEPTED, deferred
+from service.routes.style import StyleOf
+from service.schemas import AnalysisResult
+
+router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
+READ = [needs("read")]
+
+
+FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
+
+
+def _endpoint(name: str, analysis: Analysis) -> Callable[..., Response]:
+    def run(ref: str, request: Request, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+        media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
+        item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
+        later = deferred(once, "analyse", item, "/request") if analysis.needs_model_only else None
+        return once.compute(lambda: analyse(store, ref, name, body, media), later)
+
+    return run
+
+
+def _add(name: str, analysis: Analysis) -> None:
+    others = {media: binary() for media in analysis.media if media != JSON}
+    described: dict[int | str, dict[str, Any]] = {
+        200: {"content": others},
+        **(ACCEPTED if analysis.needs_model_only else {}),
+    }
+    if analysis.needs_model_only:
+        described |= ACCEPTED
+    router.add_api_route(
+        f"/{name}",
+        _endpoint(name, analysis),
+        methods=["POST"],
+        name=name,
+        summary=analysis.text,
+        response_model=AnalysisResult,
+        dependencies=READ,
+        openapi_extra=body_of(analysis.schema.__name__),
+        responses=described,
+    )
+
+
+for _name, _analysis in ANALYSES.items():
+    _add(_name, _analysis)
+
+
+@router.post(
+    "/velocity-equations",
+    dependencies=READ,
+    openapi_extra=body_of("VelocityConstraints"),
+    responses=printed(PRINTED),
+)
+def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, style: StyleOf) -> Response:
+    """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
+
+    Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.
+    """
+    return once.compute(lambda: velocity_equations(store, ref, body, style))

@@ -1,0 +1,74 @@
+"""Results as diagrams: coordinates over time with the drift of first integrals, eigenvalues over a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from substructures.analysis.root_locus import RootLocus
+from substructures.analysis.trajectory import Array, Check, Trajectory
+from substructures.plot import Line, Panel, plot
+
+TIME = "t in s"
+
+
+def draw_trajectory(motion: Trajectory, joints: str) -> str:
+    """SVG: angles, distances, and how far quantities that are constant moved from their first values.
+
+    ``joints``: R or P for every coordinate.
+    """
+    events = tuple((event.name, event.t) for event in motion.events)
+    panels = [
+        Panel(title, TIME, unit, lines, events)
+        for kind, title, unit in (("R", "angles", "rad"), ("P", "distances", "m"))
+        if (lines := tuple(_coordinates(motion, joints, kind)))
+    ]
+    drifts = tuple(_drifts(motion))
+    if drifts:
+        panels.append(Panel("drift over scale of what must be constant", TIME, "1", drifts, events))
+    return plot(_title(motion), panels)
+
+
+def _title(motion: Trajectory) -> str:
+    wrong = [check for check in motion.checks if not check.holds]
+    if wrong:
+        first = min(wrong, key=lambda check: check.time or 0.0)
+        return f"{motion.status}, WRONG: {first.name} violated at t = {first.time:.6g} s"
+    return f"{motion.status}: all {len(motion.checks)} checks hold" if motion.checks else motion.status
+
+
+def _coordinates(motion: Trajectory, joints: str, kind: str) -> Iterator[Line]:
+    for a, name in enumerate(motion.coordinates):
+        if joints[a] == kind:
+            yield Line(name, motion.t, motion.q[:, a])
+
+
+def _drifts(motion: Trajectory) -> Iterator[Line]:
+    for check in motion.checks:
+        values = _judged(motion, check)
+        if values is not None and len(values):
+            yield Line(check.name, motion.t, (values - values[0]) / (check.scale or 1.0))
+
+
+def _judged(motion: Trajectory, check: Check) -> Array | None:
+    """The series that a check is about."""
+    series = motion.series
+    if check.name == "energy-balance" and {"energy", "work"} <= series.keys():
+        return np.asarray(series["energy"] - series["work"])
+    values = series.get(check.name) if check.rule == "constant" else None
+    return values if values is not None and values.ndim == 1 else None
+
+
+def draw_root_locus(locus: RootLocus) -> str:
+    """SVG: the branches in the complex plane, and the real parts over the parameter; below zero is stable."""
+    real, imaginary = locus.eigenvalues.real, locus.eigenvalues.imag
+    branches = range(real.shape[1])
+    plane = tuple(Line(f"branch {k + 1}", real[:, k], imaginary[:, k], dots=True) for k in branches)
+    parts = tuple(Line(f"branch {k + 1}", locus.values, real[:, k]) for k in branches)
+    zero = (("", 0.0),) if len(real) and real.min() <= 0 <= real.max() else ()
+    panels = [
+        Panel("eigenvalues", "real part in 1/s", "imaginary part in 1/s", plane, zero),
+        Panel("real parts over the parameter", "parameter", "1/s", parts),
+    ]
+    return plot(f"root locus, {locus.status}: {len(locus.values)} values", panels)

@@ -1,0 +1,151 @@
+"""Formulas that follow from the equations of motion, as quantities of a tree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.analyses.formulas import QUANTITIES
+from service.app import open_store
+from service.negotiation import MEDIA_TYPES
+from service.settings import Settings
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Program
+
+from .conftest import HAND, PENDULUM, TREE, make_client
+
+PUCK: dict[str, Any] = {
+    "name": "puck",
+    "instances": [
+        {
+            "name": "p",
+            "definition": {
+                "name": "puck",
+                "parameters": {"m": {"value": 2, "unit": "kg"}},
+                "bodies": [
+                    {"name": "arm", "parent": "base", "joint": {"type": "revolute", "coordinate": "phi"}},
+                    {
+                        "name": "puck",
+                        "parent": "arm",
+                        "joint": {"type": "prismatic", "coordinate": "r", "theta": "pi/2"},
+                        "mass": "m",
+                    },
+                ],
+            },
+        }
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def double(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """The double pendulum cell@2, and a mass that slides freely on a turning arm."""
+    path = tmp_path_factory.mktemp("formulas") / "store.db"
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        client = make_client(store)
+        for place, body in (
+            ("substructures", PENDULUM),
+            ("trees", TREE),
+            ("trees/cell/couplings", HAND),
+            ("trees", PUCK),
+        ):
+            answer = client.post(f"/v1/{place}", json=body)
+            assert answer.status_code == 201, answer.text
+        yield client
+
+
+@pytest.mark.parametrize("name", MEDIA_TYPES)
+def test_every_quantity_in_every_format(double: TestClient, name: str) -> None:
+    for quantity in QUANTITIES:
+        tree = "puck" if quantity == "routhian" else "cell"
+        answer = double.get(f"/v1/trees/{tree}/{quantity}", params={"format": name, "bind": "defaults"})
+        assert answer.status_code == 200, (quantity, answer.text)
+        assert answer.headers["content-type"].startswith(MEDIA_TYPES[name].partition(";")[0])
+        if name == "json":
+            Program.from_bytes(answer.content)
+
+
+def test_first_integrals_say_why(double: TestClient) -> None:
+    answer = double.get("/v1/trees/puck/first_integrals?bind=defaults")
+    found = answer.json()
+    assert found["cyclic"] == ["p.phi"]
+    listed = {each["name"]: each for each in found["integrals"]}
+    assert listed.keys() == {"energy", "linear_momentum.x", "linear_momentum.y", "angular_momentum.z"}
+    assert all(each["rule"] == "constant" and each["reason"] and each["unit"] for each in listed.values())
+    source = Program.from_bytes(answer.content)
+    state = {"p.phi": 0.3, "p.r": 3.0, "p.phi'": 0.5, "p.r'": 0.2}
+    values = interpret(source, {s.name: state[s.name] for s in source.symbols})
+    assert values["angular_momentum.z"] == pytest.approx(2 * 3.0**2 * 0.5)  # m r^2 phi'
+
+
+def test_routh_reduces_the_order(double: TestClient) -> None:
+    found = double.get("/v1/trees/puck/routhian", params={"cyclic": "p.phi"}).json()
+    assert (found["coordinates"], found["cyclic"], found["momenta"]) == (["p.r"], ["p.phi"], ["p.p.phi"])
+    text = double.get("/v1/trees/puck/routhian", params={"format": "text"}).text
+    assert "amended_potential" in text
+
+
+def test_state_space_with_outputs(double: TestClient) -> None:
+    wanted = {"outputs": ["arm.q + hand.q", "arm.q'"], "inputs": "tau.arm.q"}
+    found = double.get("/v1/trees/cell/state_space", params=wanted).json()
+    assert found["inputs"] == ["tau.arm.q"]
+    assert found["expressions"] == ["arm.q + hand.q", "arm.q'"]
+    assert found["state"] == ["arm.q", "hand.q", "arm.q'", "hand.q'"]
+
+
+def test_curvature_of_the_double_pendulum_depends_on_the_elbow_only(double: TestClient) -> None:
+    source = Program.from_bytes(double.get("/v1/trees/cell/scalar_curvature?bind=defaults").content)
+    assert {symbol.name for symbol in source.symbols} == {"hand.q"}
+    assert math.isfinite(float(interpret(source, {"hand.q": 0.5})["scalar_curvature"]))
+
+
+def test_base_parameters_are_combinations(double: TestClient) -> None:
+    """A planar double pendulum: ZZ1, X1, Y1, ZZ2, X2, Y2."""
+    found = double.get("/v1/trees/cell/base_parameters?bind=defaults").json()
+    assert len(found["base"]) == 6
+    assert set(found["combinations"]) == set(found["base"])
+    more = double.get("/v1/trees/cell/base_parameters?drives=viscous,coulomb").json()
+    assert len(more["base"]) == 6 + 4
+
+
+@pytest.mark.parametrize(
+    ("path", "pointer"),
+    [
+        ("cell/routhian?cyclic=arm.q", "/query/cyclic/0"),
+        ("cell/state_space?outputs=nobody", "/query/outputs/0"),
+        ("cell/state_space?inputs=nobody", "/query/inputs/0"),
+        ("cell/first_integrals?inputs=nobody", "/query/inputs"),
+        ("cell/first_integrals?zero=nobody", "/query/zero"),
+        ("cell/parameter_sensitivity?parameters=nobody", "/query/parameters/0"),
+        ("cell/parameter_sensitivity?quantities=nothing", "/query/quantities/0"),
+        ("cell/adjoint?running=nobody", "/query/running"),
+        ("cell/adjoint?controls=nobody", "/query/controls/0"),
+        ("cell/base_parameters?drives=rust", "/query/drives/0"),
+        ("cell/curvature?drives=armature", "/query/drives"),
+        ("cell/perturbation?format=pdf", "/query/format"),
+        ("cell/perturbation?bind=nobody:1", "/query/bind"),
+    ],
+)
+def test_wrong_options(double: TestClient, path: str, pointer: str) -> None:
+    answer = double.get(f"/v1/trees/{path}")
+    assert answer.status_code == 422, answer.text
+    assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
+
+
+def test_unknown_quantities_are_told_what_there_is(double: TestClient) -> None:
+    answer = double.get("/v1/trees/cell/first_integral")
+    assert answer.status_code == 404
+    assert all(name in answer.json()["detail"] for name in ("metric", "first_integrals", "curvature"))
+
+
+def test_they_are_cached_by_clients(double: TestClient) -> None:
+    first = double.get("/v1/trees/cell@2/state_space")
+    assert "immutable" in first.headers["cache-control"]
+    same = double.get("/v1/trees/cell@2/state_space", headers={"If-None-Match": first.headers["etag"]})
+    assert same.status_code == 304
+    other = double.get("/v1/trees/cell@2/state_space?outputs=arm.q", headers={"If-None-Match": first.headers["etag"]})
+    assert other.status_code == 200

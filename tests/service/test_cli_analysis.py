@@ -1,0 +1,118 @@
+"""The commands simulate and analyse, without a server and with one; and the same by the client."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from service.cli import main
+from service.client import Client
+from service.server import background
+from service.settings import Limits, Settings
+
+from .conftest import PENDULUM, TREE
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A tree document with its part beside it, and a request."""
+    (tmp_path / "cell.yaml").write_text(json.dumps(TREE))
+    (tmp_path / "pendulum.json").write_text(json.dumps(PENDULUM))
+    (tmp_path / "swing.yaml").write_text("q: [0.5]\nspan: [0, 2]\ncount: 21\n")
+    return tmp_path
+
+
+def test_simulate_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["simulate", str(folder / "cell.yaml"), str(folder / "swing.yaml")]
+    assert main(command) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith("finished\nenergy: constant, holds")
+    for name in ("out.npz", "out.csv", "out.svg", "out.json", "out.arrow"):
+        assert main([*command, "--out", str(folder / name)]) == 0
+    with np.load(folder / "out.npz", allow_pickle=False) as arrays:
+        assert np.array_equal(arrays["q"], json.loads((folder / "out.json").read_text())["q"])
+    assert main([*command, "--out", str(folder / "out.xlsx")]) == 1
+    assert ".npz, .csv" in capsys.readouterr().err
+
+
+def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "rough.yaml").write_text("q: [0.5]\nspan: [0, 2]\nfixed_step: {step: 0.2, method: semi-implicit-euler}\n")
+    assert main(["simulate", str(folder / "cell.yaml"), str(folder / "rough.yaml")]) == 1
+    shown = capsys.readouterr().out
+    assert shown.startswith("finished WRONG")
+    assert "VIOLATED from t = " in shown
+
+
+def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree = str(folder / "cell.yaml")
+    assert main(["analyse", tree, "first_integrals", "--bind", "defaults"]) == 0
+    assert "energy in J, constant: all forces have a potential" in capsys.readouterr().out
+    assert main(["analyse", tree, "state_space", "--outputs", "sin(arm.q),arm.q'", "--format", "python"]) == 0
+    assert "def " in capsys.readouterr().out
+    assert main(["analyse", tree, "metric", "--out", str(folder / "metric.txt")]) == 0
+    assert "metric[1, 1]" in (folder / "metric.txt").read_text()
+    assert main(["analyse", tree, "equilibria"]) == 0
+    found = json.loads(capsys.readouterr().out)["found"]
+    assert {e["at"]["stability"]["verdict"] for e in found} == {"stable", "unstable"}
+
+
+def test_errors_name_the_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree, swing = str(folder / "cell.yaml"), str(folder / "swing.yaml")
+    for arguments, expected in (
+        (["analyse", tree, "nothing"], "there is no quantity 'nothing'"),
+        (["analyse", tree, "metric", swing], "no request"),
+        (["analyse", tree, "adjoint", "--running", "nobody"], "/query/running"),
+        (["analyse", tree, "simulations"], "/span: "),
+        (["simulate", str(folder / "nothing.yaml"), swing], "nothing.yaml: No such file"),
+    ):
+        assert main(arguments) == 1
+        captured = capsys.readouterr()
+        assert expected in captured.err
+        assert "Traceback" not in captured.err
+    (folder / "cell.yaml").write_text(json.dumps(TREE).replace('"pendulum"', '"nobody"'))
+    assert main(["simulate", tree, swing]) == 1
+    assert "/instances/0/substructure" in capsys.readouterr().err
+
+
+def test_on_a_server(folder: Path, settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    with background(settings) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        found = client.simulate("cell", q=np.array([0.5]), span=[0, 2], count=21)
+        assert found["is_right"]
+        assert found["q"].shape == (21, 1)
+        assert found["series"]["energy"].shape == (21,)
+        assert client.analyse("cell", "linearisations", q=[0])["coordinates"] == ["arm.q"]
+        assert "sin" in client.formula("cell", "state_space", outputs="sin(arm.q)")
+        server = ["--server", address]
+        assert main(["simulate", "cell", str(folder / "swing.yaml"), "--out", str(folder / "x.csv"), *server]) == 0
+        assert (folder / "x.csv").read_text().startswith("t,arm.q,arm.q'")
+        (folder / "long.yaml").write_text("q: [0.5]\nspan: [0, 2]\nmax_steps: 2\n")
+        assert main(["simulate", "cell", str(folder / "long.yaml"), "--out", str(folder / "y.csv"), *server]) == 1
+        assert main(["simulate", "cell", str(folder / "swing.yaml"), *server]) == 0
+        assert "energy: constant, holds" in capsys.readouterr().out
+        assert main(["analyse", "cell", "first_integrals", "--bind", "defaults", *server]) == 0
+        assert "energy in J, constant" in capsys.readouterr().out
+        assert main(["analyse", "cell", "simulations", *server]) == 1
+        assert "/span: " in capsys.readouterr().err
+
+
+def test_what_takes_long_is_waited_for(folder: Path, settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    """The request becomes a job, which a process of its own computes."""
+    slow = settings.model_copy(update={"workers": 1, "limits": Limits(sync_seconds=0.02)})
+    with background(slow) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        found = client.simulate("cell", q=[0.5], span=[0, 200], count=21, relative_tolerance=1e-12)
+        assert found["is_right"]
+        assert found["q"].shape == (21, 1)
+        (job,) = [each for each in client.jobs() if each["kind"] == "analyse"]
+        assert job["state"] == "succeeded"
+        text = "q: [0.5]\nspan: [0, 400]\nfixed_step: {step: 0.005, method: rk4}\ndrift_limit: 1.0e-14\n"
+        (folder / "rough.yaml").write_text(text)
+        command = ["simulate", "cell", str(folder / "rough.yaml"), "--out", str(folder / "x.csv"), "--server", address]
+        assert main(command) == 1
+        assert "finished WRONG" in capsys.readouterr().out

@@ -1,0 +1,111 @@
+"""Jobs of the kinds simulate, optimise and analyse."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from service.jobs.engine import Outcome
+from service.jobs.kinds import run
+from substructures.documents import read_json, write_json
+from substructures.errors import InvalidDocument
+
+from .conftest import PENDULUM, TREE
+from .jobs_library import MemoryLibrary
+
+SWING = {"q": [0.5], "span": [0, 1], "count": 3}
+
+
+@pytest.fixture(scope="module")
+def library() -> MemoryLibrary:
+    return MemoryLibrary([PENDULUM], [TREE])
+
+
+def outcomes(library: MemoryLibrary, kind: str, request: Mapping[str, Any]) -> list[Outcome]:
+    """What comes of a submission, and all shares of progress are shares."""
+    shares: list[float] = []
+    items = [read_json(write_json(item)) for item in library.items(kind, request)]
+    found = [run(kind, item, library.blobs, shares.append) for item in items]
+    assert all(0 <= share <= 1 for share in shares)
+    assert all(outcome.problem is None for outcome in found), [outcome.problem for outcome in found]
+    return found
+
+
+def test_a_list_of_requests(library: MemoryLibrary) -> None:
+    requests = [{**SWING, "q": [x]} for x in (0.1, 0.2, 0.3)]
+    found = outcomes(library, "simulate", {"items": [{"tree": "cell", "requests": requests}]})
+    assert [json.loads(outcome.files["result"])["q"][0][0] for outcome in found] == [0.1, 0.2, 0.3]
+    assert all(outcome.summary["status"] == "finished" and outcome.summary["is_right"] for outcome in found)
+
+
+def test_a_template_with_choices(library: MemoryLibrary) -> None:
+    template = {"tree": "cell", "request": SWING, "format": "csv"}
+    choices = {"/request/parameters/arm.l": [1, 2]}
+    template["request"] = {**SWING, "parameters": {"arm.l": 1}}
+    found = outcomes(library, "simulate", {"template": template, "choices": choices})
+    assert len(found) == 2
+    assert found[0].files["result"] != found[1].files["result"]
+    assert found[0].summary["media_type"] == "text/csv"
+
+
+def test_optimise(library: MemoryLibrary) -> None:
+    request = {
+        "controls": ["tau.arm.q"], "cost": {"running": "tau.arm.q^2"}, "horizon": 1, "intervals": 4, "q": [0],
+        "end": {"qd": [0]},
+    }  # fmt: skip
+    (found,) = outcomes(library, "optimise", {"items": [{"tree": "cell", "request": request}]})
+    assert json.loads(found.files["result"])["status"] == found.summary["status"]
+
+
+def test_any_analysis(library: MemoryLibrary) -> None:
+    items = [
+        {"tree": "cell", "analysis": "equilibria", "request": {"count": 4}},
+        {"tree": "cell", "analysis": "linearisations", "request": {"q": [0]}, "format": "npz"},
+    ]
+    found = outcomes(library, "analyse", {"items": items})
+    assert {len(e["q"]) for e in json.loads(found[0].files["result"])["found"]} == {1}
+    assert found[1].summary["media_type"] == "application/x-npz"
+
+
+def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
+    common = {"tree": "cell", "format": "text", "bind": "defaults"}
+    options = {"options": {"outputs": ["sin(arm.q)"]}}
+    items = [{**common, "quantity": "first_integrals"}, {**common, "quantity": "state_space", **options}]
+    first, second = (o.files["text"].decode() for o in outcomes(library, "export", {"items": items}))
+    assert "energy in J, constant" in first
+    assert "output" in second
+    (item,) = library.items("export", {"items": [{**common, "quantity": "base_parameters"}]})
+    refused = run("export", item, library.blobs, lambda _: None).problem
+    assert refused is not None
+    assert refused["errors"][0]["code"] == "needs-parts"
+
+
+@pytest.mark.parametrize(
+    ("kind", "item", "pointer"),
+    [
+        ("simulate", {"tree": "nothing", "request": SWING}, "/items/0/tree"),
+        ("simulate", {"tree": "cell", "request": {"q": [0]}}, "/items/0/request/span"),
+        ("simulate", {"tree": "cell", "requests": []}, "/items/0/requests"),
+        ("simulate", {"tree": "cell", "requests": [SWING, []]}, "/items/0/requests/1"),
+        ("simulate", {"tree": "cell", "request": SWING, "format": "pdf"}, "/items/0/format"),
+        ("optimise", {"tree": "cell", "request": {"horizon": -1}}, "/items/0/request/horizon"),
+        ("analyse", {"tree": "cell", "analysis": "magic", "request": {}}, "/items/0/analysis"),
+        ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),
+        ("analyse", {"tree": "cell", "request": {}}, "/items/0/analysis"),
+        ("export", {"tree": "cell", "quantity": "x", "format": "text", "options": {"a": "b"}}, "/items/0/options"),
+    ],
+)
+def test_wrong_items(library: MemoryLibrary, kind: str, item: dict[str, Any], pointer: str) -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        library.items(kind, {"items": [item]})
+    assert pointer in {fault.pointer for fault in caught.value.faults}
+
+
+def test_faults_that_need_the_model_are_outcomes(library: MemoryLibrary) -> None:
+    (item,) = library.items("simulate", {"items": [{"tree": "cell", "request": {**SWING, "q": [0, 0]}}]})
+    outcome = run("simulate", item, library.blobs, lambda _: None)
+    assert outcome.problem is not None
+    assert outcome.problem["errors"][0]["pointer"] == "/q"
