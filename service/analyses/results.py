@@ -84,7 +84,7 @@ def _npz(result: Any) -> bytes:
     found = {name: np.asarray(x) for name, x in data.items() if _is_array(x)}
     rest = {name: x for name, x in data.items() if name not in found}
     found["summary"] = np.array(orjson.dumps(rest, option=orjson.OPT_SERIALIZE_NUMPY, default=_listed).decode())
-    return b"".join(map(bytes, arrays.npz_pieces(arrays.member(name, x) for name, x in found.items())))
+    return b"".join(arrays.write_npz(found).pieces)
 
 
 def _is_array(x: Any) -> bool:

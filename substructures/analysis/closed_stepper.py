@@ -39,6 +39,7 @@ class ClosedStepper:
         self.reduction, self.s, self.make, self.end = reduction, reduction.s, make, end
         self.t = self.t_old = t
         self.y, self.status, self._counted = x, "running", 0
+        self._way = x[: self.s.n], x[: self.s.n]
         self.s.move(t, *self._state())
         reduction.choose()
         self.inner = self._begun(None)
@@ -75,6 +76,7 @@ class ClosedStepper:
             self.status = "failed"
             return message
         q, qd = self.s.q, self.s.qd
+        self._way = self.y[: self.s.n], q
         time = self._passed() if self._suspicious(before) else None
         if time is not None:
             self._stop_before(time)
@@ -159,10 +161,11 @@ class ClosedStepper:
 
     def dense_output(self) -> Callable[[float], Array]:
         """States within the last step, on the closures."""
-        dense = self.inner.dense_output()
+        dense, (first, last), start, end = self.inner.dense_output(), self._way, self.t_old, self.inner.t
 
         def state(t: float) -> Array:
             y = dense(t)
+            self.reduction.expect(first + (t - start) / (end - start) * (last - first))
             return np.concatenate((*self.reduction.land(t, y), y[-1:]))
 
         return state

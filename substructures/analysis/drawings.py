@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from substructures.analysis.root_locus import RootLocus
-from substructures.analysis.trajectory import Array, Check, Trajectory
+from substructures.analysis.trajectory import Check, Trajectory
 from substructures.plot import Line, Panel, plot
+from substructures.states import Array
 
 TIME = "t in s"
 

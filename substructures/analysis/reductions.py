@@ -48,6 +48,9 @@ class Reduction(ABC):
     def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
         """q, q' of y; s stays at this state. Raises Singular."""
 
+    def expect(self, q: Array) -> None:
+        """Where the next state will be, about: several may belong to the same y."""
+
     @abstractmethod
     def rates(self, t: float, y: Array) -> Array:
         """y'. Raises Singular."""
@@ -139,6 +142,9 @@ class Partitioned(Reduction):
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         self.near = q.copy()
         return np.concatenate((q[self.independent], qd[self.independent], (work,)))
+
+    def expect(self, q: Array) -> None:
+        self.near = q
 
     def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
         s, k = self.s, len(self.independent)
