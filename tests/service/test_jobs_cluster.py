@@ -1,4 +1,4 @@
-"""A batch over HTTP on a Dask cluster that loses a worker and its scheduler: what comes out is what one machine gives."""
+"""A batch over HTTP on a Dask cluster that loses a worker and its scheduler: the results are those of one machine."""
 
 from __future__ import annotations
 
