@@ -2,7 +2,8 @@
 
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
-named there are 0). ``format``: npz or arrow, for which see :mod:`service.arrow`. Its parts have a field ``range``, the first state and the one behind the last.
+named there are 0). ``format``: npz, or arrow (:mod:`service.arrow`). Its parts have a field ``range``, the first state
+and the one behind the last.
 """
 
 from __future__ import annotations
