@@ -17,6 +17,7 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
+from service.arrays import flat
 from substructures.documents import pointer_step
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.states import Array
@@ -158,6 +159,21 @@ class Table:
     def count(self) -> int:
         """The number of rows."""
         return max(map(len, self.columns.values()), default=0)
+
+
+def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> Table:
+    """The named parts of the answer of an evaluation with a leading axis, with a note for every state that failed."""
+    columns, count = flat({name: answer[name] for name in names}), answer["count"]
+    failures: dict[int, list[dict[str, Any]]] = {}
+    missing: dict[str, NDArray[np.bool_]] = {}
+    for failure in answer["failures"]:
+        state, quantity = failure["state"], failure["quantity"]
+        failures.setdefault(state, []).append({key: value for key, value in failure.items() if key != "state"})
+        for name in columns:
+            if name == quantity or name.startswith(f"{quantity}."):
+                missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
+    notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
+    return Table(columns, missing, notes)
 
 
 def write_tables(tables: Iterable[Table], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:

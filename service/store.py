@@ -43,6 +43,7 @@ class Store:
         self.authorisations = Authorisations(settings.key_seconds)
         self.threads = ThreadPoolExecutor(THREADS, thread_name_prefix="request")  # requests that may be given up
         self.wake = Event()  # set when there is something new for the supervisor of this process
+        self.stopping = Event()  # set when the server stops: answers without an end are ended
 
     def close(self) -> None:
         """Stop what computes in the background, and give the database up."""

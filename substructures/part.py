@@ -11,7 +11,7 @@ from typing import Any
 from substructures.certificate import certify_part
 from substructures.definition import Definition
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.program import Program, program
+from substructures.expr.program import Output, Program, program
 from substructures.interface import formulas, inertia_names
 from substructures.loads import read_loads, wrench_places
 from substructures.mechanism import mechanism
@@ -123,25 +123,23 @@ class Part:
 
     def formulas(self) -> list[Formula]:
         """The index of the store: every formula with its place, shape and operation count."""
-        return [f for name in self.program.outputs if name not in INTERNAL for f in self._rows(name)]
+        groups = {
+            (name, lead): entries
+            for name, output in self.program.outputs.items()
+            if name not in INTERNAL
+            for lead, entries in _grouped(output, len(LEADING.get(name, ()))).items()
+        }
+        counts = self.program.totals_of(list(groups.values()))
+        return [self._formula(*place, count) for place, count in zip(groups, counts, strict=True)]
 
-    def _rows(self, name: str) -> list[Formula]:
-        """Leading axes are joints, coordinates or ports; each row is what remains for one such index."""
-        output = self.program.outputs[name]
-        axes = LEADING.get(name, ())
-        rows: dict[tuple[int, ...], None] = dict.fromkeys(i[: len(axes)] for i in output.index)
-        quantity = name.split(".")[0]
-        result = []
-        for lead in rows:
-            labels = dict(zip(axes, lead, strict=True))
-            body = self._label(labels, "joint", self._joint_bodies) or self._label(labels, "port", self.ports)
-            coordinate = self._label(labels, "coordinate", self.coordinates)
-            entries = [e for i, e in zip(output.index, output.entries, strict=True) if i[: len(lead)] == lead]
-            count = self.program.count_entries(entries)
-            result.append(
-                Formula(quantity, name, body, coordinate, lead, output.shape[len(axes) :], output.symmetry, count)
-            )
-        return result
+    def _formula(self, name: str, lead: tuple[int, ...], count: int) -> Formula:
+        """Leading axes are joints, coordinates or ports; a formula is what remains for one such index."""
+        output, axes = self.program.outputs[name], LEADING.get(name, ())
+        labels = dict(zip(axes, lead, strict=True))
+        body = self._label(labels, "joint", self._joint_bodies) or self._label(labels, "port", self.ports)
+        coordinate = self._label(labels, "coordinate", self.coordinates)
+        shape = output.shape[len(axes) :]
+        return Formula(name.split(".")[0], name, body, coordinate, lead, shape, output.symmetry, count)
 
     @staticmethod
     def _label(labels: Mapping[str, int], axis: str, names: tuple[str, ...]) -> str | None:
@@ -164,6 +162,14 @@ LEADING: dict[str, tuple[str, ...]] = {
     "metric": ("coordinate", "b"),
     "christoffel": ("coordinate", "b", "c"),
 }
+
+
+def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
+    """The entries of an output by their index along the leading axes."""
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for index, entry in zip(output.index, output.entries, strict=True):
+        groups.setdefault(index[:axes], []).append(entry)
+    return groups
 
 
 def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:

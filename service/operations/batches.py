@@ -7,8 +7,6 @@ from itertools import chain
 from typing import IO, Any
 
 import numpy as np
-import orjson
-from numpy.typing import NDArray
 
 from service import arrow
 from service.arrays import flat, read_npz
@@ -153,18 +151,4 @@ def as_arrow(
     answers = (evaluate(part) for cut in cuts for part in cut)
     first = next(answers)
     metadata = {**_without(first, [*names, "count"]), "quantities": names}
-    return arrow.write_tables((_table(answer, names) for answer in chain([first], answers)), metadata)
-
-
-def _table(answer: Mapping[str, Any], names: Iterable[str]) -> arrow.Table:
-    columns, count = flat({name: answer[name] for name in names}), answer["count"]
-    failures: dict[int, list[dict[str, Any]]] = {}
-    missing: dict[str, NDArray[np.bool_]] = {}
-    for failure in answer["failures"]:
-        state, quantity = failure["state"], failure["quantity"]
-        failures.setdefault(state, []).append({key: value for key, value in failure.items() if key != "state"})
-        for name in columns:
-            if name == quantity or name.startswith(f"{quantity}."):
-                missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
-    notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
-    return arrow.Table(columns, missing, notes)
+    return arrow.write_tables((arrow.table_of(answer, names) for answer in chain([first], answers)), metadata)

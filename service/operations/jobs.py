@@ -21,6 +21,7 @@ from substructures.errors import Fault, InvalidDocument, TooLarge
 
 SHOWN = 20  # faults
 STORING = ("assemble", "derive")  # kinds whose results are trees and versions
+YIELD = 8  # items that are resolved at a stretch
 RECENT = 30.0  # seconds over which the rate is measured
 
 
@@ -54,8 +55,7 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
     with store.database.read() as connection:
         library = StoreLibrary(connection)
         expanded = kinds.expand(kind, body, store.settings.limits, library)
-        items = _resolved(kind, expanded, library, _places(body, len(expanded)))
-        return Submission(kind, [_new_item(kind, {**item, **(members or {})}, blobs) for item, blobs in items])
+        return Submission(kind, _resolved(kind, expanded, library, _places(body, len(expanded)), members or {}))
 
 
 def prepare_one(
@@ -79,15 +79,21 @@ def _places(body: Mapping[str, Any], count: int) -> Iterator[tuple[str, str]]:
 
 
 def _resolved(
-    kind: str, items: Iterable[Mapping[str, Any]], library: StoreLibrary, places: Iterator[tuple[str, str]]
-) -> list[tuple[Mapping[str, Any], tuple[str, ...]]]:
-    resolved: list[tuple[Mapping[str, Any], tuple[str, ...]]] = []
+    kind: str,
+    items: Iterable[Mapping[str, Any]],
+    library: StoreLibrary,
+    places: Iterator[tuple[str, str]],
+    members: Mapping[str, Any],
+) -> list[NewItem]:
+    resolved: list[NewItem] = []
     faults: list[Fault] = []
     bad = 0
-    for item, (place, note) in zip(items, places, strict=True):
-        sleep(0)  # other requests need not wait until all items are done
+    for k, (item, (place, note)) in enumerate(zip(items, places, strict=True)):
+        if k % YIELD == 0:
+            sleep(0)  # other requests need not wait until all items are done
         try:
-            resolved.append(kinds.resolve(kind, dict(item), library))
+            pinned, blobs = kinds.resolve(kind, dict(item), library)
+            resolved.append(_new_item(kind, {**pinned, **members}, blobs))  # as text, which the collector passes over
         except InvalidDocument as error:
             bad += 1
             faults += [Fault(place + f.pointer, f.code, note + f.message) for f in error.faults]

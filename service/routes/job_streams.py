@@ -38,7 +38,8 @@ def events(
     store: StoreOf,
     last_event_id: Annotated[str | None, Header(max_length=20, description="resume behind this event")] = None,
 ) -> Response:
-    """What happened and happens: changes of state, and positions of items that changed. Ends with the job."""
+    """What happened and happens: changes of state, and positions of items that changed. Ends with the job, or with
+    the server: then the client asks again, with ``Last-Event-ID``."""
     with store.database.read() as connection:
         jobs.find(connection, job)
     seq = int(last_event_id) if last_event_id and last_event_id.isascii() and last_event_id.isdigit() else 0
@@ -48,7 +49,7 @@ def events(
 
 async def _events(store: Store, job: str, seq: int) -> AsyncIterator[bytes]:
     said = monotonic()
-    while True:
+    while not store.stopping.is_set():
         found, is_final = await run_in_threadpool(_read, store, job, seq)
         for event in found:
             yield event_text(event)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from typing import Any
 
 from substructures.documents.numbers import RefusedNumberError, plain_text
 from substructures.documents.text import MAX_DEPTH, SURROGATE, TOO_DEEP, pointer_step
 from substructures.errors import InvalidDocument
+
+_text = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def write_json(data: Any) -> bytes:
@@ -19,42 +21,59 @@ def write_json(data: Any) -> bytes:
     ``0``; a ``float`` is written as its shortest decimal text. Raises :class:`InvalidDocument` for a value that is not
     plain data or not finite, for a lone surrogate, and for nesting deeper than ``MAX_DEPTH``.
     """
+    out: list[str] = []
+    _write(data, [], out)
     try:
-        return "".join(_written(data, "", 0)).encode("utf-8")
+        return "".join(out).encode("utf-8")
     except UnicodeEncodeError:
         raise InvalidDocument.at("", "encoding", SURROGATE) from None
 
 
-def _written(value: Any, pointer: str, depth: int) -> Iterator[str]:
+def _write(value: Any, path: list[str | int], out: list[str]) -> None:
+    """Append the text of a value; ``path``: where it is."""
     if value is None or isinstance(value, str | bool):
-        yield json.dumps(value, ensure_ascii=False)
+        out.append(_text(value))
     elif isinstance(value, int | Decimal | float):
-        yield _number(value, pointer)
-    elif depth >= MAX_DEPTH:
-        raise InvalidDocument.at(pointer, "nesting", TOO_DEEP)
+        out.append(_number(value, path))
+    elif len(path) >= MAX_DEPTH:
+        raise InvalidDocument.at(_pointer(path), "nesting", TOO_DEEP)
     elif isinstance(value, list | tuple):
-        for index, item in enumerate(value):
-            yield "," if index else "["
-            yield from _written(item, pointer + pointer_step(index), depth + 1)
-        yield "]" if value else "[]"
+        _write_list(value, path, out)
     elif isinstance(value, dict):
-        yield from _mapping(value, pointer, depth)
+        _write_mapping(value, path, out)
     else:
-        raise InvalidDocument.at(pointer, "type", f"{type(value).__name__} is not plain data")
+        raise InvalidDocument.at(_pointer(path), "type", f"{type(value).__name__} is not plain data")
 
 
-def _mapping(value: dict[Any, Any], pointer: str, depth: int) -> Iterator[str]:
+def _write_list(value: Sequence[Any], path: list[str | int], out: list[str]) -> None:
+    path.append(0)
+    for index, item in enumerate(value):
+        out.append("," if index else "[")
+        path[-1] = index
+        _write(item, path, out)
+    path.pop()
+    out.append("]" if value else "[]")
+
+
+def _write_mapping(value: dict[Any, Any], path: list[str | int], out: list[str]) -> None:
     for key in value:
         if not isinstance(key, str):
-            raise InvalidDocument.at(pointer, "key", f"keys are strings, not {type(key).__name__}")
+            raise InvalidDocument.at(_pointer(path), "key", f"keys are strings, not {type(key).__name__}")
+    path.append("")
     for index, key in enumerate(sorted(value)):
-        yield ("," if index else "{") + json.dumps(key, ensure_ascii=False) + ":"
-        yield from _written(value[key], pointer + pointer_step(key), depth + 1)
-    yield "}" if value else "{}"
+        out.append(("," if index else "{") + _text(key) + ":")
+        path[-1] = key
+        _write(value[key], path, out)
+    path.pop()
+    out.append("}" if value else "{}")
 
 
-def _number(value: int | Decimal | float, pointer: str) -> str:
+def _pointer(path: Iterable[str | int]) -> str:
+    return "".join(map(pointer_step, path))
+
+
+def _number(value: int | Decimal | float, path: Iterable[str | int]) -> str:
     try:
         return plain_text(value)
     except RefusedNumberError as error:
-        raise InvalidDocument.at(pointer, "number", str(error)) from None
+        raise InvalidDocument.at(_pointer(path), "number", str(error)) from None

@@ -15,6 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import orjson
 
 from substructures.errors import InvalidProgram
@@ -51,6 +52,9 @@ __all__ = [
     "read_program",
     "renumbered",
 ]
+
+GROUPS = 1024  #: groups of entries that are counted in one pass
+ROWS = 4096  #: masks that are unpacked at a time
 
 
 @dataclass(frozen=True)
@@ -155,10 +159,21 @@ class Program:
 
     def totals(self) -> dict[str, int]:
         """``count([name])["total"]`` of every output, in one pass."""
+        return dict(zip(self.outputs, self.totals_of([o.entries for o in self.outputs.values()]), strict=True))
+
+    def totals_of(self, groups: Sequence[Sequence[int]]) -> list[int]:
+        """Arithmetic operations that each group of entries needs, each operation counted once for a group."""
+        totals: list[int] = []
+        for start in range(0, len(groups), GROUPS):
+            totals += self._totals_of(groups[start : start + GROUPS])
+        return totals
+
+    def _totals_of(self, groups: Sequence[Sequence[int]]) -> list[int]:
+        """One pass from the last operation to the first; bit k of a mask: group k needs the operation."""
         masks = [0] * len(self.operations)
-        for bit, output in enumerate(self.outputs.values()):
-            for entry in output.entries:
-                masks[entry] |= 1 << bit
+        for k, entries in enumerate(groups):
+            for entry in entries:
+                masks[entry] |= 1 << k
         found: Counter[int] = Counter()
         for i in range(len(masks) - 1, -1, -1):
             mask = masks[i]
@@ -167,18 +182,7 @@ class Program:
                 found[mask] += operation[0] in ARITHMETIC
                 for operand in operands(operation):
                     masks[operand] |= mask
-        return {name: sum(n for mask, n in found.items() if mask >> bit & 1) for bit, name in enumerate(self.outputs)}
-
-    def count_entries(self, entries: Iterable[int]) -> int:
-        """Arithmetic operations that the given entries need, each counted once."""
-        seen: set[int] = set()
-        stack = list(entries)
-        while stack:
-            i = stack.pop()
-            if i not in seen:
-                seen.add(i)
-                stack.extend(operands(self.operations[i]))
-        return sum(self.operations[i][0] in ARITHMETIC for i in seen)
+        return _weighted_bits(found, len(groups))
 
 
 def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int, int]) -> Operation:
@@ -189,6 +193,18 @@ def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int
     if op == "sym":
         return op, symbol[operation[1]]
     return (op, new[operation[1]], operation[2]) if op == "powi" else operation
+
+
+def _weighted_bits(counts: Mapping[int, int], width: int) -> list[int]:
+    """For every bit the sum of the counts of the masks that have it."""
+    size = -(-width // 8)
+    masks = np.frombuffer(b"".join(mask.to_bytes(size, "little") for mask in counts), np.uint8).reshape(-1, size)
+    weights = np.fromiter(counts.values(), np.int64, len(counts))
+    sums = np.zeros(width, np.int64)
+    for start in range(0, len(masks), ROWS):
+        bits = np.unpackbits(masks[start : start + ROWS], axis=1, bitorder="little", count=width)
+        sums += weights[start : start + ROWS] @ bits
+    return [int(n) for n in sums]
 
 
 def _moved(output: Output, new: Mapping[int, int]) -> Output:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import random
 import signal
 import socket
 import subprocess
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
+import numpy as np
 
 from service.client import Client, ProblemError
 
@@ -102,7 +102,7 @@ class Assassin:
 
     def __init__(self, servers: Sequence[Server], seed: int, longest: float) -> None:
         self.servers, self.longest = servers, longest
-        self.random, self.kills = random.Random(seed), 0
+        self.random, self.kills = np.random.default_rng(seed), 0
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._work)
 
@@ -119,7 +119,7 @@ class Assassin:
             pids = [pid for server in self.servers for pid in server.workers()]
             if pids:
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(self.random.choice(pids), signal.SIGKILL)
+                    os.kill(int(self.random.choice(pids)), signal.SIGKILL)
                     self.kills += 1
 
 

@@ -64,3 +64,15 @@ def test_events_as_they_happen(filled: TestClient, store: Store, monkeypatch: py
         reader.join(10)
     assert ": still here" in texts[0]
     assert parsed(texts[0])[-1][2]["state"] == "succeeded"
+
+
+def test_events_end_with_the_server(filled: TestClient, store: Store) -> None:
+    job = submitted(filled, export("cell", "metric"))
+    texts: list[str] = []
+    reader = threading.Thread(target=lambda: texts.append(filled.get(f"/v1/jobs/{job}/events").text))
+    reader.start()
+    reader.join(0.3)
+    assert reader.is_alive()
+    store.stopping.set()
+    reader.join(5)
+    assert [event[2]["state"] for event in parsed(texts[0])] == ["queued"]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from service.arrays import read_npz
+from service.arrow import read_tables
 from service.jobs.engine import Outcome
 from service.jobs.kinds import KINDS, expand, run
 from service.jobs.kinds.states import DRAWS, sample_states
@@ -188,6 +189,27 @@ def test_listed_states_are_split_and_nothing_else_changes(library: MemoryLibrary
     by_name = {**request, "q": {"arm.q": [0.1 * k for k in range(7)]}}
     made = outcomes(library, "evaluate", {"items": [{"tree": "cell", "request": by_name}]}, Limits(job_states=3))
     assert np.array_equal(joined(made, "forces"), expected["forces"])
+
+
+def test_arrow_says_what_npz_says(library: MemoryLibrary) -> None:
+    pytest.importorskip("pyarrow")
+    item = {
+        "tree": "cell",
+        "request": {"quantities": ["metric", "forward_dynamics", "kinematics"], "parameters": {"arm.m": [1, 0, 2]}},
+        "grid": {"arm.q": [0.1, 0.2, 0.3]},
+        "format": "arrow",
+    }
+    single = {"tree": "cell", "request": {"quantities": ["metric"], "q": [0.3]}, "format": "arrow"}
+    both = outcomes(library, "evaluate", {"items": [item, {**item, "format": "npz"}, single]})
+    assert [each.summary["media_type"].rpartition("/")[2] for each in both[:2]] == ["vnd.apache.arrow.stream", "x-npz"]
+    (table,) = read_tables(io.BytesIO(both[0].files["result"]))
+    arrays = read_npz(io.BytesIO(both[1].files["result"]), 2**20)
+    assert np.array_equal(table["states.arm.q"], [0.1, 0.2, 0.3])
+    for name in ("metric", "kinematics.position", "states.arm.q"):
+        assert np.array_equal(table[name], arrays[name])
+    assert [failure["state"] for failure in table["failures"]] == list(arrays["failures.state"])
+    (row,) = read_tables(io.BytesIO(both[2].files["result"]))
+    assert row["metric"].shape == (1, 1, 1)
 
 
 def test_one_state_is_one_item(library: MemoryLibrary) -> None:

@@ -6,9 +6,11 @@ import hashlib
 import sqlite3
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from service.client import Client
@@ -22,14 +24,17 @@ __all__ = ["address"]  # a fixture
 BATCH = 2000
 SERVER_KILLS = 100
 WORKER_KILLS = 100
+SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
+#: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
+WORKER_LIFE = 3.5
 PARTS = ("puma560", "parallel-gripper", "cart-pendulum", "simple-pendulum")
 pytestmark = pytest.mark.deep
 
 
 def tree(i: int) -> dict[str, Any]:
     """A small assembly; all are different, and some have loads to carry."""
-    arm = {"name": "arm", "substructure": "puma560" if i % 4 == 0 else "cart-pendulum"}
-    at = "arm.flange" if i % 4 == 0 else "arm.base"
+    arm = {"name": "arm", "substructure": "puma560" if i % 2 == 0 else "cart-pendulum"}
+    at = "arm.flange" if i % 2 == 0 else "arm.base"
     hand = {
         "name": "hand",
         "substructure": "parallel-gripper",
@@ -100,12 +105,11 @@ def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str
         with Client(farm[0].address) as client:
             prepared(client)
         batch = submit(farm, {"kind": "assemble", "items": [tree(i) for i in range(BATCH)]}, "batch")
-        with Submitter(farm, small, 0.3) as submitter, Assassin(farm, 7, 1.0) as assassin:
-            while sum(one.kills for one in farm) < SERVER_KILLS or assassin.kills < WORKER_KILLS:
-                victim = assassin.random.choice(farm)
-                time.sleep(assassin.random.uniform(0.0, 1.5))
-                victim.kill()
-                victim.start()
+        with Submitter(farm, small, 0.3) as submitter, Assassin(farm, 7, WORKER_LIFE) as assassin:
+            with ThreadPoolExecutor(len(farm)) as pool:
+                list(pool.map(lambda k: kill_again_and_again(farm[k], k, SERVER_KILLS // len(farm)), range(len(farm))))
+            while assassin.kills < WORKER_KILLS:
+                time.sleep(0.1)
         with Client(farm[0].address) as client:
             assert finished(client, batch, 600)["state"] == "succeeded"
             assert results(client, batch) == undisturbed
@@ -116,6 +120,15 @@ def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str
     print(f"{sum(one.kills for one in farm)} servers and {assassin.kills} workers killed; {submitter.sent} small jobs")
     for file in tmp_path.glob("*.db"):
         assert sqlite3.connect(file).execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def kill_again_and_again(server: Server, seed: int, times: int) -> None:
+    """Kill a server at random moments, and start it again."""
+    moments = np.random.default_rng(seed)
+    for _ in range(times):
+        time.sleep(moments.uniform(0.0, SERVER_LIFE))
+        server.kill()
+        server.start()
 
 
 def check_nothing_doubled(client: Client, batch: str, submitter: Submitter) -> None:
@@ -141,7 +154,7 @@ def test_after_a_restart_nothing_is_stuck(tmp_path: Path) -> None:
     with running([one]):
         with Client(one.address) as client:
             prepared(client)
-        job = submit([one], {"kind": "assemble", "items": [tree(4 * i) for i in range(100)]}, "batch")
+        job = submit([one], {"kind": "assemble", "items": [tree(2 * i) for i in range(100)]}, "batch")
         with Client(one.address) as client:
             while not [item for item in items(client, job) if item["state"] == "running"]:
                 time.sleep(0.01)

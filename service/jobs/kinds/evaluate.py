@@ -2,12 +2,15 @@
 
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
-named there are 0). Its parts have a field ``range``, the first state and the one behind the last.
+named there are 0). ``format``: npz, or arrow (:mod:`service.arrow`). Its parts have a field ``range``, the first state
+and the one behind the last.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -39,12 +42,9 @@ from substructures.model import Model
 from substructures.regressor import RegressorModel, regressor
 from substructures.states import Array
 
-
-def _npz(answer: Mapping[str, Any]) -> bytes:
-    return b"".join(as_npz(answer).pieces)
-
-
-WRITERS = {"npz": (_npz, "application/x-npz")}
+FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
+#: what an answer says beside quantities and states
+ABOUT = ("coordinates", "digest", "frames", "columns")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 CAPACITY = 2_000_000
@@ -83,9 +83,12 @@ def _request(item: Item) -> dict[str, Any]:
     described = [name for name in ("grid", "sample") if name in item]
     if len(described) + ("q" in request) > 1 or (described and "qd" in request):
         raise InvalidDocument.at("/request", "states", "states come from 'q' and 'qd', or a 'grid', or a 'sample'")
-    if item.get("format", "npz") not in tuple(WRITERS):
-        known = ", ".join(WRITERS)
+    if item.get("format", "npz") not in tuple(FORMATS):
+        known = ", ".join(FORMATS)
         raise InvalidDocument.at("/format", "unknown-format", f"unknown format; there are {known}")
+    if item.get("format") == "arrow" and find_spec("pyarrow") is None:
+        message = "Arrow needs the extra 'arrow' on the server: pip install 'substructures[arrow]'"
+        raise InvalidDocument.at("/format", "not-installed", message)
     try:
         read_quantities(request)
     except InvalidDocument as error:
@@ -150,16 +153,30 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     sources = Sources(model, regressor=lambda: _regressor(item, blobs)) if "parts" in item else None
     answer = evaluate(model, _with_columns(model, item["request"], columns), None, _engine, sources)
     progress(0.9)
-    write, media_type = WRITERS[item["format"]]
-    data = write({**answer, "states": columns} if columns else answer)
+    data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)
     summary = {
         "tree": item["tree"],
         "range": item.get("range", [0, 1]),
-        "media_type": media_type,
+        "media_type": FORMATS[item["format"]],
         "bytes": len(data),
         "failures": len(answer["failures"]),
     }
     return Outcome(summary, {"result": data})
+
+
+def _written(answer: dict[str, Any], form: str, has_axis: bool) -> bytes:
+    """The file of an answer; as Arrow always with an axis for the states."""
+    if form == "npz":
+        return b"".join(as_npz(answer).pieces)
+    names = [name for name in answer if name not in (*ABOUT, "count", "failures")]
+    rows = answer if has_axis else {**answer, **{name: _row(answer[name]) for name in names}}
+    arrow = import_module("service.arrow")  # an extra; most runners need not load it
+    metadata = {name: answer[name] for name in ABOUT if name in answer} | {"quantities": names}
+    return b"".join(arrow.write_tables([arrow.table_of(rows, names)], metadata))
+
+
+def _row(value: Any) -> Any:
+    return {name: _row(x) for name, x in value.items()} if isinstance(value, Mapping) else np.asarray(value)[np.newaxis]
 
 
 def _regressor(item: Item, blobs: Blobs) -> RegressorModel:
