@@ -161,7 +161,9 @@ class ClosedStepper:
 
     def dense_output(self) -> Callable[[float], Array]:
         """States within the last step, on the closures."""
-        dense, (first, last), start, end = self.inner.dense_output(), self._way, self.t_old, self.inner.t
+        (first, last), start, end = self._way, self.t_old, self.inner.t
+        self.reduction.expect(first)  # the integrator evaluates once more within the step
+        dense = self.inner.dense_output()
 
         def state(t: float) -> Array:
             y = dense(t)
