@@ -6,6 +6,7 @@ python -m benchmarks.http [--json FILE]
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import socket
 import subprocess
@@ -20,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.transfer import exchange
 from service.client import Client
 from service.kernels import Kernels
 from substructures import Definition, TreeSpec, catalogue, couple, derive
@@ -96,7 +98,9 @@ def couplings(client: Client) -> float:
 
 def batch(client: Client, figures: dict[str, float]) -> None:
     """A batch over HTTP beside the same call in this process, kernels warm: ``http_batch_share`` is that of the rate
-    of one thread, ``http_batch_share_all_threads`` that of the server's own engine, which takes all threads.
+    of one thread, ``http_batch_share_all_threads`` that of the server's own engine, which takes all threads,
+    ``http_batch_share_npz`` that of one thread which reads and writes npz as well. The bare transfer sends the same
+    number of bytes between two processes, by sockets alone.
     """
     spec = TreeSpec.read(
         {"name": "own", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "ur5"}]}
@@ -109,17 +113,31 @@ def batch(client: Client, figures: dict[str, float]) -> None:
     def one_thread(program: Program, values: Mapping[str, Any], names: list[str], _: int) -> dict[str, Array]:
         return engine.compiled(program, names)[0].evaluate(values, threads=1)
 
+    def npz_in_process() -> None:
+        """The work of a request without HTTP: npz read, states evaluated, npz written, npz read."""
+        sent, answer = io.BytesIO(), io.BytesIO()
+        np.savez(sent, q=q)
+        sent.seek(0)
+        found = evaluate(model, {"quantities": quantities, "q": np.load(sent)["q"]}, engine=one_thread)
+        np.savez(answer, **{name: found[name] for name in quantities})
+        answer.seek(0)
+        read = np.load(answer)
+        _ = [read[name] for name in quantities]
+
     ways: dict[str, Callable[[], Any]] = {
         "in process, one thread": lambda: evaluate(model, request, engine=one_thread),
         "in process, all threads": lambda: evaluate(model, request, engine=engine),
         "npz": lambda: client.evaluate("cell0@1", quantities=quantities, q=q),
         "Arrow": lambda: list(client.evaluate_batches("cell0@1", [{"q": q}], quantities=quantities)),
     }
-    times = in_turn(ways, 25)
+    with exchange(q.nbytes, 42 * 8 * STATES) as transfer:
+        times = in_turn({**ways, "npz in process": npz_in_process, "bare transfer": transfer}, 25)
     engine.close()
     one, every = times["in process, one thread"], times["in process, all threads"]
     figures["http_batch_share"], figures["http_batch_share_all_threads"] = one / times["npz"], every / times["npz"]
+    figures["http_batch_share_npz"] = times["npz in process"] / times["npz"]
     figures["http_arrow_share"] = one / times["Arrow"]
+    figures["bare_transfer_ms"] = times["bare transfer"]
     print(f"{STATES:,} states of a 6 dof arm, M and Q, arrays in and out:")
     for name, each in times.items():
         print(f"  {name}: {each:.0f} ms ({one / each:.2f} of the rate of one thread, {every / each:.2f} of all)")
@@ -137,6 +155,8 @@ def main() -> None:
         figures["http_couple_6_6_ms"] = couplings(client)
         print(f"POST couplings, 6 dof onto 6 dof, verified and stored: {figures['http_couple_6_6_ms']:.0f} ms")
         state: dict[str, Any] = {"quantities": ["metric", "forces"], "q": [0.1] * 6}
+        client.request("POST", "/v1/trees/cell0@1/evaluations", state)
+        sleep(2)  # until the kernel has been compiled
         figures["http_one_state_ms"] = milliseconds(
             lambda: client.request("POST", "/v1/trees/cell0@1/evaluations", state), 200
         )

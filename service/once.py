@@ -154,7 +154,8 @@ class Once:
     def _claim(self) -> idempotency.Entry | None:
         limits = self.store.settings.limits
         lifetime = timedelta(hours=limits.idempotency_hours)
-        lease = timedelta(seconds=60 + 2 * limits.sync_seconds)
+        # who takes a claim over too early is fenced off: the first to finish is the only one
+        lease = timedelta(seconds=15 + 2 * limits.sync_seconds)
         with self.store.database.write() as connection:
             idempotency.forget(connection, lifetime, lease)
             entry = idempotency.claim(connection, self.principal, self.key or "", self._fingerprint, self._owner)

@@ -12,6 +12,9 @@ from sqlalchemy import Connection, insert, select
 from service.queries.common import insert_missing, now
 from service.tables import formulas, parts, programs, tags
 
+#: a tenth of the time of the usual 6, for a seventh more bytes
+LEVEL = 3
+
 
 @dataclass(frozen=True, slots=True)
 class StoredPart:
@@ -39,7 +42,7 @@ class FormulaRow:
 
 def put_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
     """Store a program's canonical bytes, compressed."""
-    row = {"digest": digest, "content": zlib.compress(content, 6), "nodes": nodes, "created": now()}
+    row = {"digest": digest, "content": zlib.compress(content, LEVEL), "nodes": nodes, "created": now()}
     insert_missing(connection, programs, [row])
 
 

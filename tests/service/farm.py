@@ -147,7 +147,7 @@ class Submitter:
             self.sent += 1
 
 
-def submit(servers: Sequence[Server], body: dict[str, Any], key: str, seconds: float = 120.0) -> str:
+def submit(servers: Sequence[Server], body: dict[str, Any], key: str, seconds: float = 300.0) -> str:
     """The id of a job, after as many attempts as it takes."""
     end = time.monotonic() + seconds
     while True:

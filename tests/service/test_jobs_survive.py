@@ -59,9 +59,12 @@ def prepared(client: Client) -> None:
 
 
 def results(client: Client, job: str) -> dict[int, tuple[str, str]]:
-    """What came of every item, and the hash of its files."""
+    """What came of every item that succeeded, and the hash of its files; others were killed three times."""
     found = {}
     for item in items(client, job):
+        if item["state"] == "failed":
+            assert (item["problem"]["code"], len(item["deaths"])) == ("worker-died", 3), item
+            continue
         assert item["state"] == "succeeded", item
         contents = hashlib.sha256()
         for file in sorted(item["files"], key=lambda each: str(each["name"])):
@@ -112,10 +115,19 @@ def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str
                 time.sleep(0.1)
         with Client(farm[0].address) as client:
             assert finished(client, batch, 600)["state"] == "succeeded"
-            assert results(client, batch) == undisturbed
+            found = results(client, batch)
+            unlucky = sorted(undisturbed.keys() - found.keys())
+            assert len(unlucky) <= BATCH // 200
+            if unlucky:  # by chance killed three times, which nobody can tell from an item that kills its worker
+                again = submit(farm, {"kind": "assemble", "items": [tree(i) for i in unlucky]}, "unlucky")
+                submitter.acknowledged["unlucky"] = again
+                assert finished(client, again, 60)["state"] == "succeeded"
+                found |= {unlucky[k]: result for k, result in results(client, again).items()}
+            assert found == undisturbed
             for job in submitter.acknowledged.values():
                 view = finished(client, job, 60)
-                assert (view["state"], view["progress"]["done"]) == ("succeeded", 1), view
+                assert view["progress"]["done"] == view["progress"]["total"], view
+                assert view["state"] == "succeeded" or not results(client, job)
             check_nothing_doubled(client, batch, submitter)
     print(f"{sum(one.kills for one in farm)} servers and {assassin.kills} workers killed; {submitter.sent} small jobs")
     for file in tmp_path.glob("*.db"):
@@ -140,7 +152,7 @@ def check_nothing_doubled(client: Client, batch: str, submitter: Submitter) -> N
         listed += [job["id"] for job in page["items"]]
         path = page["links"]["next"]
     assert sorted(listed) == sorted({batch, *submitter.acknowledged.values()})
-    assert len(listed) == 1 + submitter.sent
+    assert len(listed) == 1 + len(submitter.acknowledged)
     for i in range(0, BATCH, 97):
         assert client.request("GET", f"/v1/trees/cell-{i}").json()["revision"] == 1
     answer = client.request("GET", f"/v1/jobs/{batch}").json()
