@@ -307,6 +307,16 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             {"items": [FREE | {"instances": [{"name": "a", "substructure": "x"}]}]},
             ("/instances/0/substructure", "unknown-substructure"),
         ),
+        (
+            "assemble",
+            {"items": [FREE | {"instances": [{"name": "a", "substructure": "pendulum", "parameters": {"x": 1}}]}]},
+            ("/instances/0/parameters/x", "unknown-parameter"),
+        ),
+        (
+            "assemble",
+            {"items": [{**TREE, "instances": [*TREE["instances"], HAND | {"at": "arm.nose"}]}]},
+            ("/instances/1/at", "unknown-port"),
+        ),
         ("assemble", {"template": TREE}, ("/choices", "missing")),
         ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "list-expected")),
         ("assemble", {"template": TREE, "choices": {"leg": ["x"]}}, ("/choices/leg", "unknown-choice")),

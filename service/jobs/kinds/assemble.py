@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
+from service.cache import Cache
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library, StoredVersion
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
+from substructures.definition import Definition
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import couple
 from substructures.part import Part, derive
 from substructures.tree import Instance, TreeSpec
+
+DEFINITIONS = 1000  # kept decoded
+_definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
 
 
 def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
@@ -28,13 +35,45 @@ def pinned_tree(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
         for k, instance in enumerate(spec.instances)
         if instance.name in versions and versions[instance.name] is None
     ]
+    found = {name: version for name, version in versions.items() if version is not None}
+    faults += _faults(spec, found, library)
     if faults:
         raise InvalidDocument(faults)
-    found = {name: version for name, version in versions.items() if version is not None}
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
     return {"tree": tree, "programs": programs, "nodes": item["nodes"]}, (*programs, *programs.values())
+
+
+def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Library) -> Iterator[Fault]:
+    """Parameters and places of hosts that the definitions do not have."""
+    for k, instance in enumerate(spec.instances):
+        definition = _definition(instance, versions, library)
+        if definition is not None:
+            for name in instance.parameters:
+                if name not in definition.parameters:
+                    message = f"'{definition.name}' has no parameter '{name}'"
+                    yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
+        host, _, frame = instance.at.partition(".")
+        carrier = next((_definition(each, versions, library) for each in spec.instances if each.name == host), None)
+        if carrier is not None:
+            frames = ["base", *(body.name for body in carrier.bodies), *(port.name for port in carrier.ports)]
+            if frame not in frames:
+                message = f"'{host}' has no port or body '{frame}'; it has {', '.join(frames)}"
+                yield Fault(f"/instances/{k}/at", "unknown-port", message)
+
+
+def _definition(instance: Instance, versions: Mapping[str, StoredVersion], library: Library) -> Definition | None:
+    if instance.definition is not None:
+        return instance.definition
+    version = versions.get(instance.name)
+    if version is None:
+        return None
+    found = _definitions.get(version.digest)
+    if found is None:
+        found = Definition.read(read_json(library.blob(version.digest) or b"{}"))
+        _definitions.put(version.digest, found)
+    return found
 
 
 def _unknown(instance: Instance) -> str:
