@@ -39,6 +39,7 @@ class Reduction(ABC):
         self.s, self.n, self.rank = s, s.n, rank
         self.rows = s.independent_rows()
         self.best_share = 0.0
+        self.near = s.q.copy()
 
     @abstractmethod
     def pack(self, q: Array, qd: Array, work: float) -> Array:
@@ -50,6 +51,7 @@ class Reduction(ABC):
 
     def expect(self, q: Array) -> None:
         """Where the next state will be, about: several may belong to the same y."""
+        self.near = q
 
     @abstractmethod
     def rates(self, t: float, y: Array) -> Array:
@@ -123,7 +125,6 @@ class Partitioned(Reduction):
 
     def __init__(self, s: Constrained, rank: int) -> None:
         super().__init__(s, rank)
-        self.near = s.q.copy()
         self._partition()
 
     def _partition(self) -> None:
@@ -142,9 +143,6 @@ class Partitioned(Reduction):
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         self.near = q.copy()
         return np.concatenate((q[self.independent], qd[self.independent], (work,)))
-
-    def expect(self, q: Array) -> None:
-        self.near = q
 
     def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
         s, k = self.s, len(self.independent)
