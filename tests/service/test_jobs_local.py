@@ -88,13 +88,14 @@ def test_pool_computes_what_is_computed_in_place(library: MemoryLibrary, pool: L
 
 def test_item_that_fails_carries_its_problem_and_the_runner_goes_on(library: MemoryLibrary, pool: LocalEngine) -> None:
     before = process_of(pool)
-    bad = {**TREE, "instances": [*TREE["instances"], {"name": "x", "substructure": "slider", "at": "arm.elbow"}]}
+    slider = {"name": "x", "substructure": "slider", "at": "arm.tip", "parameters": {"k": "2*nothing"}}
+    bad = {**TREE, "instances": [*TREE["instances"], slider]}
     reports = compute(pool, library.works("assemble", {"items": [bad, TREE]}))
     outcome = reports["assemble-0"].outcome
     assert outcome is not None
     assert outcome.problem is not None
     assert outcome.problem["status"] == 422
-    assert outcome.problem["errors"][0]["pointer"] == "/instances/1/at"
+    assert outcome.problem["errors"][0]["pointer"] == "/instances/1/parameters/k"
     assert reports["assemble-1"].outcome is not None
     assert reports["assemble-1"].outcome.problem is None
     assert process_of(pool) == before
