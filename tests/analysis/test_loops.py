@@ -15,7 +15,7 @@ from substructures.evaluation import evaluate
 from substructures.skeleton import CHAINS
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from pinocchio_trees import engine_of  # noqa: E402
+from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
 KINDS = ("revolute", "prismatic", "spherical", "fixed", "cylindrical", "universal", "planar")
 

@@ -15,7 +15,7 @@ from substructures.model import Model
 from substructures.states import default_number
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from pinocchio_trees import engine_of  # noqa: E402
+from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
 pytest.importorskip("llvmlite")
 

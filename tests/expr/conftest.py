@@ -25,7 +25,7 @@ class Sample:
 
 
 def _sample(seed: int, size: int = 40, divide: bool = True) -> Sample:
-    rng = random.Random(seed)  # noqa: S311
+    rng = random.Random(seed)  # noqa: S311 -- test data
     graph = Graph()
     point = {name: rng.uniform(-1.5, 1.5) for name in ("x", "y", "q1", "q2")}
     exprs = [graph.symbol(n) for n in point] + [graph.number(rng.randint(-3, 3)) for _ in range(2)] + [graph.pi]
