@@ -34,7 +34,7 @@ from service.database import Connection
 from service.operations.trees import StaleError
 from service.problems import Refused
 from service.queries import idempotency
-from service.requests import RawBody, SpooledBody, StoreOf
+from service.requests import RawBody, SpooledBody, store_of
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
@@ -189,16 +189,14 @@ def _replayed(entry: idempotency.Entry) -> Response:
 IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
 
 
-async def once(request: Request, raw: RawBody, store: StoreOf, idempotency_key: IdempotencyKey = None) -> Once:
+async def once(request: Request, raw: RawBody, idempotency_key: IdempotencyKey = None) -> Once:
     """The Once of a request."""
-    return Once(request, lambda: (raw,), store, idempotency_key)
+    return Once(request, lambda: (raw,), store_of(request), idempotency_key)
 
 
-async def once_spooled(
-    request: Request, body: SpooledBody, store: StoreOf, idempotency_key: IdempotencyKey = None
-) -> Once:
+async def once_spooled(request: Request, body: SpooledBody, idempotency_key: IdempotencyKey = None) -> Once:
     """The Once of a request with a body of any size."""
-    return Once(request, body.pieces, store, idempotency_key)
+    return Once(request, body.pieces, store_of(request), idempotency_key)
 
 
 OnceOf = Annotated[Once, Depends(once)]
