@@ -18,7 +18,7 @@ from service import __version__
 JSON = "application/json"
 FOR_EVER = "max-age=31536000, immutable"
 REVALIDATE = "no-cache"
-AT_ONCE = 2**18  # bytes that are handed to the connection at a time; a smaller body is sent as a whole
+AT_ONCE = 2**20  # bytes that are handed to the connection at a time; a smaller body is sent as a whole
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ ROOM = 64 * 2**20  # bytes; memory is only taken as it fills
 
 @contextmanager
 def transfer(
-    address: str, path: str, content: bytes | Iterable[bytes], headers: Mapping[str, str], timeout: float
+    address: str, path: str, content: Iterable[bytes | memoryview], headers: Mapping[str, str], timeout: float
 ) -> Iterator[HTTPResponse]:
     """The answer to a POST on a connection of its own, to be read inside of the block. Raises httpx2.HTTPError."""
     url = urlsplit(address)

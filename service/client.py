@@ -103,8 +103,8 @@ class Client:
         given = flat(request)
         if not any(isinstance(value, np.ndarray) for value in given.values()):
             return dict(self.request("POST", path, request).json())
-        body = b"".join(write_npz(given).pieces)
-        with self._transfer(path, body, NPZ) as answer:
+        file = write_npz(given)
+        with self._transfer(path, file.pieces, NPZ, {"Content-Length": str(file.size)}) as answer:
             return _result(view_npz(read_all(answer)))
 
     def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
@@ -143,14 +143,16 @@ class Client:
         has no result. Nothing is answered before all was sent.
         """
         tables = (arrow.Table(flat(batch)) for batch in batches)
-        content = (bytes(piece) for piece in arrow.write_tables(tables, constants))
+        content = arrow.write_tables(tables, constants)
         with self._transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
             for columns in arrow.read_tables(answer):
                 yield nested(columns)
 
     @contextmanager
-    def _transfer(self, path: str, content: bytes | Iterable[bytes], media_type: str) -> Iterator[HTTPResponse]:
-        headers = {**self._headers, "Content-Type": media_type, "Accept": media_type}
+    def _transfer(
+        self, path: str, content: Iterable[bytes | memoryview], media_type: str, more: Mapping[str, str] | None = None
+    ) -> Iterator[HTTPResponse]:
+        headers = {**self._headers, "Content-Type": media_type, "Accept": media_type, **(more or {})}
         with transfer(self.address, path, content, headers, self.timeout) as answer:
             if answer.status >= 400:
                 raise _problem(answer.status, answer.headers.get_content_type(), answer.read())

@@ -71,7 +71,7 @@ class Evaluation:
         evaluations.check_size(self.sources, request, self.limits)
         if wanted == arrays.MEDIA_TYPE:
             file = arrays.as_npz(self._evaluated(request))
-            return Stream(file.pieces, {"Content-Type": wanted, "Content-Length": str(file.size)})
+            return Stream(iter(file.pieces), {"Content-Type": wanted, "Content-Length": str(file.size)})
         return json_answer(evaluations.as_json(self._evaluated(request), request))
 
     def _arrow(self, requests: Iterator[Any]) -> Iterator[memoryview | bytes]:

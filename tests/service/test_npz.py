@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import pickle
 import zipfile
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.arrays import read_npz, write_npz
+from service.arrays import read_npz, view_npz, write_npz
 from substructures.errors import InvalidDocument, TooLarge
 
 from .conftest import HAND
@@ -74,6 +75,7 @@ def broken() -> dict[str, bytes]:
         "empty": b"",
         "text": b"q=1",
         "cut": good[: len(good) // 2],
+        "damaged": good.replace(np.lib.format.magic(1, 0) + b"v", np.lib.format.magic(1, 0) + b"w"),
         "pickle": pickle.dumps({"q": [0, 0]}),
         "objects": packed(q=np.array([{}, {}], dtype=object)),
         "complex": packed(q=np.zeros(2, complex)),
@@ -98,6 +100,22 @@ def test_bombs_are_refused_before_they_unpack() -> None:
         read_npz(stream, 10**6)
 
 
+@pytest.mark.parametrize("write", [np.savez, np.savez_compressed])
+def test_damaged_bytes_are_refused_or_harmless(write: Callable[..., None]) -> None:
+    stream = io.BytesIO()
+    write(stream, q=np.arange(6.0), names=np.array(["metric"]))
+    chance, refused = np.random.default_rng(1), 0
+    for _ in range(2000):
+        damaged = bytearray(stream.getvalue())
+        for _ in range(chance.integers(1, 4)):
+            damaged[chance.integers(len(damaged))] = chance.integers(256)
+        try:
+            read_npz(io.BytesIO(damaged[: chance.integers(1, 10 * len(damaged))]), 10**6)
+        except (InvalidDocument, TooLarge):
+            refused += 1
+    assert refused > 1000
+
+
 def test_round_trip() -> None:
     arrays = {
         "large": np.arange(3e5),
@@ -109,6 +127,12 @@ def test_round_trip() -> None:
     file = write_npz(arrays)
     written = b"".join(file.pieces)
     assert file.size == len(written)
+    assert zipfile.ZipFile(io.BytesIO(written)).testzip() is None
+    for name, value in np.load(io.BytesIO(written)).items():  # as everybody reads it
+        np.testing.assert_array_equal(value, arrays[name])
+    for name, value in view_npz(np.frombuffer(written, np.uint8)).items():
+        assert not value.flags.owndata, name
+        np.testing.assert_array_equal(value, arrays[name])
     found = read_npz(io.BytesIO(written), 10**7)
     for name, value in arrays.items():
         np.testing.assert_array_equal(found[name], value)
