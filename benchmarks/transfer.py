@@ -11,6 +11,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import numpy as np
+
 
 def receive(connection: socket.socket, buffer: memoryview) -> bool:
     """Fill the buffer; False at the end of the connection."""
@@ -35,7 +37,7 @@ def exchange(there: int, back: int) -> Iterator[Callable[[], None]]:
 
         def work() -> None:
             connection.sendall(data)
-            receive(connection, memoryview(bytearray(back)))
+            receive(connection, np.empty(back, np.uint8).data)
 
         yield work
     process.wait(10)
