@@ -5,9 +5,7 @@ from __future__ import annotations
 import hashlib
 import sqlite3
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +21,7 @@ from .test_postgres import address, server
 __all__ = ["address"]  # a fixture
 
 BATCH = 2000
-#: killed servers, and killed workers, in the batch; on PostgreSQL two servers die a fifth as often
-KILLS = 100
+KILLS = 100  # of servers, and of workers, in the batch
 SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
 #: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
 WORKER_LIFE = 3.5
@@ -86,61 +83,49 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[int, tuple[str
         return results(client, job)
 
 
-@dataclass(frozen=True)
-class Siege:
-    """Servers on one database, so many kills of servers and of workers, and the items of the batch."""
-
-    servers: list[Server]
-    kills: int
-    items: int
-
-
 @pytest.fixture(params=["sqlite, one server", "postgresql, two servers"])
-def siege(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Siege]:
+def farm(request: pytest.FixtureRequest, tmp_path: Path) -> list[Server]:
     """Servers on one database."""
     log = tmp_path / "log"
     if request.param.startswith("sqlite"):
-        yield Siege([Server(f"sqlite:///{tmp_path}/store.db", log)], KILLS, BATCH)
-        return
+        return [Server(f"sqlite:///{tmp_path}/store.db", log)]
     if server() is None:
         pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
     database = request.getfixturevalue("address")
     both = [Server(database, log) for _ in range(2)]
     for one in both:
         one.environment["SUBSTRUCTURES_WORKERS"] = "1"
-    yield Siege(both, KILLS // 5, BATCH // 5)
+    return both
 
 
-def test_a_batch_under_fire(siege: Siege, undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
-    farm, count = siege.servers, siege.items
-    expected = {k: result for k, result in undisturbed.items() if k < count}
+def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
     for one in farm:
         one.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "3"
     with running(farm):
         with Client(farm[0].address) as client:
             prepared(client)
-        batch = submit(farm, {"kind": "assemble", "items": [tree(i) for i in range(count)]}, "batch")
+        batch = submit(farm, {"kind": "assemble", "items": [tree(i) for i in range(BATCH)]}, "batch")
         with Submitter(farm, small, 0.3) as submitter, Assassin(farm, 7, WORKER_LIFE) as assassin:
             with ThreadPoolExecutor(len(farm)) as pool:
-                list(pool.map(lambda k: kill_again_and_again(farm[k], k, siege.kills // len(farm)), range(len(farm))))
-            while assassin.kills < siege.kills:
+                list(pool.map(lambda k: kill_again_and_again(farm[k], k, KILLS // len(farm)), range(len(farm))))
+            while assassin.kills < KILLS:
                 time.sleep(0.1)
         with Client(farm[0].address) as client:
             assert finished(client, batch, 600)["state"] == "succeeded"
             found = results(client, batch)
-            unlucky = sorted(expected.keys() - found.keys())
+            unlucky = sorted(undisturbed.keys() - found.keys())
             assert len(unlucky) <= 10
             if unlucky:  # by chance killed three times, which nobody can tell from an item that kills its worker
                 again = submit(farm, {"kind": "assemble", "items": [tree(i) for i in unlucky]}, "unlucky")
                 submitter.acknowledged["unlucky"] = again
                 assert finished(client, again, 60)["state"] == "succeeded"
                 found |= {unlucky[k]: result for k, result in results(client, again).items()}
-            assert found == expected
+            assert found == undisturbed
             for job in submitter.acknowledged.values():
                 view = finished(client, job, 60)
                 assert view["progress"]["done"] == view["progress"]["total"], view
                 assert view["state"] == "succeeded" or not results(client, job)
-            check_nothing_doubled(client, batch, submitter, count)
+            check_nothing_doubled(client, batch, submitter)
     print(f"{sum(one.kills for one in farm)} servers and {assassin.kills} workers killed; {submitter.sent} small jobs")
     for file in tmp_path.glob("*.db"):
         assert sqlite3.connect(file).execute("PRAGMA integrity_check").fetchone() == ("ok",)
@@ -155,7 +140,7 @@ def kill_again_and_again(server: Server, seed: int, times: int) -> None:
         server.start()
 
 
-def check_nothing_doubled(client: Client, batch: str, submitter: Submitter, count: int) -> None:
+def check_nothing_doubled(client: Client, batch: str, submitter: Submitter) -> None:
     """One job for every key, one revision of every tree, one result for every item."""
     listed = []
     path = "/v1/jobs?page_size=1000"
@@ -165,10 +150,10 @@ def check_nothing_doubled(client: Client, batch: str, submitter: Submitter, coun
         path = page["links"]["next"]
     assert sorted(listed) == sorted({batch, *submitter.acknowledged.values()})
     assert len(listed) == 1 + len(submitter.acknowledged)
-    for i in range(0, count, 97):
+    for i in range(0, BATCH, 97):
         assert client.request("GET", f"/v1/trees/cell-{i}").json()["revision"] == 1
     answer = client.request("GET", f"/v1/jobs/{batch}").json()
-    assert answer["progress"]["done"] == answer["progress"]["total"] == count
+    assert answer["progress"]["done"] == answer["progress"]["total"] == BATCH
 
 
 def test_after_a_restart_nothing_is_stuck(tmp_path: Path) -> None:
