@@ -11,6 +11,7 @@ from functools import partial
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 from scipy.optimize import brentq
 
@@ -71,6 +72,16 @@ class Motion:
     steps: int = 0
     evaluations: int = 0
     stride: int = 1
+
+    def judged(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Times (J,) and states (J, N), in order, of all that the judges see: steps that were kept, results and zeros;
+        and which of them are the results (K,).
+        """
+        t = np.array([*self.step_t, *self.t, *(t for _, t, _ in self.found)], dtype=np.float64)
+        x = np.array([*self.step_x, *self.x, *(x for _, _, x in self.found)], dtype=np.float64)
+        order = np.argsort(t, kind="stable")
+        results = np.argsort(order)[len(self.step_t) : len(self.step_t) + len(self.t)]
+        return t[order], x[order], results
 
     def end(self, status: Literal["stopped", "failed"], message: str) -> None:
         """No further steps."""
@@ -219,7 +230,8 @@ class _Run:
                 self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
                 self.last = t, x
-                self.motion.step_t[-1], self.motion.step_x[-1] = t, x
+                if self.motion.step_t[-1] > t:
+                    del self.motion.step_t[-1], self.motion.step_x[-1]
                 return t
         return float(solver.t)
 
