@@ -110,7 +110,8 @@ def _along(quantities: Callable[[Constrained], dict[str, Any]], s: Constrained, 
     for at, state in zip(t.tolist(), x, strict=True):
         s.move(at, *np.split(state[:-1], 2))
         rows.append(quantities(s))
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    like = {name: np.shape(value) for name, value in quantities(s).items()}
+    return {name: np.array([row[name] for row in rows]).reshape(len(rows), *shape) for name, shape in like.items()}
 
 
 def _forces(s: Constrained) -> dict[str, Any]:

@@ -148,6 +148,15 @@ def test_closed_motions_in_space_driven_and_with_events(reduction: str) -> None:
     assert_energy_is_stated(model, simulate(model, request | {"reduction": reduction}))
 
 
+def test_nothing_is_wanted_but_the_judgement() -> None:
+    """No times: series without rows, and the checks of all steps."""
+    model = slider_crank()
+    request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
+    motion = simulate(model, request | {"span": [0, 0.1], "times": []})
+    assert {len(values) for values in motion.arrays().values()} == {0}
+    assert stated(motion, "energy").worst > 0
+
+
 @pytest.mark.parametrize("form", ["voronets", "boltzmann-hamel"])
 def test_rolling_motions(form: str) -> None:
     """Energy, the velocity across the blade, and the height of the disc over the floor."""
