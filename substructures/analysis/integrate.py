@@ -7,29 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 from scipy.optimize import brentq
 
+from substructures.analysis.steppers import Stepper, within
 from substructures.states import Array
 
 Function = Callable[[float, Array], Array]
 #: told the time reached; False stops
 Progress = Callable[[float], bool | None]
 
-METHODS = {"DOP853": DOP853, "RK45": RK45, "RK23": RK23, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
 #: accepted steps that are kept for the judges
 KEPT = 20_000
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
-
-
-#: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver
-Stepper = Callable[..., Any]
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -40,12 +34,6 @@ class Settings:
     stepper: Stepper
     max_steps: int
     advice: str = STIFF
-
-
-def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
-    """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
-    most = np.inf if max_step is None else max_step
-    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol, max_step=most)
 
 
 @dataclass(frozen=True)
@@ -196,7 +184,7 @@ class _Run:
         if self.tiny > PATIENCE:
             motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
             return
-        dense = _Dense(solver)
+        dense = _Dense(solver, self.settings.stepper)
         last = self._watch(solver, dense)
         self.collect(last, dense)
         if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
@@ -250,13 +238,13 @@ class _Run:
 class _Dense:
     """Dense output of the last step, made when it is first needed; exact at its end."""
 
-    def __init__(self, solver: Any) -> None:
-        self.solver: Any = solver
+    def __init__(self, solver: Any, make: Stepper) -> None:
+        self.solver, self.make = solver, make
         self.output: Any = None
 
     def __call__(self, t: float) -> Array:
         if t == self.solver.t:
             return np.asarray(self.solver.y)
         if self.output is None:
-            self.output = self.solver.dense_output()
+            self.output = within(self.solver, self.make)
         return np.asarray(self.output(t))

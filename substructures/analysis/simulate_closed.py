@@ -10,13 +10,14 @@ import numpy as np
 
 from substructures.analysis.closed_stepper import ClosedStepper
 from substructures.analysis.constrained import SINGULAR, Constrained, Singular
-from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
+from substructures.analysis.integrate import Motion, Settings, integrate
 from substructures.analysis.judges import energy_balance
 from substructures.analysis.loops import least_multipliers, mobility
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.project import Consistent, consistent_state
 from substructures.analysis.reductions import REDUCTIONS, Reduction
 from substructures.analysis.requests import ClosedRequest
+from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Check, Trajectory, crossings
 from substructures.model import Model
 from substructures.states import Array

@@ -10,11 +10,12 @@ import numpy as np
 from scipy.linalg import lapack
 
 from substructures.analysis.inputs import Along, VaryingInputs, read_along
-from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
+from substructures.analysis.integrate import Motion, Settings, integrate
 from substructures.analysis.judges import energy_balance, spread
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.quasi_velocities import QuasiVelocities, velocity_equations
 from substructures.analysis.requests import RollingRequest
+from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Check, Crossing, Trajectory, crossings
 from substructures.analysis.velocity_constraints import Closed
 from substructures.compile import compile_program

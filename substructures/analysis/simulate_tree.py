@@ -13,11 +13,12 @@ from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.fixed_step import march
 from substructures.analysis.formulas import require_tree
 from substructures.analysis.inputs import Along, read_along
-from substructures.analysis.integrate import Motion, Settings, Stepper, integrate, scipy_stepper
+from substructures.analysis.integrate import Motion, Settings, integrate
 from substructures.analysis.judges import States, integral_series, judge
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.right_hand_side import RightHandSide, is_definite
+from substructures.analysis.steppers import Stepper, scipy_stepper
 from substructures.analysis.taylor import require_taylor, taylor_stepper
 from substructures.analysis.trajectory import Trajectory, crossings
 from substructures.errors import InvalidDocument
