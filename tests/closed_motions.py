@@ -12,9 +12,10 @@ METHODS = ["projection", "partitioning"]
 
 
 def right(motion: Trajectory) -> None:
-    """Finished, and all checks hold."""
+    """Finished, and all checks hold; the energy drifts by less than a tenth of what is allowed."""
     assert motion.status == "finished", motion.message
     assert motion.is_right, motion.checks
+    assert next(check for check in motion.checks if check.name == "energy").relative < 1e-8
     assert motion.series["position_residual"].max() < 1e-9
     assert motion.series["velocity_residual"].max() < 1e-9
 
