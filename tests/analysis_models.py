@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import Kind, model_of, random_definition, with_parameters
+from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.states import default_number
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
+FINE: Plain = {"relative_tolerance": 1e-13, "absolute_tolerance": 1e-14}
+#: released at rest from the horizontal, m = L = 1, g = 9.81: 4 sqrt(L/g) K(sin 45 deg) (IFToMM A01)
+PERIOD = 2.3678419475762373
 
 
 def seeds(quick: int, count: int) -> list[Any]:
@@ -25,6 +28,12 @@ def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81),
     part = derive(Definition.read(catalogue.load(name)))
     one = {"name": "x", "substructure": name, "parameters": parameters}
     return couple(TreeSpec.read({"name": "t", "gravity": list(gravity), "instances": [one]}), {"x": part})
+
+
+def oscillator(**joint: Any) -> Plain:
+    """A mass of 1 kg on a slide."""
+    slide = {"type": "prismatic", "coordinate": "s"} | joint
+    return {"name": "mass", "bodies": [{"name": "b", "parent": "base", "joint": slide, "mass": 1}]}
 
 
 @cache

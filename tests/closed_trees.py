@@ -96,3 +96,9 @@ def stewart() -> Model:
     closures = [{"name": f"ball{k}", "type": "ball", "from": f"leg{k}.joint", "to": f"top.p{k}"} for k in range(6)]
     document = {"gravity": [0, 0, -9.81], "instances": instances, "closures": closures}
     return tree_model(document, {"plate": plate, "stewart-leg": catalogue.load("stewart-leg")})
+
+
+def angles(rotation: np.ndarray) -> list[float]:
+    """Yaw, pitch and roll of a rotation Rz Ry Rx."""
+    x, y, z = rotation
+    return [np.arctan2(y[0], x[0]), -np.arcsin(z[0]), np.arctan2(z[1], z[2])]

@@ -19,8 +19,9 @@ identification             measurements
 =========================  =========================================================================================
 
 What simulations share: ``requests`` (documents; their parts: ``request_fields``), ``inputs`` (inputs, events, series of
-a request), ``integrate`` (steps, outputs, events, breaks), ``judges`` and ``trajectory`` (checks and results). Closed
-loops add ``constrained`` (the equations at a state), ``prescribed`` (motions that are given), ``project`` (consistent
-states), ``reductions`` and ``closed_stepper``; trees ``right_hand_side``, ``fixed_step`` and ``taylor``.
+a request), ``steppers`` and ``integrate`` (steps, outputs, events, breaks), ``judges`` and ``trajectory`` (checks and
+results). Closed loops add ``constrained`` (the equations at a state), ``prescribed`` (motions that are given),
+``project`` (consistent states), ``reductions`` and ``closed_stepper``; trees ``right_hand_side``, ``fixed_step`` and
+``taylor``.
 Expressions of documents are read by ``expressions``; ``formulas`` and ``formulation`` hold a model in a new graph.
 """

@@ -15,8 +15,8 @@ from scipy.linalg import svdvals
 from scipy.optimize import minimize_scalar
 
 from substructures.analysis.constrained import SINGULAR, Singular
-from substructures.analysis.integrate import Stepper
 from substructures.analysis.reductions import Reduction
+from substructures.analysis.steppers import Stepper, within
 from substructures.states import Array
 
 #: how often a step that ran into a singular position is begun again, each time a quarter as long
@@ -88,7 +88,7 @@ class ClosedStepper:
     def _stop_before(self, time: float) -> None:
         """End this step a little before a singular position; the next one fails."""
         self._message = f"a singular position is passed at t = {time:.9g} s: {SINGULAR}"
-        state, end = self.dense_output(), self.t + 0.999 * (time - self.t)
+        state, end = self._search(), self.t + 0.999 * (time - self.t)
         self.t, self.y = end, state(end)
 
     def _prepare(self) -> None:
@@ -146,7 +146,7 @@ class ClosedStepper:
 
     def _passed(self) -> float | None:
         """When the smallest singular value comes near zero within the last step [s]."""
-        state, start, h = self.dense_output(), self.t, self.inner.t - self.t
+        state, start, h = self._search(), self.t, self.inner.t - self.t
         rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
         def share(part: float) -> float:
@@ -161,9 +161,21 @@ class ClosedStepper:
 
     def dense_output(self) -> Callable[[float], Array]:
         """States within the last step, on the closures."""
+        first = self._way[0]
+
+        def make(*arguments: Any, **options: Any) -> Any:
+            self.reduction.expect(first)
+            return self.make(*arguments, **options)
+
+        return self._landed(within(self.inner, make, self.t))
+
+    def _search(self) -> Callable[[float], Array]:
+        """The same, less accurate, but also where the accelerations are not determined."""
+        self.reduction.expect(self._way[0])  # the integrator evaluates once more within the step
+        return self._landed(self.inner.dense_output())
+
+    def _landed(self, dense: Callable[[float], Array]) -> Callable[[float], Array]:
         (first, last), start, end = self._way, self.t_old, self.inner.t
-        self.reduction.expect(first)  # the integrator evaluates once more within the step
-        dense = self.inner.dense_output()
 
         def state(t: float) -> Array:
             y = dense(t)

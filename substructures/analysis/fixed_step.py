@@ -56,7 +56,7 @@ def march(
 ) -> tuple[Motion, Pace]:
     """Steps of size ``fixed.step`` over the span (the last one may be shorter).
 
-    Outputs between steps are those of the cubic Hermite polynomial of the step.
+    Outputs within a step are the ends of shorter steps from its start.
     """
     step = rk4 if fixed.method == "rk4" else semi_implicit_euler(n)
     motion, wanted = Motion(step_t=[span[0]], step_x=[x]), outputs.tolist()
@@ -68,7 +68,10 @@ def march(
             end = span[1] if motion.steps == count - 1 else span[0] + (motion.steps + 1) * fixed.step
             new = step(f, t, x, end - t)
             longest = max(longest, perf_counter() - before)
-            k = _collect(motion, wanted, k, f, (t, x), (end, new))
+            while k < len(wanted) and wanted[k] <= end:
+                motion.t.append(wanted[k])
+                motion.x.append(new if wanted[k] == end else step(f, t, x, wanted[k] - t))
+                k += 1
             t, x = end, new
             _accepted(motion, t, x, max_steps, count, progress)
     pace = Pace((t - span[0]) / max(perf_counter() - begin, 1e-9), longest)
@@ -86,26 +89,3 @@ def _accepted(motion: Motion, t: float, x: Array, max_steps: int, count: int, pr
         motion.end("failed", f"{motion.steps:,} steps reached only t = {t:.9g} s: raise 'max_steps'")
     elif progress is not None and progress(t) is False:
         motion.end("stopped", f"cancelled at t = {t:.9g} s")
-
-
-def _collect(
-    motion: Motion, wanted: list[float], k: int, f: Function, a: tuple[float, Array], b: tuple[float, Array]
-) -> int:
-    """Outputs from a to b; the index of the next one."""
-    slopes: tuple[Array, Array] | None = None
-    while k < len(wanted) and wanted[k] <= b[0]:
-        if wanted[k] in (a[0], b[0]):
-            x = a[1] if wanted[k] == a[0] else b[1]
-        else:
-            slopes = slopes or (f(*a), f(*b))
-            x = _hermite((wanted[k] - a[0]) / (b[0] - a[0]), b[0] - a[0], a[1], b[1], *slopes)
-        motion.t.append(wanted[k])
-        motion.x.append(x)
-        k += 1
-    return k
-
-
-def _hermite(s: float, h: float, x0: Array, x1: Array, d0: Array, d1: Array) -> Array:
-    """The cubic with values x and slopes d at both ends, at s in [0, 1]."""
-    r = 1 - s
-    return r * r * ((1 + 2 * s) * x0 + s * h * d0) + s * s * ((1 + 2 * r) * x1 - r * h * d1)

@@ -7,28 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any, Literal
 
 import numpy as np
-from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from substructures.analysis.steppers import Stepper, within
 from substructures.states import Array
 
 Function = Callable[[float, Array], Array]
 #: told the time reached; False stops
 Progress = Callable[[float], bool | None]
 
-METHODS = {"DOP853": DOP853, "RK45": RK45, "RK23": RK23, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
 #: accepted steps that are kept for the judges
 KEPT = 20_000
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
-
-
-#: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver
-Stepper = Callable[..., Any]
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -39,12 +34,6 @@ class Settings:
     stepper: Stepper
     max_steps: int
     advice: str = STIFF
-
-
-def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
-    """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
-    most = np.inf if max_step is None else max_step
-    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol, max_step=most)
 
 
 @dataclass(frozen=True)
@@ -71,6 +60,16 @@ class Motion:
     steps: int = 0
     evaluations: int = 0
     stride: int = 1
+
+    def judged(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Times (J,) and states (J, N), in order, of all that the judges see: steps that were kept, results and zeros;
+        and which of them are the results (K,).
+        """
+        t = np.array([*self.step_t, *self.t, *(t for _, t, _ in self.found)], dtype=np.float64)
+        x = np.array([*self.step_x, *self.x, *(x for _, _, x in self.found)], dtype=np.float64)
+        order = np.argsort(t, kind="stable")
+        results = np.argsort(order)[len(self.step_t) : len(self.step_t) + len(self.t)]
+        return t[order], x[order], results
 
     def end(self, status: Literal["stopped", "failed"], message: str) -> None:
         """No further steps."""
@@ -185,7 +184,7 @@ class _Run:
         if self.tiny > PATIENCE:
             motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
             return
-        dense = _Dense(solver)
+        dense = _Dense(solver, self.settings.stepper)
         last = self._watch(solver, dense)
         self.collect(last, dense)
         if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
@@ -219,7 +218,8 @@ class _Run:
                 self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
                 self.last = t, x
-                self.motion.step_t[-1], self.motion.step_x[-1] = t, x
+                if self.motion.step_t[-1] > t:
+                    del self.motion.step_t[-1], self.motion.step_x[-1]
                 return t
         return float(solver.t)
 
@@ -238,13 +238,13 @@ class _Run:
 class _Dense:
     """Dense output of the last step, made when it is first needed; exact at its end."""
 
-    def __init__(self, solver: Any) -> None:
-        self.solver: Any = solver
+    def __init__(self, solver: Any, make: Stepper) -> None:
+        self.solver, self.make = solver, make
         self.output: Any = None
 
     def __call__(self, t: float) -> Array:
         if t == self.solver.t:
             return np.asarray(self.solver.y)
         if self.output is None:
-            self.output = self.solver.dense_output()
+            self.output = within(self.solver, self.make)
         return np.asarray(self.output(t))

@@ -45,22 +45,23 @@ def integral_series(model: Model, integrals: FirstIntegrals, states: States) -> 
     return series
 
 
-def judge(model: Model, integrals: FirstIntegrals, states: States, limit: float) -> tuple[Check, ...]:
-    """Checks of all integrals; ``limit``: of the violation over the scale of the quantity."""
-    series = integral_series(model, integrals, states)
+def judge(
+    model: Model, integrals: FirstIntegrals, states: States, series: Mapping[str, Array], limit: float
+) -> tuple[Check, ...]:
+    """Checks of all integrals; ``series``: see integral_series; ``limit``: of the violation over the scale."""
     scales = _Scales(model, states)
     checks = []
     for integral in integrals.integrals:
         value, scale = series[integral.name], scales.of(integral)
         noise = ROUNDING * float(np.abs(value).max(initial=0))
         if integral.rule == "constant":
-            checks.append(Check.of(_about(integral, "constant"), value - value[:1], states.t, scale, limit, noise))
+            checks.append(Check.of(_about(integral, "constant"), spread(value), states.t, scale, limit, noise))
             continue
         balanced = value - states.work
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
         scale = max(scale, float(np.abs(states.work).max(initial=0)))
-        checks.append(Check.of(_about(entry, "constant"), balanced - balanced[:1], states.t, scale, limit, noise))
+        checks.append(Check.of(_about(entry, "constant"), spread(balanced), states.t, scale, limit, noise))
         power = series["power"]
         if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
             rise = value - np.minimum.accumulate(value)
@@ -83,8 +84,12 @@ def energy_balance(t: Array, columns: Mapping[str, Array], conservative: bool, l
     reason = "T + V is constant: the forces have a potential, constraints do no work"
     if not conservative:
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
-    total = T + V - work
-    return Check.of(("energy", "constant", reason, "J"), total - total[0], t, scale, limit)
+    return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit)
+
+
+def spread(values: Array) -> Array:
+    """The largest difference of two values up to each, along the first axis: drift whatever it is counted from."""
+    return np.asarray(np.maximum.accumulate(values) - np.minimum.accumulate(values))
 
 
 class _Scales:

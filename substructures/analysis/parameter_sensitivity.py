@@ -17,12 +17,13 @@ import numpy as np
 
 from substructures.analysis.formulas import ModelFormulas
 from substructures.analysis.inputs import Along, VaryingInputs, state_names
-from substructures.analysis.integrate import Settings, integrate, scipy_stepper
+from substructures.analysis.integrate import Settings, integrate
 from substructures.analysis.known import Known, program_kernel
 from substructures.analysis.perturbation import require_smooth
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.simulate_tree import read_tree
+from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Trajectory
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional

@@ -63,7 +63,7 @@ class SpanRequest(StateRequest):
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
     max_step: Positive | None = Field(None, description="s")
     max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
-    drift_limit: Positive = Field(1e-6, description="largest relative drift of first integrals of a right result")
+    drift_limit: Positive = Field(1e-7, description="largest relative drift of first integrals of a right result")
 
     @model_validator(mode="after")
     def _one_grid(self) -> SpanRequest:

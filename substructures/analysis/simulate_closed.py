@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +10,14 @@ import numpy as np
 
 from substructures.analysis.closed_stepper import ClosedStepper
 from substructures.analysis.constrained import SINGULAR, Constrained, Singular
-from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
+from substructures.analysis.integrate import Motion, Settings, integrate
 from substructures.analysis.judges import energy_balance
 from substructures.analysis.loops import least_multipliers, mobility
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.project import Consistent, consistent_state
 from substructures.analysis.reductions import REDUCTIONS, Reduction
 from substructures.analysis.requests import ClosedRequest
+from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Check, Trajectory, crossings
 from substructures.model import Model
 from substructures.states import Array
@@ -80,11 +81,12 @@ def _moved(
 
 def _judged(s: Constrained, asked: ClosedRequest, motion: Motion) -> Trajectory:
     """The motion with its series and checks."""
-    t, x = np.array(motion.t), np.array(motion.x)
+    t, x, results = motion.judged()
+    judged = _along(_judged_quantities, s, t, x) | {"work": x[:, -1]}
+    checks = (*_residual_checks(t, judged), energy_balance(t, judged, s.conservative, asked.drift_limit))
+    t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
-    rows = [_quantities(s, at, *pair) for at, *pair in zip(motion.t, q, qd, strict=True)]
-    series = {name: np.array([row[name] for row in rows]) for name in rows[0]} | {"work": x[:, -1]}
-    checks = [*_residual_checks(s, motion), energy_balance(t, series, s.conservative, asked.drift_limit)]
+    series = _along(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}
     series |= s.along.series_at(t, x[:, :-1])
     found = crossings(asked.events, motion.found, s.n)
     figures = {"evaluations": float(motion.evaluations)}
@@ -94,7 +96,7 @@ def _judged(s: Constrained, asked: ClosedRequest, motion: Motion) -> Trajectory:
         q,
         qd,
         series,
-        tuple(checks),
+        checks,
         motion.status,
         motion.message,
         motion.steps,
@@ -103,43 +105,43 @@ def _judged(s: Constrained, asked: ClosedRequest, motion: Motion) -> Trajectory:
     )
 
 
-def _quantities(s: Constrained, t: float, q: Array, qd: Array) -> dict[str, Any]:
-    """Series at a state; accelerations and multipliers are not finite where they are not determined."""
-    s.move(t, q, qd)
+def _along(quantities: Callable[[Constrained], dict[str, Any]], s: Constrained, t: Array, x: Array) -> dict[str, Array]:
+    """Quantities of a state at all states (q, q', work)."""
+    rows = []
+    for at, state in zip(t.tolist(), x, strict=True):
+        s.move(at, *np.split(state[:-1], 2))
+        rows.append(quantities(s))
+    like = {name: np.shape(value) for name, value in quantities(s).items()}
+    return {name: np.array([row[name] for row in rows]).reshape(len(rows), *shape) for name, shape in like.items()}
+
+
+def _forces(s: Constrained) -> dict[str, Any]:
+    """Accelerations and multipliers; not finite where they are not determined."""
     try:
         qdd, _ = s.accelerations(s.independent_rows())
         multipliers = least_multipliers(s, qdd)
     except Singular:
         qdd, multipliers = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
+    return {"qdd": qdd, "multipliers": multipliers, "actuation": multipliers[s.closed :]}
+
+
+def _judged_quantities(s: Constrained) -> dict[str, Any]:
     kinetic, potential = s.energies
-    position, velocity = _residuals(s)
     return {
-        "qdd": qdd,
-        "multipliers": multipliers,
         "kinetic_energy": kinetic,
         "potential_energy": potential,
-        "actuation": multipliers[s.closed :],
-        "position_residual": position,
-        "velocity_residual": velocity,
+        "position_residual": np.abs(s.phi).max(initial=0),
+        "velocity_residual": np.abs(s.velocity_residual).max(initial=0),
     }
 
 
-def _residuals(s: Constrained) -> tuple[float, float]:
-    return float(np.abs(s.phi).max(initial=0)), float(np.abs(s.velocity_residual).max(initial=0))
-
-
-def _residual_checks(s: Constrained, motion: Motion) -> list[Check]:
-    """Of all accepted steps that were kept."""
-    found = []
-    for t, x in zip(motion.step_t, motion.step_x, strict=True):
-        s.move(t, *np.split(x[:-1], 2))
-        found.append(_residuals(s))
-    sizes, times = np.array(found), np.array(motion.step_t)
-    reason = "the closures (and prescribed motions) are met"
-    return [
-        Check.of(("position residual", "zero", reason, "m, 1"), sizes[:, 0], times, 1.0, RESIDUAL),
-        Check.of(("velocity residual", "zero", "G q' + phi_t = 0", "m/s, 1/s"), sizes[:, 1], times, 1.0, RESIDUAL),
-    ]
+def _residual_checks(t: Array, columns: Mapping[str, Array]) -> Iterator[Check]:
+    for name, reason, unit in (
+        ("position", "the closures (and prescribed motions) are met", "m, 1"),
+        ("velocity", "G q' + phi_t = 0", "m/s, 1/s"),
+    ):
+        residual = columns[f"{name}_residual"]
+        yield Check.of((f"{name} residual", "zero", reason, unit), residual, t, 1.0, RESIDUAL)
 
 
 def _nothing(model: Model, state: Consistent, t: float, message: str) -> Trajectory:

@@ -10,16 +10,17 @@ import numpy as np
 from scipy.linalg import lapack
 
 from substructures.analysis.inputs import Along, VaryingInputs, read_along
-from substructures.analysis.integrate import Motion, Settings, integrate, scipy_stepper
-from substructures.analysis.judges import energy_balance
+from substructures.analysis.integrate import Motion, Settings, integrate
+from substructures.analysis.judges import energy_balance, spread
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.quasi_velocities import QuasiVelocities, velocity_equations
 from substructures.analysis.requests import RollingRequest
+from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Check, Crossing, Trajectory, crossings
 from substructures.analysis.velocity_constraints import Closed
 from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
-from substructures.expr.interpret import interpret
+from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.model import Model
 from substructures.states import Array, numeric
 
@@ -159,23 +160,24 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
 
 def _judged(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> Trajectory:
     equations, n = rolling.equations, rolling.n
-    t, y = np.array(motion.t), np.array(motion.x)
-    slopes = np.array([rolling.rates(*pair) for pair in zip(motion.t, y, strict=True)])
+    t, y, results = motion.judged()
+    slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
     x = np.concatenate([y[:, :n], slopes[:, :n]], axis=1)
     values: dict[str, Any] = rolling.along.values | rolling.along.inputs_at(t, x) | {"t": t}
     values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
     values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
     names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
-    found = interpret(equations.program, values, names)
+    found = interpret_in_blocks(equations.program, values, names, len(t))
     series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
     series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
     checks = _checks(t, series, asked.drift_limit)
+    t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
         t,
         x[:, :n],
         x[:, n:],
-        series | rolling.along.series_at(t, x),
+        {name: column[results] for name, column in series.items()} | rolling.along.series_at(t, x),
         checks,
         motion.status,
         motion.message,
@@ -197,7 +199,7 @@ def _checks(t: Array, series: Mapping[str, Array], limit: float) -> tuple[Check,
         Check.of(("constraints", "zero", "B q' = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
     ]
     if "gaps" in series:
-        drift = np.abs(series["gaps"] - series["gaps"][0]).max(axis=1)
+        drift = spread(series["gaps"]).max(axis=1)
         reason = "integrals of constraints: rolling bodies keep their distance from the plane, loops stay closed"
         checks.append(Check.of(("gaps", "constant", reason, "m"), drift, t, 1.0, RESIDUAL))
     return tuple(checks)

@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
+from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.fixed_step import march
 from substructures.analysis.formulas import require_tree
 from substructures.analysis.inputs import Along, read_along
-from substructures.analysis.integrate import Motion, Settings, Stepper, integrate, scipy_stepper
+from substructures.analysis.integrate import Motion, Settings, integrate
 from substructures.analysis.judges import States, integral_series, judge
 from substructures.analysis.progress import Report, share_of
 from substructures.analysis.requests import TAYLOR, SimulationRequest
 from substructures.analysis.right_hand_side import RightHandSide, is_definite
+from substructures.analysis.steppers import Stepper, scipy_stepper
 from substructures.analysis.taylor import require_taylor, taylor_stepper
 from substructures.analysis.trajectory import Trajectory, crossings
 from substructures.errors import InvalidDocument
@@ -109,15 +110,21 @@ def _judged(
     model = along.model
     given = [n for n in request.inputs if n not in along.zero]
     integrals = first_integrals(model, given, along.zero & set(model.parameters))
-    at_steps = _states(along, f, motion.step_t, motion.step_x)
-    at_outputs = _states(along, f, motion.t, motion.x)
+    t, x, results = motion.judged()
+    states = _states(along, f, t, x)
+    series = integral_series(model, integrals, states)
+    checks = judge(model, integrals, states, series, request.drift_limit)
+    if f.has_power and "energy" in series:
+        series["work"] = states.work
+    x = x[results, : 2 * f.n]
+    t = t[results]
     return Trajectory(
         model.coordinates,
-        at_outputs.t,
-        at_outputs.q,
-        at_outputs.qd,
-        _series(along, f, integrals, at_outputs),
-        judge(model, integrals, at_steps, request.drift_limit),
+        t,
+        x[:, : f.n],
+        x[:, f.n :],
+        {name: values[results] for name, values in series.items()} | along.series_at(t, x),
+        checks,
         motion.status,
         motion.message,
         motion.steps,
@@ -126,19 +133,11 @@ def _judged(
     )
 
 
-def _states(along: Along, f: RightHandSide, times: list[float], rows: list[Array]) -> States:
+def _states(along: Along, f: RightHandSide, t: Array, x: Array) -> States:
     n = f.n
-    t, x = np.array(times, dtype=np.float64), np.array(rows, dtype=np.float64).reshape(len(rows), f.size)
     values: dict[str, float | Array] = {**along.values, **along.inputs_at(t, x[:, : 2 * n])}
     work = x[:, 2 * n] if f.has_power else np.zeros(len(t))
     return States(t, x[:, :n], x[:, n : 2 * n], values, work)
-
-
-def _series(along: Along, f: RightHandSide, integrals: FirstIntegrals, states: States) -> dict[str, Array]:
-    series = integral_series(along.model, integrals, states)
-    if f.has_power and "energy" in series:
-        series["work"] = states.work
-    return series | along.series_at(states.t, np.concatenate([states.q, states.qd], axis=1))
 
 
 def _failed(along: Along, request: SimulationRequest, message: str) -> Trajectory:

@@ -19,7 +19,8 @@ class Check:
     """A necessary condition along a motion.
 
     ``rule``: the quantity ``name`` is constant (first integral), never rises (energy with dissipation) or is zero (a
-    residual of closures). ``worst``: the largest violation, in ``unit``; relative to ``scale`` it is judged against
+    residual of closures). ``worst``: the largest violation at all steps and all results, in ``unit``: of a constant the
+    largest difference of two of its values, of what falls the largest rise. Relative to ``scale`` it is judged against
     ``limit``. ``time``: when the limit was first exceeded [s], None where the condition holds.
     """
 

@@ -1,4 +1,4 @@
-"""Closed loops at a state: any joint may be cut; redundancy, reactions, consistent starts, an independent engine."""
+"""Closed loops at a state: redundancy, reactions, consistent starts, singular positions."""
 
 from __future__ import annotations
 
@@ -7,113 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, tree_model
-from random_trees import GRAVITY, Plain, add_inertia, number, vector
+from random_trees import Plain
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive
 from substructures.analysis.loops import analyse_loops
-from substructures.evaluation import evaluate
-from substructures.skeleton import CHAINS
-
-pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
-
-KINDS = ("revolute", "prismatic", "spherical", "fixed", "cylindrical", "universal", "planar")
-
-
-def angles(rotation: np.ndarray) -> list[float]:
-    """Yaw, pitch and roll of a rotation Rz Ry Rx."""
-    x, y, z = rotation
-    return [np.arctan2(y[0], x[0]), -np.arcsin(z[0]), np.arctan2(z[1], z[2])]
-
-
-def cut(rng: np.random.Generator, kind: str) -> tuple[Plain, Plain]:
-    """A chain of three bodies whose second joint is of this kind; and the same with that joint cut: a free body."""
-    bodies: list[Plain] = []
-    for name, parent, joint in (("b1", "base", "revolute"), ("b2", "b1", kind), ("b3", "b2", "prismatic")):
-        place = {"position": vector(rng), "rpy": [number(rng) for _ in range(3)]}
-        bodies.append({"name": name, "parent": parent, "joint": {"type": joint, "placement": place}})
-        add_inertia(rng, bodies[-1], True)
-    seat = bodies[1]["joint"]["placement"]
-    port = {"name": "seat", "body": "b1", "position": seat["position"], "rotation": {"rpy": seat["rpy"]}}
-    free = {**bodies[1], "parent": "base", "joint": {"type": "free"}}
-    load = {"type": "force", "body": "b3", "vector": [1, 2, 3], "frame": "world"}
-    whole = {"name": "whole", "bodies": bodies, "ports": [port], "loads": [load]}
-    return whole, whole | {"bodies": [bodies[0], free, bodies[2]]}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_any_joint_may_be_cut(kind: str) -> None:
-    """A free body that a closure ties to its old place moves like the chain it was cut from."""
-    rng = np.random.default_rng(KINDS.index(kind))
-    whole, parted = cut(rng, kind)
-    chain = tree_model({"gravity": list(GRAVITY), "instances": [{"name": "x", "substructure": "w"}]}, {"w": whole})
-    closure = {"name": "c", "type": kind, "from": "x.seat", "to": "x.b2"}
-    document = {"gravity": list(GRAVITY), "instances": [{"name": "x", "substructure": "w"}], "closures": [closure]}
-    closed = tree_model(document, {"w": parted})
-    n = len(CHAINS[kind])
-    q, qd = rng.uniform(-0.6, 0.6, chain.dof), rng.uniform(-1, 1, chain.dof)
-    answer = evaluate(chain, {"quantities": ["kinematics", "forward_dynamics"], "q": q, "qd": qd})
-    b2 = chain.frames.index("x.b2")
-    pose = answer["kinematics"]["position"][b2], answer["kinematics"]["rotation"][b2]
-    start = np.concatenate((q[:1], pose[0], angles(pose[1]), q[1 + n :]))
-    speeds = np.concatenate((qd[:1], np.zeros(6), qd[1 + n :]))
-    rates = slopes(chain, q, qd, b2)
-    speeds[1:7] = rates
-    found = analyse_loops(closed, {"q": start, "qd": speeds})
-    assert found.message == ""
-    assert found.mobility.degrees_of_freedom == chain.dof
-    assert not found.mobility.redundant
-    np.testing.assert_allclose(found.consistent.q, start, atol=1e-11)
-    np.testing.assert_allclose(found.consistent.qd, speeds, atol=1e-6)
-    again = analyse_loops(closed, {"q": found.consistent.q, "qd": speeds})
-    expected = answer["forward_dynamics"]
-    np.testing.assert_allclose(again.qdd[[0, -1]], expected[[0, -1]], rtol=1e-6, atol=1e-6 * np.abs(expected).max())
-
-
-def slopes(chain: Any, q: np.ndarray, qd: np.ndarray, frame: int, h: float = 1e-4) -> np.ndarray:
-    """Rates of position and angles of a frame, by differences of fourth order."""
-    result = np.zeros(6)
-    for k, c in ((1, 8), (-1, -8), (2, -1), (-2, 1)):
-        x = evaluate(chain, {"quantities": ["kinematics"], "q": q + k * h * qd})["kinematics"]
-        result += c / (12 * h) * np.concatenate((x["position"][frame], angles(x["rotation"][frame])))
-    return result
-
-
-@pytest.mark.parametrize("kind", ["spherical", "fixed"])
-def test_independent_engine(kind: str) -> None:
-    """Accelerations of a chain tied to the world against Pinocchio's constraint dynamics."""
-    rng = np.random.default_rng(11)
-    bodies: list[Plain] = []
-    for k in range(8):
-        place = {"position": [0.4, 0.1 * (k % 3), 0.1], "rpy": vector(rng, 2)}
-        joint = {"type": "revolute", "coordinate": f"q{k}", "placement": place}
-        bodies.append({"name": f"b{k}", "parent": f"b{k - 1}" if k else "base", "joint": joint})
-        add_inertia(rng, bodies[-1], True)
-    tip = {"name": "tip", "body": "b7", "position": [0.3, 0, 0.1]}
-    definition = {"name": "chain", "bodies": bodies, "ports": [tip]}
-    document: Plain = {"gravity": list(GRAVITY), "instances": [{"name": "x", "substructure": "d"}]}
-    start = rng.uniform(-0.5, 0.5, 8)
-    chain = tree_model(document, {"d": definition})
-    x = evaluate(chain, {"quantities": ["kinematics"], "q": start})["kinematics"]
-    where, turned = x["position"][-1], x["rotation"][-1]
-    seat = {"position": [float(v) for v in where], "rpy": [float(v) for v in reversed(angles(turned))]}
-    closure = {"name": "c", "type": kind, "from": "x.tip", "to": "world", "placement": seat}
-    model = tree_model(document | {"closures": [closure]}, {"d": definition})
-    found = analyse_loops(model, {"q": start, "qd": rng.uniform(-1, 1, 8)})
-    assert found.message == ""
-    engine = engine_of(definition, GRAVITY)
-    j1, p1 = engine.frames["tip"]
-    p2 = pin.SE3(turned, where)
-    contact = pin.ContactType.CONTACT_3D if kind == "spherical" else pin.ContactType.CONTACT_6D
-    constraint = pin.RigidConstraintModel(contact, engine.model, j1, p1, 0, p2, pin.ReferenceFrame.LOCAL)
-    data, settings = engine.model.createData(), pin.ProximalSettings(1e-14, 1e-14, 1000)
-    models, datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
-    models.append(constraint)
-    datas.append(constraint.createData())
-    pin.initConstraintDynamics(engine.model, data, models, datas)
-    state = found.consistent.q, found.consistent.qd, np.zeros(8)
-    a = pin.constraintDynamics(engine.model, data, *state, models, datas, settings)
-    np.testing.assert_allclose(found.qdd, a, rtol=0, atol=1e-7 * np.abs(a).max())
 
 
 def test_planar_pin_is_redundant_but_harmless() -> None:

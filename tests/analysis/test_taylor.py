@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model
+from analysis_models import PERIOD, catalogue_model
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument
@@ -14,7 +14,6 @@ from substructures.analysis.simulate import simulate
 pytest.importorskip("heyoka", reason="heyoka is in the test extra")
 
 FINE: Plain = {"relative_tolerance": 1e-14, "absolute_tolerance": 1e-14}
-PERIOD = 2.3678419475762373
 
 
 def test_period_of_the_simple_pendulum() -> None:
