@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.definition import escape
+from substructures.documents import escape
 from substructures.errors import Fault, InvalidDocument, MissingValue
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
