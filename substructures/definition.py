@@ -1,7 +1,7 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
-Meaning is checked when it is derived: names and expressions by :mod:`substructures.skeleton`, :mod:`substructures.scope`
-and :mod:`substructures.loads`, physics by :mod:`substructures.physics`.
+Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.skeleton`,
+:mod:`substructures.scope` and :mod:`substructures.loads`, physics by :mod:`substructures.physics`.
 """
 
 from __future__ import annotations

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.closures import ROWS, Cut, End, Rows
-from substructures.coupling import WORLD, Mounted
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.frames import axis_rotation
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
+from substructures.mounted import WORLD, Mounted
 from substructures.part import Part
 from substructures.scope import Scope, no_names
 from substructures.skeleton import INTERFACE

@@ -22,11 +22,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.bias import body_motions, from_body
-from substructures.coupling import OWN, Mounted, Run, State, couple_parts, frame_link, over_formulas
+from substructures.coupling import OWN, Run, couple_parts, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.interface import inertia_names
+from substructures.inertia_symbols import inertia_names
 from substructures.mechanics.base_functions import Columns, carried
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import lean_rotation
@@ -34,6 +34,7 @@ from substructures.mechanics.linear3 import S, negate, transpose
 from substructures.mechanics.metric import pairing
 from substructures.mechanics.newton_euler import Motion, inertial_load
 from substructures.model import Model, rate_symbols
+from substructures.mounted import Mounted, State, frame_link
 from substructures.mounting import Assembly, assemble
 from substructures.part import MAX_NODES, Part
 from substructures.skeleton import BASE, INTERFACE
