@@ -17,10 +17,8 @@ import pytest
 from service.client import Client
 from substructures import catalogue
 
-from .farm import Assassin, Server, Submitter, finished, items, running, submit
-from .test_postgres import address, server
-
-__all__ = ["address"]  # a fixture
+from .databases import fresh
+from .farm import Assassin, Server, Submitter, finished, running, submit
 
 BATCH = 2000
 #: killed servers, and killed workers, in the batch; on PostgreSQL two servers die a fifth as often
@@ -62,7 +60,7 @@ def prepared(client: Client) -> None:
 def results(client: Client, job: str) -> dict[int, tuple[str, str]]:
     """What came of every item that succeeded, and the hash of its files; others were killed three times."""
     found = {}
-    for item in items(client, job):
+    for item in client.job_items(job):
         if item["state"] == "failed":
             assert (item["problem"]["code"], len(item["deaths"])) == ("worker-died", 3), item
             continue
@@ -95,20 +93,17 @@ class Siege:
     items: int
 
 
-@pytest.fixture(params=["sqlite, one server", "postgresql, two servers"])
+@pytest.fixture(params=["sqlite", "postgresql"])
 def siege(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Siege]:
-    """Servers on one database."""
-    log = tmp_path / "log"
-    if request.param.startswith("sqlite"):
-        yield Siege([Server(f"sqlite:///{tmp_path}/store.db", log)], KILLS, BATCH)
-        return
-    if server() is None:
-        pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
-    database = request.getfixturevalue("address")
-    both = [Server(database, log) for _ in range(2)]
-    for one in both:
-        one.environment["SUBSTRUCTURES_WORKERS"] = "1"
-    yield Siege(both, KILLS // 5, BATCH // 5)
+    """One server on SQLite; two on PostgreSQL, with a fifth of the kills and items."""
+    is_shared = request.param == "postgresql"
+    with fresh(request.param, tmp_path) as database:
+        servers = [Server(database, tmp_path / "log") for _ in range(2 if is_shared else 1)]
+        if is_shared:
+            for one in servers:
+                one.environment["SUBSTRUCTURES_WORKERS"] = "1"
+        share = 5 if is_shared else 1
+        yield Siege(servers, KILLS // share, BATCH // share)
 
 
 def test_a_batch_under_fire(siege: Siege, undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
@@ -180,7 +175,7 @@ def test_after_a_restart_nothing_is_stuck(tmp_path: Path) -> None:
             prepared(client)
         job = submit([one], {"kind": "assemble", "items": [tree(2 * i) for i in range(100)]}, "batch")
         with Client(one.address) as client:
-            while not [item for item in items(client, job) if item["state"] == "running"]:
+            while not [item for item in client.job_items(job) if item["state"] == "running"]:
                 time.sleep(0.01)
         one.kill()
         one.start()
