@@ -55,7 +55,7 @@ class Chain:
             numbers |= {f"{x}{i}": float(rng.uniform(0.3, 0.9)) for x in ("alpha", "a", "d", "phi")}
             m, x = rng.uniform(0.1, 0.4, 8), rng.uniform(-0.3, 0.3, (8, 3))
             centre = m @ x / m.sum()
-            J = np.einsum("k,ki,kj->ij", m, x - centre, x - centre)  # noqa: N806
+            J = np.einsum("k,ki,kj->ij", m, x - centre, x - centre)  # noqa: N806 -- symbols of the notation
             theta = np.trace(J) * np.eye(3) - J
             numbers |= {f"m{i}": float(m.sum())} | {f"c{e}{i}": float(c) for e, c in zip("xyz", centre, strict=True)}
             numbers |= {f"I{e}{i}": float(theta["xyz".index(e[0]), "xyz".index(e[1])]) for e in TENSOR}
@@ -134,7 +134,7 @@ def ours_fixed(model: Model, system: Chain) -> list[Run]:
 def sympy_function(system: Chain) -> Callable[[float, Array], Array]:
     """KanesMethod's mass matrix and forcing by lambdify with common subexpressions."""
     n = len(system.rows)
-    M, forcing = derive_by_kane(system.rows)  # noqa: N806
+    M, forcing = derive_by_kane(system.rows)  # noqa: N806 -- symbols of the notation
     numbers = {sympy.Symbol(name): value for name, value in system.numbers.items()}
     q, u = dynamicsymbols(f"q1:{n + 1}"), dynamicsymbols(f"u1:{n + 1}")
     plain = sympy.symbols(f"s0:{2 * n}")

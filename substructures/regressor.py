@@ -137,8 +137,8 @@ def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, Mounted]]:
 def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
     """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
     for i in range(10):
-        one = [int(i == j) for j in range(10)]
-        load = inertial_load(link.motion, Inertia(one[0], (one[1], one[2], one[3]), (*one[4:],)))  # type: ignore[arg-type]
+        m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
+        load = inertial_load(link.motion, Inertia(m, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
         yield i, [(a, pairing(twist, load.f, load.n)) for a, twist in link.columns.items()]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from random_expressions import collected, sample
 
 from substructures.errors import InvalidProgram
 from substructures.expr.graph import Graph
@@ -88,7 +89,7 @@ def test_count() -> None:
     assert two_link_arm().count()["atan2"] == 1
 
 
-def test_replay_gives_the_same_functions(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_replay_gives_the_same_functions() -> None:
     for seed in range(20):
         s = sample(seed)
         first = collected(s.graph, **{f"e{i}": e for i, e in enumerate(s.exprs)})

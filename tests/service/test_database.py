@@ -103,7 +103,7 @@ def test_readers_cannot_write(database: Database) -> None:
 
 def test_transactions_are_all_or_nothing(database: Database) -> None:
     statement = "INSERT INTO substructures VALUES ('a', NULL)"
-    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012
+    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012 -- the second of two
         for _ in range(2):
             connection.exec_driver_sql(statement)
     with database.read() as connection:
