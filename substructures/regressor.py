@@ -35,7 +35,7 @@ from substructures.mechanics.metric import pairing
 from substructures.mechanics.newton_euler import Motion, inertial_load
 from substructures.model import Model, rate_symbols
 from substructures.mounted import Mounted, State, frame_link
-from substructures.mounting import Assembly, assemble
+from substructures.mounting import Assembly, assemble, division_by_zero
 from substructures.part import MAX_NODES, Part
 from substructures.skeleton import BASE, INTERFACE
 from substructures.states import Array, read_states, symbol_values
@@ -112,8 +112,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         }
         pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
     except ZeroDivisionError:
-        message = "with these bindings a formula divides by zero"
-        raise InvalidDocument.at("/instances", "division-by-zero", message) from None
+        raise division_by_zero(spec, assembly) from None
     outputs = {"regressor": Formulas((n, len(pi)), Y), "inertial_parameters": array((len(pi),), lambda i: pi[i])}
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
     if len(result) > max_nodes:

@@ -12,7 +12,7 @@ Sources: RFC 8259 (JSON), RFC 6901 (pointers), YAML 1.2.2 section 10.3 (core sch
 
 from substructures.documents.from_json import read_json
 from substructures.documents.from_yaml import read_yaml
-from substructures.documents.model import Document, Model, read_model
+from substructures.documents.model import Document, Model, message_of, read_model
 from substructures.documents.numbers import MAX_DIGITS
 from substructures.documents.text import MAX_DEPTH, escape, pointer_step
 from substructures.documents.to_json import write_json
@@ -23,6 +23,7 @@ __all__ = [
     "Document",
     "Model",
     "escape",
+    "message_of",
     "pointer_step",
     "read_json",
     "read_model",

@@ -60,7 +60,7 @@ def _faults(error: ValidationError, data: Any) -> list[Fault]:
         Fault(
             _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]),
             e["type"].replace("_", "-"),
-            _message(e),
+            message_of(e),
         )
         for e in error.errors(include_url=False)
     ]
@@ -71,9 +71,14 @@ def _tag(kind: str) -> str:
     return "/type" if kind.startswith("union_tag") else ""
 
 
-def _message(error: Any) -> str:
-    shown = repr(error["input"])
-    return str(error["msg"]) + ("" if error["type"] == "missing" or len(shown) > 80 else f", found {shown}")
+def message_of(error: Mapping[str, Any]) -> str:
+    """What pydantic's error says, with the name of what is missing or unknown, and otherwise with what was found."""
+    name, shown = error["loc"][-1] if error["loc"] else "", repr(error["input"])
+    if error["type"] == "missing":
+        return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
+    if error["type"] == "extra_forbidden":
+        return f"unknown field '{str(name)[:80]}'"
+    return str(error["msg"]) + ("" if len(shown) > 80 else f", found {shown}")
 
 
 def _pointer(loc: tuple[int | str, ...], missing: bool, data: Any) -> str:

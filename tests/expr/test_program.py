@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -173,6 +174,20 @@ def test_damaged_documents_are_refused(path: list[Any], value: Any) -> None:
         place = place[key]
     place[path[-1]] = value
     with pytest.raises(InvalidProgram):
+        Program.from_bytes(json.dumps(document).encode())
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"operations": ...}, "'operations' is missing"),
+        ({"symbols": [{"name": "x"}]}, "symbol {'name': 'x'}: it has a name, a unit and one of the kinds coordinate"),
+        ({"outputs": {"f": {"shape": []}}}, "output 'f': shape, symmetry, index and entries are needed"),
+    ],
+)
+def test_what_is_wrong_with_a_document_is_said(changes: dict[str, Any], message: str) -> None:
+    document = {name: value for name, value in {**BASE, **changes}.items() if value is not ...}
+    with pytest.raises(InvalidProgram, match=re.escape(message)):
         Program.from_bytes(json.dumps(document).encode())
 
 
