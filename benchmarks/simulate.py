@@ -7,12 +7,9 @@ fastest run that reaches it against a tight reference counts.
 
 from __future__ import annotations
 
-import argparse
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -24,6 +21,7 @@ from sympy.physics.mechanics import dynamicsymbols
 
 from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
+from benchmarks.report import keep, options
 from substructures import couple, derive
 from substructures.analysis.requests import TAYLOR
 from substructures.analysis.right_hand_side import RightHandSide, forward_dynamics
@@ -209,9 +207,8 @@ def table(runs: dict[str, list[Run]], reference: Array) -> dict[str, float]:
 
 def main() -> None:
     """Print the table; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = options(__doc__)
     parser.add_argument("--links", type=int, default=3)
-    parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     system = Chain.random(arguments.links)
     start = perf_counter()
@@ -232,8 +229,7 @@ def main() -> None:
     }
     reference = runs["DOP853"][-1].q
     figures |= table(runs, reference)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(figures, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":
