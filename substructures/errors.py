@@ -55,7 +55,7 @@ class TooLarge(SubstructuresError):
 
     def __init__(self, what: str, size: int, limit: int) -> None:
         self.what, self.size, self.limit = what, size, limit
-        super().__init__(f"{what} has size {size:,}; the limit is {limit:,}")
+        super().__init__(f"{what}: {size:,}; the limit is {limit:,}")
 
 
 class InvalidProgram(SubstructuresError):
