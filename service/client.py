@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.client import HTTPResponse
+from pathlib import Path
 from time import sleep
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
+from urllib.parse import urlencode
 
 import httpx2
 import numpy as np
@@ -13,15 +19,48 @@ import numpy as np
 from service import arrow
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrays import flat, nested, view_npz, write_npz
-from service.bulk import read_all
-from service.http_connection import HttpConnection
-from service.http_connection import ProblemError as ProblemError
+from service.bulk import read_all, transfer
+from substructures.documents import write_json
 
 PERIOD, PATIENCE = 0.5, 60.0  # seconds between looks at a job, and without an answer
 
 
-class Client(HttpConnection):
+class ProblemError(Exception):
+    """The service answered with a problem document, which is in ``problem``."""
+
+    def __init__(self, status: int, problem: dict[str, Any]) -> None:
+        self.status, self.problem = status, problem
+        lines = [f"{status}: {problem.get('detail', 'no details')}"]
+        lines += [f"  {e['pointer'] or '/'}: {e['message']}" for e in problem.get("errors", ())]
+        super().__init__("\n".join(lines))
+
+
+class Client:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
+
+    def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
+        self.address, self.timeout = address, timeout
+        self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}
+        self._http = httpx2.Client(base_url=address, headers=self._headers, timeout=timeout)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._http.close()
+
+    def request(self, method: str, path: str, body: Any = None, **options: Any) -> httpx2.Response:
+        """Send one request; ``body`` is sent as JSON with exact numbers."""
+        if body is not None:
+            options["content"] = write_json(body)
+            options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
+        answer = self._http.request(method, path, **options)
+        _check(answer)
+        return answer
 
     def submit(self, definition: Any) -> tuple[dict[str, Any], bool]:
         """Submit a definition: the version, and whether it is new."""
@@ -65,7 +104,7 @@ class Client(HttpConnection):
         if not any(isinstance(value, np.ndarray) for value in given.values()):
             return dict(self.request("POST", path, request).json())
         body = b"".join(write_npz(given).pieces)
-        with self.transfer(path, body, NPZ) as answer:
+        with self._transfer(path, body, NPZ) as answer:
             return _result(view_npz(read_all(answer)))
 
     def analyse(self, tree: str, analysis: str, **request: Any) -> dict[str, Any]:
@@ -105,9 +144,17 @@ class Client(HttpConnection):
         """
         tables = (arrow.Table(flat(batch)) for batch in batches)
         content = (bytes(piece) for piece in arrow.write_tables(tables, constants))
-        with self.transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
+        with self._transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
             for columns in arrow.read_tables(answer):
                 yield nested(columns)
+
+    @contextmanager
+    def _transfer(self, path: str, content: bytes | Iterable[bytes], media_type: str) -> Iterator[HTTPResponse]:
+        headers = {**self._headers, "Content-Type": media_type, "Accept": media_type}
+        with transfer(self.address, path, content, headers, self.timeout) as answer:
+            if answer.status >= 400:
+                raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
+            yield answer
 
     def _made(self, path: str, body: Any) -> dict[str, Any]:
         answer = self.request("POST", path, body)
@@ -136,11 +183,11 @@ class Client(HttpConnection):
 
     def jobs(self, **filters: str) -> Iterator[dict[str, Any]]:
         """All jobs (of a ``state``, of a ``kind``), the newest first."""
-        return self.pages("/v1/jobs", filters)
+        return self._pages("/v1/jobs", filters)
 
     def job_items(self, job: str, **filters: str) -> Iterator[dict[str, Any]]:
         """The items of a job (in a ``state``) with their results and problems."""
-        return self.pages(f"/v1/jobs/{job}/items", filters)
+        return self._pages(f"/v1/jobs/{job}/items", filters)
 
     def cancel_job(self, job: str) -> dict[str, Any]:
         """Cancel what is not finished."""
@@ -168,7 +215,10 @@ class Client(HttpConnection):
     def events(self, job: str, after: int = 0) -> Iterator[tuple[int, str, dict[str, Any]]]:
         """What happens to a job behind the event ``after`` (number, type, data), until it or the connection ends."""
         headers = {"Last-Event-ID": str(after)} if after else {}
-        with self.stream(f"/v1/jobs/{job}/events", headers=headers) as answer:
+        with self._http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as answer:
+            if answer.is_error:
+                answer.read()
+                _check(answer)
             fields: dict[str, str] = {}
             for line in answer.iter_lines():
                 name, _, value = line.partition(": ")
@@ -177,6 +227,34 @@ class Client(HttpConnection):
                 elif "data" in fields:
                     yield int(fields["id"]), fields["event"], json.loads(fields["data"])
                     fields = {}
+
+    def download(self, path: str, target: Path) -> int:
+        """Save what is at a path, however large; its size in bytes."""
+        with self._http.stream("GET", path) as answer, target.open("wb") as file:
+            if answer.is_error:
+                answer.read()
+                _check(answer)
+            for chunk in answer.iter_bytes():
+                file.write(chunk)
+            return file.tell()
+
+    def _pages(self, path: str, filters: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+        link: str | None = f"{path}?{urlencode({**filters, 'page_size': 200})}"
+        while link is not None:
+            page = self.request("GET", link).json()
+            yield from page["items"]
+            link = page["links"]["next"]
+
+
+def _check(answer: httpx2.Response) -> None:
+    """Raise ProblemError unless it is a success."""
+    if answer.is_error:
+        raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
+
+
+def _problem(status: int, media_type: str, body: bytes) -> ProblemError:
+    is_problem = media_type.startswith("application/problem+json")
+    return ProblemError(status, json.loads(body) if is_problem else {"detail": HTTPStatus(status).phrase})
 
 
 def _result(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
