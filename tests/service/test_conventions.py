@@ -86,7 +86,7 @@ def test_host_is_checked(client: TestClient, host: str, status: int) -> None:
     answer = client.get("/livez", headers={"Host": host})
     assert answer.status_code == status
     if status == 400:
-        problem(answer, 400, "host-not-allowed")
+        assert "SUBSTRUCTURES_ALLOWED_HOSTS" in problem(answer, 400, "host-not-allowed")["detail"]
 
 
 def test_health(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:

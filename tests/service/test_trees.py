@@ -127,6 +127,7 @@ def test_if_match_guards_against_other_changes(filled: TestClient) -> None:
         filled.delete("/v1/trees/cell/couplings/hand", headers=seen),
     ):
         assert (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
+        assert answer.headers["etag"] == filled.get("/v1/trees/cell").headers["etag"]
 
 
 def test_list(filled: TestClient) -> None:
