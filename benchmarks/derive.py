@@ -5,17 +5,15 @@ python -m benchmarks.derive [--quick] [--json FILE]
 
 from __future__ import annotations
 
-import argparse
 import gc
-import json
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
 
 from benchmarks.chains import ROWS_14, chain, general_rows, pieces, row_of
 from benchmarks.kane import derive_by_kane, operations
+from benchmarks.report import keep, options
 from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
 from substructures.coupling import couple_parts, over_formulas
 from substructures.expr.program import Formulas, Program, array, program
@@ -163,16 +161,12 @@ def coupling(figures: dict[str, float]) -> None:
 
 def main() -> None:
     """Print the tables; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="KanesMethod for n = 2 and 3 only")
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, "KanesMethod for n = 2 and 3 only").parse_args()
     figures: dict[str, float] = {}
     beside_kane([2, 3] if arguments.quick else [2, 3, 4, 5], figures)
     one_piece(figures)
     coupling(figures)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

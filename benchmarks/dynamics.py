@@ -10,10 +10,7 @@ is one direction: the time of n directions is given, too. One thread, medians, t
 
 from __future__ import annotations
 
-import argparse
-import json
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
@@ -21,8 +18,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from benchmarks.evaluate import alternating, ratio
+from benchmarks.report import keep, options
 from benchmarks.robots import CALLS, Robot, robots
+from benchmarks.timing import alternating, ratio
 from substructures.compile import Kernel, compile_program
 from substructures.derived import derived
 from substructures.quantities import DYNAMICS
@@ -113,15 +111,11 @@ def dynamics(robot: Robot, key: str, figures: dict[str, float], rounds: int) -> 
 
 def main() -> None:
     """Print the tables; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, "fewer rounds").parse_args()
     figures: dict[str, float] = {}
     for robot, key in zip(robots(), ("6r", "34"), strict=True):
         dynamics(robot, key, figures, 7 if arguments.quick else 31)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(figures, indent=1))
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

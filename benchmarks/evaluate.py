@@ -13,11 +13,8 @@ is installed, in the same way: metric (mj_crb), gravity and velocity forces (mj_
 
 from __future__ import annotations
 
-import argparse
 import gc
-import json
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
 from time import thread_time
 from typing import Any
@@ -28,6 +25,7 @@ import pinocchio as pin
 from benchmarks.batches import one_position, parameters, ten_million, threads
 from benchmarks.first_answer import first_answer
 from benchmarks.mujoco_robots import beside_mujoco
+from benchmarks.report import keep, options
 from benchmarks.robots import CALLS, EVERYTHING, METRIC_FORCES, Robot, robots
 from benchmarks.timing import alternating, ratio
 from substructures.compile import compile_program
@@ -114,10 +112,7 @@ def one_state(robot: Robot, key: str, figures: dict[str, float]) -> None:
 
 def main() -> None:
     """Print the tables; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, "fewer rounds").parse_args()
     rounds = 7 if arguments.quick else 31
     figures: dict[str, float] = {}
     small, large = robots()
@@ -148,8 +143,7 @@ def main() -> None:
     one_state(large, "34", figures)
     first_answer(figures, rounds)
     ten_million(figures)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

@@ -9,11 +9,8 @@ same for a tree whose formulas are there, as in the service. One thread.
 
 from __future__ import annotations
 
-import argparse
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
@@ -21,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.derive import humanoid
+from benchmarks.report import keep, options
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
@@ -143,13 +141,10 @@ def _fresh(model: Model) -> Any:
 
 def main() -> None:
     """Print the tables; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__).parse_args()
     figures: dict[str, float] = {}
     first_answer(figures, 15)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(figures, indent=1))
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

@@ -5,22 +5,21 @@ python -m benchmarks.http [--json FILE]
 
 from __future__ import annotations
 
-import argparse
 import io
-import json
+import os
 import socket
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from statistics import median
 from time import perf_counter, sleep
 from typing import Any
 
 import numpy as np
 
+from benchmarks.report import keep, options
 from benchmarks.transfer import exchange
 from service.client import Client
 from service.kernels import Kernels
@@ -33,19 +32,21 @@ STATES = 100_000
 
 
 @contextmanager
-def server(folder: str) -> Iterator[Client]:
-    """The service in a process of its own, on an empty database."""
+def server(folder: str, **settings: str) -> Iterator[Client]:
+    """The service in a process of its own, on the database of the folder."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service.cli", "serve", "--port", str(port)]
-    process = subprocess.Popen([*command, "--database", f"sqlite:///{folder}/bench.db"], stderr=subprocess.DEVNULL)
+    command += ["--database", f"sqlite:///{folder}/bench.db"]
+    environment = {**os.environ, **{f"SUBSTRUCTURES_{name.upper()}": value for name, value in settings.items()}}
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env=environment)
     try:
         with Client(f"http://127.0.0.1:{port}") as client:
             wait(client)
             yield client
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(30)
 
 
 def wait(client: Client) -> None:
@@ -145,9 +146,7 @@ def batch(client: Client, figures: dict[str, float]) -> None:
 
 def main() -> None:
     """Print the table; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__).parse_args()
     figures: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder, server(folder) as client:
         figures["http_get_ms"] = milliseconds(lambda: client.substructure("puma560"), 200)
@@ -162,8 +161,7 @@ def main() -> None:
         )
         print(f"POST evaluations, one state of a 6 dof arm, M and Q: {figures['http_one_state_ms']:.1f} ms")
         batch(client, figures)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

@@ -9,23 +9,17 @@ a process of its own, on an SQLite file, over HTTP.
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import socket
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
-from pathlib import Path
 from statistics import median, quantiles
 from time import perf_counter, sleep
 from typing import Any
 
-from benchmarks.http import wait
+from benchmarks.http import server
+from benchmarks.report import keep, options
 from service.client import Client
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 
@@ -33,24 +27,12 @@ PARTS = ("puma560", "parallel-gripper", "simple-pendulum", "ur5")
 
 
 @contextmanager
-def server(folder: str, workers: int, engine: str = "local") -> Iterator[Client]:
-    """The service with so many workers, on the database of the folder."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = int(listener.getsockname()[1])
-    settings = {"WORKERS": str(workers), "ENGINE": engine, "CATALOGUE": "false"}
-    environment = {**os.environ, **{f"SUBSTRUCTURES_{name}": value for name, value in settings.items()}}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(port)]
-    command += ["--database", f"sqlite:///{folder}/bench.db"]
-    process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env=environment)
-    try:
-        with Client(f"http://127.0.0.1:{port}") as client:
-            wait(client)
-            for name in PARTS:
-                client.submit(catalogue.load(name))
-            yield client
-    finally:
-        process.terminate()
-        process.wait(30)
+def prepared(folder: str, workers: int) -> Iterator[Client]:
+    """The service with so many workers and the parts."""
+    with server(folder, workers=str(workers), catalogue="false") as client:
+        for name in PARTS:
+            client.submit(catalogue.load(name))
+        yield client
 
 
 def tree(i: int, arm: str, hand: str) -> dict[str, Any]:
@@ -87,7 +69,7 @@ def directly(items: list[dict[str, Any]]) -> float:
 
 def warmed(folder: str, workers: int, items: list[dict[str, Any]], first: list[dict[str, Any]]) -> float:
     """The time of items after some others."""
-    with server(folder, workers) as client:
+    with prepared(folder, workers) as client:
         run(client, first)
         return run(client, items)
 
@@ -121,7 +103,7 @@ def while_queued(figures: dict[str, float], count: int, reads: int) -> None:
     """The latency of GET while items are submitted, and while they wait and one worker computes."""
     with (
         tempfile.TemporaryDirectory() as folder,
-        server(folder, 1) as client,
+        prepared(folder, 1) as client,
         ProcessPoolExecutor(1, get_context("spawn")) as pool,
     ):
         quiet = latencies(client, reads)
@@ -158,17 +140,13 @@ def latencies(client: Client, count: int, until: Future[float] | None = None) ->
 
 def main() -> None:
     """Print the table; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="fewer items")
-    parser.add_argument("--json", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, "fewer items").parse_args()
     figures: dict[str, float] = {}
     scale = 5 if arguments.quick else 1
     overhead(figures, 1500 // scale)
     two_workers(figures, 200 // scale, 1 if arguments.quick else 3)
     while_queued(figures, 10_000 // scale, 1000 // scale)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({k: round(v, 6) for k, v in figures.items()}, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

@@ -5,15 +5,14 @@ python -m benchmarks.loops [--json FILE]
 
 from __future__ import annotations
 
-import argparse
 import json
-from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from benchmarks.report import options
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.analysis.constrained import Constrained
 from substructures.analysis.loops import analyse_loops
@@ -88,9 +87,7 @@ def measure(name: str, method: str) -> dict[str, Any]:
 
 def main() -> None:
     """Print a table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path)
-    arguments = parser.parse_args()
+    arguments = options(__doc__).parse_args()
     rows = [measure(name, method) for name in PINS for method in REDUCTIONS]
     for row in rows:
         error = f", relative error at the end {row['error']:.1e}" if "error" in row else ""

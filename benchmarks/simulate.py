@@ -7,12 +7,9 @@ fastest run that reaches it against a tight reference counts.
 
 from __future__ import annotations
 
-import argparse
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -24,6 +21,7 @@ from sympy.physics.mechanics import dynamicsymbols
 
 from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
+from benchmarks.report import keep, options
 from substructures import couple, derive
 from substructures.analysis.requests import TAYLOR
 from substructures.analysis.right_hand_side import RightHandSide, forward_dynamics
@@ -55,7 +53,7 @@ class Chain:
             numbers |= {f"{x}{i}": float(rng.uniform(0.3, 0.9)) for x in ("alpha", "a", "d", "phi")}
             m, x = rng.uniform(0.1, 0.4, 8), rng.uniform(-0.3, 0.3, (8, 3))
             centre = m @ x / m.sum()
-            J = np.einsum("k,ki,kj->ij", m, x - centre, x - centre)  # noqa: N806
+            J = np.einsum("k,ki,kj->ij", m, x - centre, x - centre)  # noqa: N806 -- symbols of the notation
             theta = np.trace(J) * np.eye(3) - J
             numbers |= {f"m{i}": float(m.sum())} | {f"c{e}{i}": float(c) for e, c in zip("xyz", centre, strict=True)}
             numbers |= {f"I{e}{i}": float(theta["xyz".index(e[0]), "xyz".index(e[1])]) for e in TENSOR}
@@ -134,7 +132,7 @@ def ours_fixed(model: Model, system: Chain) -> list[Run]:
 def sympy_function(system: Chain) -> Callable[[float, Array], Array]:
     """KanesMethod's mass matrix and forcing by lambdify with common subexpressions."""
     n = len(system.rows)
-    M, forcing = derive_by_kane(system.rows)  # noqa: N806
+    M, forcing = derive_by_kane(system.rows)  # noqa: N806 -- symbols of the notation
     numbers = {sympy.Symbol(name): value for name, value in system.numbers.items()}
     q, u = dynamicsymbols(f"q1:{n + 1}"), dynamicsymbols(f"u1:{n + 1}")
     plain = sympy.symbols(f"s0:{2 * n}")
@@ -209,9 +207,8 @@ def table(runs: dict[str, list[Run]], reference: Array) -> dict[str, float]:
 
 def main() -> None:
     """Print the table; with --json FILE write the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = options(__doc__)
     parser.add_argument("--links", type=int, default=3)
-    parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     system = Chain.random(arguments.links)
     start = perf_counter()
@@ -232,8 +229,7 @@ def main() -> None:
     }
     reference = runs["DOP853"][-1].q
     figures |= table(runs, reference)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(figures, indent=2) + "\n")
+    keep(figures, arguments.json)
 
 
 if __name__ == "__main__":

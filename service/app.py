@@ -78,7 +78,7 @@ def create_app(store: Store) -> FastAPI:
 
 def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None) -> FastAPI:
     """Routes and conventions without a store; enough for the OpenAPI document."""
-    app = FastAPI(
+    app = openapi.DocumentedApp(
         title="substructures",
         version=__version__,
         description=DESCRIPTION,
@@ -92,5 +92,4 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
-    openapi.install(app)
     return app

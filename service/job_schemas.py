@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.schemas import Links, Shape, Time
+from service.shapes import Links, Shape, Time
 
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]

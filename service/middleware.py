@@ -44,7 +44,11 @@ class Conventions:
             if self._accepts(headers.get("host", "")):
                 await self.app(scope, receive, send_with_id)
             else:
-                raise problems.Refused(400, "host-not-allowed", "the Host header names a host that is not served here")
+                named = headers.get("host", "")[:80]
+                detail = (
+                    f"the Host header names '{named}', which is not served here; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
+                )
+                raise problems.Refused(400, "host-not-allowed", detail)
         except Exception as error:
             if status:  # the answer has begun: nothing can be said any more
                 raise

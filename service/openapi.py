@@ -12,7 +12,8 @@ from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
 from service.job_schemas import CancelRequest, JobRequest
-from service.schemas import AliasRequest, EvaluationRequest, KernelsRequest, Problem, YankRequest
+from service.number_schemas import EvaluationRequest, KernelsRequest
+from service.schemas import AliasRequest, Problem, YankRequest
 from substructures.analysis.velocity_constraints import VelocityConstraints
 from substructures.definition import Definition
 from substructures.tree import Instance, TreeSpec
@@ -54,12 +55,11 @@ def text(app: FastAPI) -> str:
     return json.dumps(document(app), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
 
-def install(app: FastAPI) -> None:
-    """Serve this document in place of FastAPI's."""
+class DocumentedApp(FastAPI):
+    """Serves this document in place of FastAPI's."""
 
-    def openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            app.openapi_schema = document(app)
-        return app.openapi_schema
-
-    app.openapi = openapi  # type: ignore[method-assign] # the way FastAPI asks for
+    def openapi(self) -> dict[str, Any]:
+        """The document, made once."""
+        if self.openapi_schema is None:
+            self.openapi_schema = document(self)
+        return self.openapi_schema

@@ -11,7 +11,7 @@ import orjson
 from service.analyses.formulas import QUANTITIES, Made
 from service.refusals import not_found, unprocessable
 from substructures.derived import DERIVED
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.evaluation import REGRESSOR, Sources
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
@@ -92,7 +92,8 @@ def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: s
         elif not colon:
             raise unprocessable("bind", f"'{item[:80]}' is not name:value", "/query/bind")
         elif name not in parameters:
-            raise unprocessable("unknown-parameter", f"there is no parameter '{name[:80]}'", "/query/bind")
+            message = f"there is no parameter '{name[:80]}'; there are {listed(parameters)}"
+            raise unprocessable("unknown-parameter", message, "/query/bind")
         else:
             values[name] = value
     used = {symbol.name for symbol in program.symbols}

@@ -24,15 +24,13 @@ from starlette.exceptions import HTTPException
 
 from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from service.request_id import current_request_id
-from substructures.documents import pointer_step
+from substructures.documents import message_of, pointer_step
 from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
 
 __all__ = ["MEDIA_TYPE", "Refused", "as_refused", "document", "install", "not_found", "response", "unprocessable"]
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
-
-_CODES = {404: "not-found", 405: "method-not-allowed"}
 
 
 def as_refused(error: Exception) -> Refused:
@@ -44,9 +42,10 @@ def as_refused(error: Exception) -> Refused:
         case RequestValidationError():
             faults = [_validation_fault(item) for item in error.errors()]
             return Refused(422, "invalid-request", "; ".join(map(str, faults[:3])), faults)
+        case HTTPException(status_code=404):
+            return not_found("there is nothing at this path; /openapi.json lists all there are")
         case HTTPException():
-            code = _CODES.get(error.status_code, "http-error")
-            return Refused(error.status_code, code, str(error.detail), headers=error.headers)
+            return Refused(error.status_code, "http-error", str(error.detail), headers=error.headers)
         case DataError():
             return unprocessable("invalid-text", "a text holds characters that the database cannot store, such as NUL")
         case OperationalError() | PoolTimeout() if _is_unavailable(error):
@@ -63,7 +62,7 @@ def _is_unavailable(error: Exception) -> bool:
 
 
 def _validation_fault(item: Mapping[str, Any]) -> Fault:
-    return Fault("".join(map(pointer_step, item["loc"])), str(item["type"]).replace("_", "-"), str(item["msg"]))
+    return Fault("".join(map(pointer_step, item["loc"])), str(item["type"]).replace("_", "-"), message_of(item))
 
 
 def document(refused: Refused, instance: str) -> dict[str, Any]:
@@ -83,11 +82,13 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     """Let the app answer with problem documents; ``service.middleware`` catches what no handler is for."""
 
     def handle(request: Request, error: Exception) -> Response:
-        answer = response(error, request.url.path)
-        if answer.status_code == 405:  # the framework names the methods of the first route only
+        if isinstance(error, HTTPException) and error.status_code == 405:
+            # the framework names the methods of the first route only
             found = [route for route in routes if route.path_regex.fullmatch(request.url.path)]
-            answer.headers["Allow"] = ", ".join(sorted({method for route in found for method in route.methods or ()}))
-        return answer
+            methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
+            detail = f"{request.method[:40]} is not possible at this path, but {methods}"
+            error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
+        return response(error, request.url.path)
 
     for kind in (Refused, InvalidDocument, TooLarge, MissingValue, RequestValidationError, HTTPException):
         app.add_exception_handler(kind, handle)

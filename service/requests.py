@@ -85,7 +85,8 @@ async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
 
 
 def _too_long(limit: int) -> Refused:
-    return Refused(413, "body-too-large", f"the request body is larger than {limit} bytes", limit=limit)
+    detail = f"the request body is larger than {limit:,} bytes, the limit for its media type"
+    return Refused(413, "body-too-large", detail, limit=limit)
 
 
 RawBody = Annotated[bytes, Depends(raw_body)]

@@ -8,6 +8,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from substructures.documents import message_of
+
 PREFIX = "SUBSTRUCTURES_"
 LIMIT_PREFIX = "LIMIT_"
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
@@ -97,7 +99,7 @@ def from_environment(environment: Mapping[str, str], **overrides: object) -> Set
         return Settings.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
-        raise SettingsError(f"{_variable(first['loc'])}: {first['msg']}") from None
+        raise SettingsError(f"{_variable(first['loc'])}: {message_of(first)}") from None
 
 
 def _variable(location: tuple[int | str, ...]) -> str:

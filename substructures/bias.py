@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from substructures.coupling import WORLD, Mounted, State, applied_wrenches
 from substructures.mechanics.linear3 import S, Vector, negate
 from substructures.mechanics.newton_euler import Load, Motion, inertial_load
+from substructures.mounted import WORLD, Mounted, State, applied_wrenches
 from substructures.skeleton import INTERFACE
 
 

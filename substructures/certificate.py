@@ -12,7 +12,7 @@ from substructures.direct import Array, NumericJoint, direct_form
 from substructures.errors import SubstructuresError
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, Symbol, array, program
-from substructures.interface import inertia_names
+from substructures.inertia_symbols import inertia_names
 from substructures.mechanics.joints import links
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX
 from substructures.mechanism import Mechanism

@@ -39,7 +39,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.bias import body_motions, from_body
-from substructures.coupling import WORLD, Mounted, State, frame_link
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas
 from substructures.kinematics import frame_kinematics
@@ -60,6 +59,7 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.newton_euler import Motion
+from substructures.mounted import WORLD, Mounted, State, frame_link
 
 PLACE = ("x", "y", "z")
 #: the rows of every type of closure; the axis of a joint is the third one

@@ -1,21 +1,21 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
-Meaning (names, expressions, physics) is checked by :mod:`substructures.substructure`.
+Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.skeleton`,
+:mod:`substructures.scope` and :mod:`substructures.loads`, physics by :mod:`substructures.physics`.
 """
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Mapping
 from decimal import Decimal
-from functools import cached_property
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema
+from pydantic import BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from substructures.documents import write_json
-from substructures.errors import Fault, InvalidDocument
+from substructures.documents import Document
+from substructures.documents import Model as Model
+from substructures.documents import escape as escape
+from substructures.documents import read_model as read_model
 
 NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
@@ -41,12 +41,6 @@ Number = Annotated[
 Vector = tuple[Number, Number, Number]
 Name = Annotated[str, Field(pattern=NAME)]
 LibraryName = Annotated[str, Field(pattern=LIBRARY_NAME)]
-
-
-class Model(BaseModel):
-    """Base of all document parts: frozen, unknown fields refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class Parameter(Model):
@@ -179,7 +173,7 @@ class Input(Model):
     description: str = Field("", max_length=2000)
 
 
-class Definition(Model):
+class Definition(Document):
     """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
 
     name: LibraryName
@@ -193,70 +187,3 @@ class Definition(Model):
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
     ports: tuple[Port, ...] = Field((), max_length=500)
     loads: tuple[Load, ...] = Field((), max_length=1000)
-
-    @classmethod
-    def read(cls, data: Any) -> Definition:
-        """A definition from plain data. Raises InvalidDocument with a pointer to every fault."""
-        return read_model(cls, data)
-
-    @cached_property
-    def _canonical(self) -> bytes:
-        return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
-
-    def canonical(self) -> bytes:
-        """Canonical bytes of what was given: RFC 8785, numbers as their decimal text, defaults left out."""
-        return self._canonical
-
-    @property
-    def digest(self) -> str:
-        """``sha256:`` and 64 hex digits of the canonical bytes."""
-        return "sha256:" + hashlib.sha256(self._canonical).hexdigest()
-
-
-M = TypeVar("M", bound=BaseModel)
-
-
-def read_model(model: type[M], data: Any) -> M:
-    """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers."""
-    if not isinstance(data, Mapping):
-        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    try:
-        return model.model_validate(data)
-    except ValidationError as error:
-        raise InvalidDocument(_faults(error, data)) from None
-
-
-def _faults(error: ValidationError, data: Any) -> list[Fault]:
-    return [
-        Fault(
-            _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]),
-            e["type"].replace("_", "-"),
-            _message(e),
-        )
-        for e in error.errors(include_url=False)
-    ]
-
-
-def _tag(kind: str) -> str:
-    """A union chosen by its field 'type' complains about the object as a whole."""
-    return "/type" if kind.startswith("union_tag") else ""
-
-
-def _message(error: Any) -> str:
-    shown = repr(error["input"])
-    return str(error["msg"]) + ("" if error["type"] == "missing" or len(shown) > 80 else f", found {shown}")
-
-
-def escape(key: object) -> str:
-    """One step of an RFC 6901 pointer."""
-    return str(key).replace("~", "~0").replace("/", "~1")
-
-
-def _pointer(loc: tuple[int | str, ...], missing: bool, data: Any) -> str:
-    """The pointer of a pydantic location, without the steps that pydantic adds for unions and map keys."""
-    pointer, here = "", data
-    for step in loc[:-1] if missing else loc:
-        known = step in here if isinstance(here, Mapping) else isinstance(here, (list, tuple)) and isinstance(step, int)
-        if known:
-            pointer, here = f"{pointer}/{escape(step)}", here[step]
-    return f"{pointer}/{escape(loc[-1])}" if missing else pointer

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.definition import escape
+from substructures.documents import escape
 from substructures.errors import Fault, InvalidDocument
 from substructures.model import Model
 from substructures.sensitivity import direction

@@ -27,6 +27,12 @@ class Fault:
         return f"{self.pointer or '/'}: {self.message}"
 
 
+def listed(names: Iterable[str], most: int = 12) -> str:
+    """Names for a message: all of a few, the first of many."""
+    found = list(names)
+    return ", ".join(found[:most]) + (f", ... ({len(found)} in all)" if len(found) > most else "")
+
+
 class SubstructuresError(Exception):
     """Root of all exceptions raised on purpose."""
 
@@ -49,7 +55,7 @@ class TooLarge(SubstructuresError):
 
     def __init__(self, what: str, size: int, limit: int) -> None:
         self.what, self.size, self.limit = what, size, limit
-        super().__init__(f"{what} has size {size:,}; the limit is {limit:,}")
+        super().__init__(f"{what}: {size:,}; the limit is {limit:,}")
 
 
 class InvalidProgram(SubstructuresError):

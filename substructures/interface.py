@@ -34,8 +34,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from substructures.expr.program import Formulas, Symbol, array
+from substructures.expr.program import Formulas, array
 from substructures.frames import Frame
+from substructures.inertia_symbols import inertia_symbols
 from substructures.loads import Loads, PointKinematics, applied_forces
 from substructures.mechanics.base_functions import Columns, base_functions, carried
 from substructures.mechanics.inertia import Inertia, composites
@@ -62,9 +63,6 @@ from substructures.mechanics.metric import JointMomentum, christoffel_block, joi
 from substructures.mechanism import Mechanism
 from substructures.skeleton import INTERFACE
 
-INERTIA_UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
-AXES = "xyz"
-
 
 @dataclass(frozen=True)
 class Kinematics:
@@ -86,28 +84,6 @@ def kinematics(chain: tuple[Link, ...], columns: list[Columns]) -> Kinematics:
         R.append(transpose((x, y, z)))
         r.append(add(r_p, apply(transpose(R_p), link.Z)))
     return Kinematics(chain, columns, R, r)
-
-
-def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
-    """Ten symbols for every carrier of a named body; nothing for the massless bodies inside compound joints."""
-    graph, bodies = m.graph, m.skeleton.carrier
-    name = {carrier: body for body, carrier in reversed(bodies.items())}
-    result = []
-    for k in range(len(m.joints)):
-        if k not in name:
-            result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
-            continue
-        for symbol, unit in inertia_names(name[k]):
-            m.scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
-        mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(symbol) for symbol, _ in inertia_names(name[k]))
-        result.append(Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
-    return tuple(result)
-
-
-def inertia_names(body: str) -> list[tuple[str, str]]:
-    """(symbol, unit): m, s and J of a body, in the order m, sx, sy, sz, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz."""
-    names = ["m", *(f"s{x}" for x in AXES), *(f"J{e}" for e in ("xx", "yy", "zz", "xy", "xz", "yz"))]
-    return [(f"{body}.{n}", INERTIA_UNITS[n[0]]) for n in names]
 
 
 def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from substructures.coupling import Mounted, State, frame_link
 from substructures.mechanics.base_functions import Twist, carried
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector
+from substructures.mounted import Mounted, State, frame_link
 from substructures.skeleton import INTERFACE
 
 

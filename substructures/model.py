@@ -30,11 +30,11 @@ from typing import Any
 from substructures.bias import bias_forces, inverse_dynamics
 from substructures.closures import Rows, closure_formulas
 from substructures.coupling import Coupled, couple_parts, over_formulas
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.kinematics import frame_kinematics
 from substructures.mechanics.linear3 import S, add, apply, cross, transpose
-from substructures.mounting import Assembly, assemble, joint_parents
+from substructures.mounting import Assembly, assemble, division_by_zero, joint_parents
 from substructures.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.skeleton import christoffel_entries
 from substructures.tree import TreeSpec
@@ -107,9 +107,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
         outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
     except ZeroDivisionError:
-        raise InvalidDocument.at(
-            "/instances", "division-by-zero", "with these bindings a formula divides by zero"
-        ) from None
+        raise division_by_zero(spec, assembly) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
     if len(result) > max_nodes:
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)

@@ -6,11 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.closures import ROWS, Cut, End, Rows
-from substructures.coupling import WORLD, Mounted
+from substructures.coupling import over_formulas
+from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.frames import axis_rotation
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
+from substructures.mounted import WORLD, Mounted
 from substructures.part import Part
 from substructures.scope import Scope, no_names
 from substructures.skeleton import INTERFACE
@@ -27,6 +29,19 @@ class Assembly:
     gravity: Vector
     parameters: dict[str, dict[str, object]]
     cuts: list[Cut]
+
+
+def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
+    """The exception for bindings that make a divisor zero: names the first instance in whose formulas they do."""
+    run = over_formulas(assembly.scope.graph)
+    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
+        try:
+            run(m.part, m.bindings, tuple(m.part.program.outputs))
+        except ZeroDivisionError:
+            message = f"with these parameters a formula of '{instance.name}' divides by zero"
+            pointer = f"/instances/{spec.instances.index(instance)}/parameters"
+            return InvalidDocument.at(pointer, "division-by-zero", message)
+    return InvalidDocument.at("/instances", "division-by-zero", "with these parameters a formula divides by zero")
 
 
 def tree_name(instance: str, symbol: str) -> str:

@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.compile import Kernel, compile_program
-from substructures.coupling import ASKED, Mounted, Run, couple_parts
+from substructures.coupling import ASKED, Run, couple_parts
 from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
 from substructures.lanes import Lanes, Supports, is_array, lanes, plain
 from substructures.mechanics.linear3 import S
 from substructures.model import model_outputs
+from substructures.mounted import Mounted
 from substructures.mounting import assemble
 from substructures.part import Part
 from substructures.states import default_number

@@ -12,7 +12,8 @@ from substructures.certificate import certify_part
 from substructures.definition import Definition
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Output, Program, program
-from substructures.interface import formulas, inertia_names
+from substructures.inertia_symbols import inertia_names
+from substructures.interface import formulas
 from substructures.loads import read_loads, wrench_places
 from substructures.mechanism import mechanism
 from substructures.skeleton import BASE, Skeleton, christoffel_entries, skeleton

@@ -22,11 +22,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.bias import body_motions, from_body
-from substructures.coupling import OWN, Mounted, Run, State, couple_parts, frame_link, over_formulas
+from substructures.coupling import OWN, Run, couple_parts, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.interface import inertia_names
+from substructures.inertia_symbols import inertia_names
 from substructures.mechanics.base_functions import Columns, carried
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import lean_rotation
@@ -34,7 +34,8 @@ from substructures.mechanics.linear3 import S, negate, transpose
 from substructures.mechanics.metric import pairing
 from substructures.mechanics.newton_euler import Motion, inertial_load
 from substructures.model import Model, rate_symbols
-from substructures.mounting import Assembly, assemble
+from substructures.mounted import Mounted, State, frame_link
+from substructures.mounting import Assembly, assemble, division_by_zero
 from substructures.part import MAX_NODES, Part
 from substructures.skeleton import BASE, INTERFACE
 from substructures.states import Array, read_states, symbol_values
@@ -111,8 +112,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         }
         pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
     except ZeroDivisionError:
-        message = "with these bindings a formula divides by zero"
-        raise InvalidDocument.at("/instances", "division-by-zero", message) from None
+        raise division_by_zero(spec, assembly) from None
     outputs = {"regressor": Formulas((n, len(pi)), Y), "inertial_parameters": array((len(pi),), lambda i: pi[i])}
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
     if len(result) > max_nodes:
@@ -136,8 +136,8 @@ def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, Mounted]]:
 def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
     """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
     for i in range(10):
-        one = [int(i == j) for j in range(10)]
-        load = inertial_load(link.motion, Inertia(one[0], (one[1], one[2], one[3]), (*one[4:],)))  # type: ignore[arg-type]
+        m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
+        load = inertial_load(link.motion, Inertia(m, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
         yield i, [(a, pairing(twist, load.f, load.n)) for a, twist in link.columns.items()]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import lru_cache
@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.definition import escape
-from substructures.errors import Fault, InvalidDocument, MissingValue
+from substructures.documents import escape
+from substructures.errors import Fault, InvalidDocument, MissingValue, listed
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import ExpressionError, parse
@@ -89,8 +89,9 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
 
 
 def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
+    unknown = f"unknown coordinate '{{}}'; there are {listed(model.coordinates)}"
     faults = [
-        Fault(f"/{name}/{escape(key)}", "unknown-coordinate", f"unknown coordinate '{str(key)[:80]}'")
+        Fault(f"/{name}/{escape(key)}", "unknown-coordinate", unknown.format(str(key)[:80]))
         for key in given
         if key not in model.coordinates
     ]
@@ -99,10 +100,13 @@ def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
     ]
     if faults:
         raise InvalidDocument(faults)
-    columns = [numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates]
-    if len({c.shape for c in columns}) > 1:
-        raise InvalidDocument.at(f"/{name}", "wrong-length", "lists of different lengths")
-    return np.stack(columns, axis=-1) if columns else np.zeros((1, 0))
+    columns = {c: numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates}
+    for c, column in columns.items():
+        first = columns[model.coordinates[0]]
+        if column.shape != first.shape:
+            message = f"shape {column.shape} found, but {first.shape} of '{model.coordinates[0]}'"
+            raise InvalidDocument.at(f"/{name}/{escape(c)}", "wrong-length", message)
+    return np.stack(list(columns.values()), axis=-1) if columns else np.zeros((1, 0))
 
 
 def numeric(given: Any, pointer: str) -> Array:
@@ -127,7 +131,7 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
             if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
                 _check_numbers(x, f"{pointer}/{i}", depth + 1)
     elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
-        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {str(given)[:40]!r}")
+        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
 
 
 def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
@@ -173,11 +177,11 @@ def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -
             raise MissingValue(name)
 
 
-def _given(request: Mapping[str, Any], field: str, count: int, known: Container[str]) -> dict[str, Any]:
+def _given(request: Mapping[str, Any], field: str, count: int, known: Collection[str]) -> dict[str, Any]:
     return given_values(request.get(field), field, f"/{field}", count, known)
 
 
-def given_values(given: Any, field: str, place: str, count: int, known: Container[str]) -> dict[str, Any]:
+def given_values(given: Any, field: str, place: str, count: int, known: Collection[str]) -> dict[str, Any]:
     """Numbers by name, one or one for every state; ``field``: what they are, ``place``: pointer to the object."""
     if not isinstance(given or {}, Mapping):
         raise InvalidDocument.at(place, "object-expected", "an object of numbers by name is needed")
@@ -185,16 +189,16 @@ def given_values(given: Any, field: str, place: str, count: int, known: Containe
     for name, value in (given or {}).items():
         pointer = f"{place}/{escape(name)}"
         if name not in known:
-            raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
+            message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
+            raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", message)
         result[name] = _per_state(numeric(value, pointer), count, pointer)
     return result
 
 
 def _per_state(values: Array, count: int, pointer: str) -> Array:
     if values.ndim > 1 or (values.ndim == 1 and len(values) not in (1, count)):
-        raise InvalidDocument.at(
-            pointer, "wrong-length", f"one number, or one for each of the {count} states is needed"
-        )
+        message = f"one number, or one for each of the {count} states is needed, found shape {values.shape}"
+        raise InvalidDocument.at(pointer, "wrong-length", message)
     return values
 
 

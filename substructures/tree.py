@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from substructures.definition import (
-    Definition,
-    LibraryName,
-    Model,
-    Name,
-    Number,
-    Parameter,
-    Placement,
-    Vector,
-    read_model,
-)
-from substructures.documents import write_json
+from substructures.definition import Definition, LibraryName, Name, Number, Parameter, Placement, Vector
+from substructures.documents import Document, Model, read_model
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
@@ -80,7 +68,7 @@ class Closure(Model):
         return self
 
 
-class TreeSpec(Model):
+class TreeSpec(Document):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree."""
 
     name: LibraryName
@@ -88,24 +76,6 @@ class TreeSpec(Model):
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
-
-    @classmethod
-    def read(cls, data: Any) -> TreeSpec:
-        """A tree from plain data. Raises InvalidDocument with a pointer to every fault."""
-        return read_model(cls, data)
-
-    @cached_property
-    def _canonical(self) -> bytes:
-        return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
-
-    def canonical(self) -> bytes:
-        """Canonical bytes of what was given: RFC 8785, numbers as their decimal text, defaults left out."""
-        return self._canonical
-
-    @property
-    def digest(self) -> str:
-        """``sha256:`` and 64 hex digits of the canonical bytes (references should be pinned before)."""
-        return "sha256:" + hashlib.sha256(self._canonical).hexdigest()
 
 
 def read_instance(data: Any) -> Instance:

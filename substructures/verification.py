@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from substructures.certificate import STATES, TOLERANCE, compare, finite_comparison, random_values
-from substructures.coupling import WORLD, Mounted
 from substructures.direct import Array, NumericJoint, direct_form
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
+from substructures.mounted import WORLD, Mounted
 from substructures.mounting import Assembly
 from substructures.physics import constants
 from substructures.skeleton import INTERFACE

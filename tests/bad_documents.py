@@ -61,13 +61,13 @@ def changed(document: Plain, *changes: tuple[Path, Any]) -> Plain:
     """A copy with values put in at paths; the value ... takes the key away."""
     result = copy.deepcopy(document)
     for path, value in changes:
-        parent = reduce(lambda here, key: here[key], path[:-1], result)  # type: ignore[index]
+        parent = reduce(lambda here, key: here[key], path[:-1], result)
         if value is ...:
-            del parent[path[-1]]  # type: ignore[arg-type]
+            del parent[path[-1]]
         elif isinstance(parent, list) and path[-1] == len(parent):
             parent.append(value)
         else:
-            parent[path[-1]] = value  # type: ignore[index]
+            parent[path[-1]] = value
     return result
 
 

@@ -52,6 +52,11 @@ def values(given: Any, names: Mapping[str, Any] | None = None) -> Array:
     return np.stack(np.broadcast_arrays(*(np.asarray(value(x, names)) for x in given)), axis=-1)
 
 
+def defaults(definition: Plain) -> dict[str, float]:
+    """The default values of its parameters."""
+    return {name: float(value(given["value"])) for name, given in definition["parameters"].items()}
+
+
 def inertia_of(body: Plain) -> tuple[float, Array, Array]:
     """Mass, mass centre, inertia tensor about the mass centre."""
     m, c, given = float(body.get("mass", 0)), values(body.get("com", [0, 0, 0])), body.get("inertia", {})

@@ -117,7 +117,8 @@ def _existing(store: Store, text: str, if_match: str | None) -> tuple[trees.Tree
     with store.database.read() as connection:
         base = find(connection, text)
     if if_match not in (None, "*", tree_tag(base)):
-        raise Refused(412, "precondition-failed", f"the tree '{text}' is not what If-Match says")
+        detail = f"the tree '{text}' is not what If-Match says; it is {tree_tag(base)} now"
+        raise Refused(412, "precondition-failed", detail, headers={"ETag": tree_tag(base)})
     return base, read_json(base.spec.encode())
 
 

@@ -46,11 +46,6 @@ def _row(result: Result) -> dict[str, str]:
     return {"key": result.key, "kind": result.kind, "summary": result.summary}
 
 
-def get_summary(connection: Connection, key: str) -> str | None:
-    """The summary of a result, JSON."""
-    return connection.execute(select(results.c.summary).where(results.c.key == key)).scalar()
-
-
 def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]:
     """The files of results, by key."""
     found: dict[str, list[File]] = {}

@@ -11,9 +11,14 @@ TOO_DEEP = f"nested deeper than {MAX_DEPTH} levels"
 SURROGATE = "a string holds a lone surrogate"
 
 
+def escape(key: object) -> str:
+    """The text of one step of an RFC 6901 pointer."""
+    return str(key).replace("~", "~0").replace("/", "~1")
+
+
 def pointer_step(key: str | int) -> str:
-    """One step of an RFC 6901 pointer, escaped."""
-    return "/" + str(key).replace("~", "~0").replace("/", "~1")
+    """One step of an RFC 6901 pointer, with its slash."""
+    return "/" + escape(key)
 
 
 def pointer_to(steps: Iterable[str | int | None]) -> str:

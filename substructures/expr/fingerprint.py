@@ -33,7 +33,6 @@ def _draw_prime() -> int:
 
 PRIME = _draw_prime()
 _KEY = secrets.token_bytes(32)
-_HALF = pow(2, -1, PRIME)
 _SQRT = {r: pow(r, (PRIME + 1) // 4, PRIME) for r in _ROOTS}
 
 

@@ -23,6 +23,7 @@ from typing import Any
 from substructures.errors import TooLarge
 from substructures.expr.exact import split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
+from substructures.expr.patterns import coefficient, constant, has_number, square_of_root
 
 Number = int | Fraction | Decimal
 
@@ -137,10 +138,7 @@ class Graph:
         if not isinstance(value, (int, Fraction)) or isinstance(value, bool):
             raise TypeError(f"exact number expected, not {type(value).__name__}: {value!r}")
         fp = rational(value)
-        found = self.table.get(fp)
-        if found is not None:
-            return found
-        return Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp)
+        return self.table.get(fp) or Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp)
 
     def symbol(self, name: str) -> Expr:
         """The symbol of this name."""
@@ -177,7 +175,7 @@ class Graph:
         return Expr(self, "add", (a, b), None, fp)
 
     def _difference(self, a: Expr, b: Expr, fp: int) -> Expr:
-        if b.negative or a.negative or _has_number(a) or _has_number(b):
+        if b.negative or a.negative or has_number(a) or has_number(b):
             return self._sum(a, -b, fp)
         found = self.table.get(PRIME - fp)
         return -found if found is not None else Expr(self, "sub", (a, b), None, fp)
@@ -186,12 +184,12 @@ class Graph:
         """c x + d x = (c + d) x and (x + c) + (y + d) = (x + y) + (c + d) for exact numbers c, d."""
         if a is b:
             return self.number(2) * a
-        if not (_has_number(a) and _has_number(b)):
+        if not (has_number(a) and has_number(b)):
             return None
-        (c, x), (d, y) = _coefficient(a), _coefficient(b)
+        (c, x), (d, y) = coefficient(a), coefficient(b)
         if x is y:
             return self.number(c + d) * x
-        (x, c), (y, d) = _constant(a), _constant(b)
+        (x, c), (y, d) = constant(a), constant(b)
         return (x + y) + self.number(c + d) if c and d else None
 
     def _product(self, a: Expr, b: Expr, fp: int) -> Expr:
@@ -209,11 +207,8 @@ class Graph:
             return (a * b.args[0]) * b.args[1] if a.is_number else b.args[0] * (a * b.args[1])
         if a.op == "mul" and a.args[0].is_number:
             return a.args[0] * (a.args[1] * b)
-        if a.op == "sqrt" or b.op == "sqrt":
-            square = _square_of_root(a, b)
-            if square is not None:
-                return square
-        return Expr(self, "mul", (a, b), None, fp)
+        square = square_of_root(a, b) if a.op == "sqrt" or b.op == "sqrt" else None
+        return square or Expr(self, "mul", (a, b), None, fp)
 
     def _quotient(self, a: Expr, b: Expr) -> Expr:
         if b.fp == 0:
@@ -248,52 +243,7 @@ class Graph:
 
     def function(self, op: str, *args: Expr) -> Expr:
         """A function the field knows nothing about, except the square roots of 2, 3, 5 and 7."""
-        fp = None
-        if op == "sqrt" and args[0].op == "int":
-            fp = square_root(args[0].value)
+        fp = square_root(args[0].value) if op == "sqrt" and args[0].op == "int" else None
         if fp is None:
             fp = keyed(op, *(a.fp for a in args))
         return self.table.get(fp) or Expr(self, op, args, None, fp)
-
-
-def _has_number(x: Expr) -> bool:
-    """An exact number, or a product, sum or negative with one."""
-    if x.op == "neg":
-        x = x.args[0]
-    return x.is_number or (x.op in ("mul", "add", "sub") and (x.args[0].is_number or x.args[1].is_number))
-
-
-def _coefficient(x: Expr) -> tuple[Any, Expr]:
-    """(c, y) with x = c y."""
-    sign = 1
-    if x.op == "neg":
-        sign, x = -1, x.args[0]
-    return (sign * x.args[0].value, x.args[1]) if x.op == "mul" and x.args[0].is_number else (sign, x)
-
-
-def _constant(x: Expr) -> tuple[Expr, Any]:
-    """(y, c) with x = y + c."""
-    if x.is_number:
-        return x.graph.zero, x.value
-    if x.op == "neg":
-        rest, constant = _constant(x.args[0])
-        return -rest, -constant
-    if x.op in ("add", "sub"):
-        a, b = x.args
-        sign = 1 if x.op == "add" else -1
-        if b.is_number:
-            return a, sign * b.value
-        if a.is_number:
-            return (b if sign > 0 else -b), a.value
-    return x, 0
-
-
-def _square_of_root(a: Expr, b: Expr) -> Expr | None:
-    """sqrt(x) sqrt(x) = x, also with one of them inside a product."""
-    if a.op != "sqrt":
-        a, b = b, a
-    if a is b:
-        return a.args[0]
-    if b.op == "mul" and a in b.args:
-        return a.args[0] * (b.args[1] if b.args[0] is a else b.args[0])
-    return None

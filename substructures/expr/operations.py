@@ -86,7 +86,9 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
         symbols = tuple(_read_symbol(s) for s in document["symbols"])
         operations = tuple(_read_operation(op) for op in document["operations"])
         outputs = {n: _read_output(n, o, len(operations)) for n, o in document["outputs"].items()}
-    except (KeyError, TypeError, AttributeError, ValueError) as error:
+    except KeyError as error:
+        raise InvalidProgram(f"{error} is missing") from None
+    except (TypeError, AttributeError, ValueError) as error:
         raise InvalidProgram(f"malformed: {error}") from None
     if len({s.name for s in symbols}) != len(symbols):
         raise InvalidProgram("a symbol occurs twice")
@@ -96,10 +98,11 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
 
 
 def _read_symbol(document: Any) -> Symbol:
-    symbol = Symbol(**document)
-    if symbol.kind not in KINDS or not isinstance(symbol.name, str) or not isinstance(symbol.unit, str):
-        raise ValueError(f"symbol {document!r}")
-    return symbol
+    if isinstance(document, dict) and {"name", "kind"} <= document.keys() <= {"name", "kind", "unit"}:
+        symbol = Symbol(**document)
+        if symbol.kind in KINDS and isinstance(symbol.name, str) and isinstance(symbol.unit, str):
+            return symbol
+    raise ValueError(f"symbol {str(document)[:80]}: it has a name, a unit and one of the kinds {', '.join(KINDS)}")
 
 
 def _read_operation(document: Any) -> Operation:
@@ -109,7 +112,7 @@ def _read_operation(document: Any) -> Operation:
 
 def _read_output(name: str, document: Any, size: int) -> Output:
     if set(document) != {"shape", "symmetry", "index", "entries"}:
-        raise ValueError(f"output {name[:80]!r}")
+        raise ValueError(f"output {name[:80]!r}: shape, symmetry, index and entries are needed, nothing else")
     shape, entries, symmetry = tuple(document["shape"]), tuple(document["entries"]), document["symmetry"]
     output = Output(shape, tuple(tuple(i) for i in document["index"]), entries, symmetry)
     if not all(_is_index(n) for n in shape) or prod(shape) > MAX_ELEMENTS:

@@ -15,11 +15,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import orjson
 
 from substructures.errors import InvalidProgram
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.needs import needed, totals
 from substructures.expr.operations import (
     ARITHMETIC,
     ARITY,
@@ -52,9 +52,6 @@ __all__ = [
     "read_program",
     "renumbered",
 ]
-
-GROUPS = 1024  #: groups of entries that are counted in one pass
-ROWS = 4096  #: masks that are unpacked at a time
 
 
 @dataclass(frozen=True)
@@ -108,20 +105,9 @@ class Program:
         """Sorted indices of the operations that the named outputs (default: all) need."""
         key = None if names is None else tuple(names)
         if key not in self._reachable:
-            self._reachable[key] = self._needed(key)
+            wanted = self.outputs.values() if key is None else [self.outputs[name] for name in key]
+            self._reachable[key] = needed(self.operations, (entry for o in wanted for entry in o.entries))
         return self._reachable[key]
-
-    def _needed(self, names: tuple[str, ...] | None) -> list[int]:
-        wanted = self.outputs if names is None else {name: self.outputs[name] for name in names}
-        needed = bytearray(len(self.operations))
-        for output in wanted.values():
-            for entry in output.entries:
-                needed[entry] = 1
-        for i in range(len(needed) - 1, -1, -1):
-            if needed[i]:
-                for operand in operands(self.operations[i]):
-                    needed[operand] = 1
-        return [i for i, flag in enumerate(needed) if flag]
 
     @cached_property
     def _needs(self) -> dict[tuple[str, ...], tuple[str, ...]]:
@@ -163,26 +149,7 @@ class Program:
 
     def totals_of(self, groups: Sequence[Sequence[int]]) -> list[int]:
         """Arithmetic operations that each group of entries needs, each operation counted once for a group."""
-        totals: list[int] = []
-        for start in range(0, len(groups), GROUPS):
-            totals += self._totals_of(groups[start : start + GROUPS])
-        return totals
-
-    def _totals_of(self, groups: Sequence[Sequence[int]]) -> list[int]:
-        """One pass from the last operation to the first; bit k of a mask: group k needs the operation."""
-        masks = [0] * len(self.operations)
-        for k, entries in enumerate(groups):
-            for entry in entries:
-                masks[entry] |= 1 << k
-        found: Counter[int] = Counter()
-        for i in range(len(masks) - 1, -1, -1):
-            mask = masks[i]
-            if mask:
-                operation = self.operations[i]
-                found[mask] += operation[0] in ARITHMETIC
-                for operand in operands(operation):
-                    masks[operand] |= mask
-        return _weighted_bits(found, len(groups))
+        return totals(self.operations, groups)
 
 
 def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int, int]) -> Operation:
@@ -193,18 +160,6 @@ def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int
     if op == "sym":
         return op, symbol[operation[1]]
     return (op, new[operation[1]], operation[2]) if op == "powi" else operation
-
-
-def _weighted_bits(counts: Mapping[int, int], width: int) -> list[int]:
-    """For every bit the sum of the counts of the masks that have it."""
-    size = -(-width // 8)
-    masks = np.frombuffer(b"".join(mask.to_bytes(size, "little") for mask in counts), np.uint8).reshape(-1, size)
-    weights = np.fromiter(counts.values(), np.int64, len(counts))
-    sums = np.zeros(width, np.int64)
-    for start in range(0, len(masks), ROWS):
-        bits = np.unpackbits(masks[start : start + ROWS], axis=1, bitorder="little", count=width)
-        sums += weights[start : start + ROWS] @ bits
-    return [int(n) for n in sums]
 
 
 def _moved(output: Output, new: Mapping[int, int]) -> Output:

@@ -2,32 +2,13 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program
-from substructures.expr.trigonometry import cos_sin, tan
-
-
-def _divide(a: Expr, b: Expr) -> Expr:
-    return a / b
-
-
-_GRAPH_OPERATIONS: dict[str, Callable[..., Expr]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "neg": operator.neg,
-    "div": _divide,
-    "powi": operator.pow,
-    "sin": lambda x: cos_sin(x)[1],
-    "cos": lambda x: cos_sin(x)[0],
-    "tan": tan,
-    "sqrt": lambda x: x.graph.sqrt(x),
-}
+from substructures.expr.walk import build
 
 
 def replay(
@@ -60,13 +41,8 @@ def replay(
         elif op == "powi":
             values[i] = values[operation[1]] ** operation[2]
         else:
-            values[i] = _apply(graph, op, [values[x] for x in operation[1:]])
+            values[i] = build(graph, op, [values[x] for x in operation[1:]])
     return {name: _formulas(program, name, values) for name in names}
-
-
-def _apply(graph: Graph, op: str, args: list[Any]) -> Expr:
-    function = _GRAPH_OPERATIONS.get(op)
-    return function(*args) if function else graph.function(op, *args)
 
 
 def _formulas(program: Program, name: str, values: Sequence[Expr]) -> Formulas:

@@ -19,7 +19,7 @@ from substructures.compile.recipe import Recipe
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 
-pytest.importorskip("llvmlite")
+pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 VALUES = {"m": 2.0, "x": np.linspace(-1, 1, 21)}
 
 

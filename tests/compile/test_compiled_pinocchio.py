@@ -17,7 +17,7 @@ from substructures.states import default_number
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
-pytest.importorskip("llvmlite")
+pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 
 Plain = dict[str, Any]
 

@@ -15,7 +15,7 @@ from substructures import catalogue
 from substructures.compile import compile_program, engine, target
 from substructures.model import Model
 
-pytest.importorskip("llvmlite")
+pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 
 HUMANOID = tuple((i["name"], i["substructure"], i["at"]) for i in catalogue.load_tree("humanoid")["instances"])
 TREES: dict[str, tuple[tuple[str, str, str], ...]] = {

@@ -14,7 +14,7 @@ from substructures.compile import compile_program, sincos
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 
-pytest.importorskip("llvmlite")
+pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program
 
-pytest.importorskip("llvmlite")
+pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 STAGES = (("m", "I"), ("x", "t"), ("v",), ("a", "f"))
 NAMES = ("parameter", "inertia", "coordinate", "time", "velocity", "acceleration", "input")
 KINDS = dict(zip((n for names in STAGES for n in names), NAMES, strict=True))

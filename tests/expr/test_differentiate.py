@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from random_expressions import collected, sample
 
 from substructures.expr.differentiate import derivative, gradient, pullback
 from substructures.expr.graph import Graph
@@ -47,7 +48,7 @@ def test_gradient_is_the_jacobian() -> None:
     assert gradient([], ["x"]) == []
 
 
-def test_reverse_mode_is_the_row_times_the_jacobian(sample) -> None:  # type: ignore[no-untyped-def]
+def test_reverse_mode_is_the_row_times_the_jacobian() -> None:
     """Node by node the same formulas as by forward mode."""
     for seed in range(40):
         s = sample(2000 + seed, size=30)
@@ -62,13 +63,13 @@ def test_reverse_mode_is_the_row_times_the_jacobian(sample) -> None:  # type: ig
     assert pullback([g.one, g.symbol("x")], [g.one, g.one], ["x", "y"]) == [g.one, g.zero]
 
 
-def test_mixed_derivatives_commute(sample) -> None:  # type: ignore[no-untyped-def]
+def test_mixed_derivatives_commute() -> None:
     for seed in range(30):
         for e in sample(seed).exprs[-5:]:
             assert derivative(derivative(e, "q1"), "x") is derivative(derivative(e, "x"), "q1")
 
 
-def test_finite_differences(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_finite_differences() -> None:
     h, checked = 1e-5, 0
     for seed in range(40):
         s = sample(1000 + seed, size=25)

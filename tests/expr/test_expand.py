@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import sympy
+from random_expressions import collected, sample
 
 from substructures.errors import TooLarge
 from substructures.expr.expand import Expander, expand, is_zero
@@ -20,7 +21,7 @@ from substructures.expr.trigonometry import cos, sin
 from substructures.printers import entries
 
 
-def formula(text: str, collected) -> str:  # type: ignore[no-untyped-def]
+def formula(text: str) -> str:
     """The canonical form in words."""
     g = Graph()
     found = entries(collected(g, f=parse(g, text, g.symbol)), "f", form="expanded")
@@ -55,8 +56,8 @@ def formula(text: str, collected) -> str:  # type: ignore[no-untyped-def]
         ("0.01*x", "0.01*x"),
     ],
 )  # fmt: skip
-def test_readable_forms(text: str, expected: str, collected) -> None:  # type: ignore[no-untyped-def]
-    assert formula(text, collected) == expected
+def test_readable_forms(text: str, expected: str) -> None:
+    assert formula(text) == expected
 
 
 ZEROS = [
@@ -101,7 +102,7 @@ def to_sympy(exprs: list[Expr], names: tuple[str, ...]) -> list[sympy.Expr]:
     return [done[e] for e in exprs]
 
 
-def test_against_sympy(sample) -> None:  # type: ignore[no-untyped-def]
+def test_against_sympy() -> None:
     """The form minus the formula is zero, by SymPy's addition theorems and division by s^2 + c^2 - 1."""
     checked, names = 0, ("x", "y", "q1", "q2")
     c1, s1, c2, s2 = sympy.symbols("c1 s1 c2 s2")
@@ -120,7 +121,7 @@ def test_against_sympy(sample) -> None:  # type: ignore[no-untyped-def]
     assert checked > 50
 
 
-def test_values_are_kept(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_values_are_kept() -> None:
     for seed in range(40):
         s = sample(3000 + seed, size=25)
         expander = Expander(s.exprs)
@@ -130,7 +131,7 @@ def test_values_are_kept(sample, collected) -> None:  # type: ignore[no-untyped-
             assert interpret(collected(new, f=rebuilt), s.point)["f"] == pytest.approx(value, rel=1e-7, abs=1e-6)
 
 
-def test_the_form_is_unique(sample) -> None:  # type: ignore[no-untyped-def]
+def test_the_form_is_unique() -> None:
     """However a formula is written, its form is the same; terms are in order and none occurs twice."""
     for seed in range(30):
         s = sample(4000 + seed, size=20, divide=False)

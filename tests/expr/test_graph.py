@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_expressions import collected, sample
 
 from substructures.errors import TooLarge
 from substructures.expr.graph import Graph
@@ -49,7 +50,7 @@ def test_multiples_of_pi_are_exact() -> None:
 
 
 @pytest.mark.parametrize("n", range(-24, 49))
-def test_every_multiple_of_15_degrees(n: int, collected) -> None:  # type: ignore[no-untyped-def]
+def test_every_multiple_of_15_degrees(n: int) -> None:
     g = Graph()
     angle = g.pi * n / 12
     values = interpret(collected(g, c=cos(angle), s=sin(angle)), {}, None)
@@ -61,10 +62,10 @@ def test_every_multiple_of_15_degrees(n: int, collected) -> None:  # type: ignor
 def test_rational_arithmetic_is_exact(a: Fraction, b: Fraction) -> None:
     g = Graph()
     x, y = g.number(a), g.number(b)
-    assert Fraction((x + y).value) == a + b  # type: ignore[arg-type]
-    assert Fraction((x * y).value) == a * b  # type: ignore[arg-type]
+    assert Fraction((x + y).value) == a + b
+    assert Fraction((x * y).value) == a * b
     if b:
-        assert Fraction((x / y).value) == a / b  # type: ignore[arg-type]
+        assert Fraction((x / y).value) == a / b
 
 
 @given(st.integers(1, 10**6), st.integers(1, 10**4))
@@ -80,7 +81,7 @@ def test_decimals_are_their_text_and_floats_are_refused() -> None:
     assert g.number(Decimal("0.1")) is g.number(Fraction(1, 10))
     for wrong in (0.1, True, "1"):
         with pytest.raises(TypeError):
-            g.number(wrong)  # type: ignore[arg-type]
+            g.number(wrong)
 
 
 def test_limits() -> None:
@@ -95,7 +96,7 @@ def test_limits() -> None:
         g.sqrt(g.number(-1))
 
 
-def test_no_wrong_identification(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_no_wrong_identification() -> None:
     """Thousands of random expressions have the value they must have, whatever the graph made of them."""
     checked = 0
     for seed in range(150):

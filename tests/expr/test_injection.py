@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from random_expressions import collected
 
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
@@ -144,7 +145,7 @@ def test_names_of_latex_and_text() -> None:
 
 
 @pytest.mark.parametrize("format_", ["matlab", "julia"])
-def test_matlab_and_julia_through_a_transliteration(format_: str, collected) -> None:  # type: ignore[no-untyped-def]
+def test_matlab_and_julia_through_a_transliteration(format_: str) -> None:
     """Without interpreters of these languages: their assignments, with indices from 1, give the right numbers."""
     g = Graph()
     q, m = g.symbol("q"), g.symbol("m")
@@ -168,9 +169,9 @@ def test_matlab_and_julia_through_a_transliteration(format_: str, collected) -> 
             target, index, formula = match.groups()
             formula = re.sub(r"\b(x|metric|christoffel)[(\[]([\d, ]+)[)\]]", _from_zero, formula).replace("^", "**")
             formula = re.sub(r"zeros\(([\d, ]+)\)", r"np.zeros((\1,))", formula)
-            value = eval(formula, {"np": np}, values)  # noqa: S307
+            value = eval(formula, {"np": np}, values)  # noqa: S307 -- our own output, which is what is tested
             if index:
-                values[target][tuple(int(i) - 1 for i in index.split(","))] = value  # type: ignore[index]
+                values[target][tuple(int(i) - 1 for i in index.split(","))] = value
             else:
                 values[target] = value
     for name, expected in interpret(program, point).items():

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from random_expressions import collected
 
 from substructures.errors import InvalidDocument, MissingValue
 from substructures.expr.bind import bind
@@ -17,17 +18,17 @@ from substructures.expr.trigonometry import cos, sin
 
 
 @pytest.fixture
-def arm(collected) -> Program:  # type: ignore[no-untyped-def]
+def arm() -> Program:
     g = Graph()
     m, l1, l2, q = (g.symbol(n) for n in ("arm.m", "arm.l1", "l2", "arm.q"))
     entries = {(0, 0): m * (l1 + l2) ** 2, (0, 1): m * l1 * cos(q) / l2, (1, 1): g.sqrt(m)}
-    return collected(g, metric=Formulas((2, 2), entries, "symmetric"), energy=sin(q) * l1)  # type: ignore[no-any-return]
+    return collected(g, metric=Formulas((2, 2), entries, "symmetric"), energy=sin(q) * l1)
 
 
 POINT = {"arm.m": 2.0, "arm.l1": 0.5, "l2": 0.3, "arm.q": 0.4}
 
 
-def test_every_operation(collected) -> None:  # type: ignore[no-untyped-def]
+def test_every_operation() -> None:
     g = Graph()
     x, y = g.symbol("x"), g.symbol("y")
     names = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "abs", "sign")
@@ -121,7 +122,7 @@ def test_bound_symbols_keep_their_kind() -> None:
 )
 def test_bind_refuses(arm: Program, values: dict[str, object], pointer: str, code: str) -> None:
     with pytest.raises(InvalidDocument) as caught:
-        bind(arm, values)  # type: ignore[arg-type]
+        bind(arm, values)
     assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == (pointer, code)
 
 

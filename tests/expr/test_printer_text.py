@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from random_expressions import collected, sample
 
 from substructures.errors import TooLarge
 from substructures.expr.graph import Graph
@@ -13,7 +14,7 @@ from substructures.expr.trigonometry import cos
 from substructures.printers import entries, render
 
 
-def test_text_is_read_back_as_the_same_formulas(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_text_is_read_back_as_the_same_formulas() -> None:
     for seed in range(40):
         s = sample(6000 + seed, size=30)
         program = collected(s.graph, f=Formulas((len(s.exprs),), {(i,): e for i, e in enumerate(s.exprs)}))
@@ -26,7 +27,7 @@ def test_text_is_read_back_as_the_same_formulas(sample, collected) -> None:  # t
                 assert value == pytest.approx(expected[int(name[1:])], rel=1e-7, abs=1e-6)
 
 
-def test_readable_text(collected) -> None:  # type: ignore[no-untyped-def]
+def test_readable_text() -> None:
     g = Graph()
     x, t1 = g.symbol("x"), g.symbol("t1")
     shared = (x + t1) * cos(x)
@@ -36,7 +37,7 @@ def test_readable_text(collected) -> None:  # type: ignore[no-untyped-def]
     assert "g = -(tt1 + 1/4*x^2)\n" in text
 
 
-def test_a_small_program_may_be_a_large_formula(collected) -> None:  # type: ignore[no-untyped-def]
+def test_a_small_program_may_be_a_large_formula() -> None:
     g = Graph()
     e = g.symbol("x")
     for i in range(60):

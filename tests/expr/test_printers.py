@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from random_expressions import collected, sample
 
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
@@ -29,7 +30,7 @@ POINT = {"arm.q1": 0.6, "arm.q1'": -0.4, "m": 1.3, "l": 0.8, "theta_x": 0.35}
 
 
 @pytest.fixture
-def mixed(collected) -> Program:  # type: ignore[no-untyped-def]
+def mixed() -> Program:
     """All operations, all symmetries, shapes of every rank, large and small numbers, zeros."""
     g = Graph()
     q, v, m, length, th = (g.symbol(n) for n in POINT)
@@ -51,7 +52,7 @@ def mixed(collected) -> Program:  # type: ignore[no-untyped-def]
         m / (q / v),
         v - (q - m),
     ]
-    return collected(  # type: ignore[no-any-return]
+    return collected(
         g,
         metric=Formulas((2, 2), {(0, 0): m + 2 * k + length**2, (0, 1): m + k, (1, 1): m}, "symmetric"),
         christoffel=Formulas(
@@ -126,7 +127,7 @@ def test_sympy(mixed: Program, form: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(COMPILER is None, reason="no C compiler")
-def test_random_programs_in_all_languages(sample, collected, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_random_programs_in_all_languages(tmp_path: Path) -> None:
     for seed in range(4):
         s = sample(5000 + seed, size=60)
         program = collected(s.graph, f=Formulas((len(s.exprs),), {(i,): e for i, e in enumerate(s.exprs)}))
@@ -195,7 +196,7 @@ def test_unknown_formats_and_forms(mixed: Program) -> None:
             render(mixed, **kwargs)
 
 
-def test_long_chains_need_no_recursion(collected, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_long_chains_need_no_recursion(tmp_path: Path) -> None:
     g = Graph()
     x = g.symbol("m")
     e = x

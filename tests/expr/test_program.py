@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from random_expressions import collected, sample
 
 from substructures.errors import InvalidProgram
 from substructures.expr.graph import Graph
@@ -88,7 +90,7 @@ def test_count() -> None:
     assert two_link_arm().count()["atan2"] == 1
 
 
-def test_replay_gives_the_same_functions(sample, collected) -> None:  # type: ignore[no-untyped-def]
+def test_replay_gives_the_same_functions() -> None:
     for seed in range(20):
         s = sample(seed)
         first = collected(s.graph, **{f"e{i}": e for i, e in enumerate(s.exprs)})
@@ -172,6 +174,20 @@ def test_damaged_documents_are_refused(path: list[Any], value: Any) -> None:
         place = place[key]
     place[path[-1]] = value
     with pytest.raises(InvalidProgram):
+        Program.from_bytes(json.dumps(document).encode())
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"operations": ...}, "'operations' is missing"),
+        ({"symbols": [{"name": "x"}]}, "symbol {'name': 'x'}: it has a name, a unit and one of the kinds coordinate"),
+        ({"outputs": {"f": {"shape": []}}}, "output 'f': shape, symmetry, index and entries are needed"),
+    ],
+)
+def test_what_is_wrong_with_a_document_is_said(changes: dict[str, Any], message: str) -> None:
+    document = {name: value for name, value in {**BASE, **changes}.items() if value is not ...}
+    with pytest.raises(InvalidProgram, match=re.escape(message)):
         Program.from_bytes(json.dumps(document).encode())
 
 

@@ -36,7 +36,7 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("reserved coordinate", (*J, "coordinate"), "sin", "reserved-name", "sin"),
     ("coordinates of a compound joint", (*B, "joint", "coordinate"), ["x", "y"], "wrong-length", "planar"),
     ("unknown joint type", (*J, "type"), "hinge", "literal-error", "hinge"),
-    ("unknown field", (*B, "weight"), 3, "extra-forbidden", "3"),
+    ("unknown field", (*B, "weight"), 3, "extra-forbidden", "weight"),
     ("vector of two", ("bodies", 0, "com"), [1, 2], "missing", ""),
     ("vector of four", ("bodies", 0, "com"), [1, 2, 3, 4], "too-long", ""),
     ("unknown name", ("bodies", 0, "mass"), "free + mass9", "unknown-name", "mass9"),

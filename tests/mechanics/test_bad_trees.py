@@ -10,6 +10,7 @@ from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good,
 
 from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
 from substructures.evaluation import evaluate
+from substructures.regressor import regressor
 
 INSTANCE: Path = ("instances", 1)
 TREES: list[tuple[str, Path, Any, str, str]] = [
@@ -59,10 +60,13 @@ def test_a_cycle_of_hosts() -> None:
 def test_a_binding_that_makes_a_divisor_zero() -> None:
     part = derive(Definition.read(changed(GOOD, (("bodies", 0, "joint", "tau"), "1/l"))))
     tree = TreeSpec.read(changed(TREE, ((*INSTANCE, "parameters", "l"), 0)))
-    with pytest.raises(InvalidDocument) as raised:
-        couple(tree, {"one": part, "two": part})
-    assert raised.value.faults[0].code == "division-by-zero"
-    assert raised.value.faults[0].pointer.startswith("/instances")
+    instance = int(INSTANCE[1])
+    for make in (couple, regressor):
+        with pytest.raises(InvalidDocument) as raised:
+            make(tree, {"one": part, "two": part})
+        (fault,) = raised.value.faults
+        assert (fault.pointer, fault.code) == (f"/instances/{instance}/parameters", "division-by-zero")
+        assert f"'{TREE['instances'][instance]['name']}'" in fault.message
 
 
 # --- requests
@@ -77,11 +81,12 @@ REQUESTS: list[tuple[str, Plain, str, str, str]] = [
     ("no states", {"q": None}, "/q", "missing", "q"),
     ("ragged states", {"q": [[0] * 10, [0]]}, "/q", "wrong-length", ""),
     ("text in a state", {"q": [0] * 9 + ["1"]}, "/q/9", "number-expected", "1"),
+    ("nothing in a state", {"q": [0] * 9 + [None]}, "/q/9", "number-expected", "found None"),
     ("truth value in a state", {"q": [0] * 9 + [True]}, "/q/9", "number-expected", "True"),
     ("not a number", {"q": [0, float("nan")] + [0] * 8}, "/q/1", "number-not-finite", ""),
     ("infinity in an array", {"qd": np.full((1, 10), np.inf)}, "/qd/0/0", "number-not-finite", ""),
     ("an integer beyond all doubles", {"q": [10**400] + [0] * 9}, "/q", "", ""),
-    ("unknown coordinate", {"q": {"one.q9": [0]}}, "/q/one.q9", "unknown-coordinate", "one.q9"),
+    ("unknown coordinate", {"q": {"one.q9": [0]}}, "/q/one.q9", "unknown-coordinate", "'one.q9'; there are one."),
     ("unknown parameter", {"parameters": {"one.l9": 1}}, "/parameters/one.l9", "unknown-parameter", "one.l9"),
     ("bound parameter", {"parameters": {"two.l": 1}}, "/parameters/two.l", "unknown-parameter", "two.l"),
     ("infinite parameter", {"parameters": {"one.l": float("inf")}}, "/parameters/one.l", "number-not-finite", ""),

@@ -80,7 +80,7 @@ def answers(model: Model, q: dict[str, Any], qd: dict[str, Any]) -> dict[str, An
 def states_of(model: Model, seed: int = 0) -> tuple[dict[str, Any], dict[str, Any]]:
     states = random_states(np.random.default_rng(seed), 2, model.dof)
     names = [c.split(".")[1] for c in model.coordinates]
-    return tuple({c: states[k][:, i] for i, c in enumerate(names)} for k in ("q", "qd"))  # type: ignore[return-value]
+    return tuple({c: states[k][:, i] for i, c in enumerate(names)} for k in ("q", "qd"))
 
 
 def assert_same(found: dict[str, Any], expected: dict[str, Any], some: bool = False) -> float:

@@ -12,7 +12,7 @@ from random_trees import GRAVITY, Kind, model_of, random_definition, random_stat
 from substructures.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from pinocchio_trees import engine_of  # noqa: E402
+from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
 TOLERANCE = 1e-10
 QUANTITIES = ["metric", "gravity", "coriolis", "bias", "inverse_dynamics", "kinematics"]

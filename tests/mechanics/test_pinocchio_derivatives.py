@@ -14,7 +14,7 @@ from substructures import Model
 from substructures.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from pinocchio_trees import engine_of  # noqa: E402
+from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
 
 def pairs(number: int) -> tuple[Plain, Model]:

@@ -36,7 +36,7 @@ def shipped(name: str) -> Part:
 def of(tree: Plain) -> tuple[TreeSpec, dict[str, Part]]:
     """A tree document with its parts."""
     spec = TreeSpec.read(tree)
-    parts = {i.name: shipped(i.substructure) if i.substructure else derive(i.definition) for i in spec.instances}  # type: ignore[arg-type]
+    parts = {i.name: shipped(i.substructure) if i.substructure else derive(i.definition) for i in spec.instances}
     return spec, parts
 
 

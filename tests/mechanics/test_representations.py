@@ -109,7 +109,7 @@ def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[Joint, ...], tuple[In
         own.append(tau)
         joints.append(Joint(j.parent, j.s, Rotation((Turn(matrix("E", c)),)), tuple(z), tau))
         s = tuple(scalar(x["inertia.s"], c, i) for i in range(3))
-        bodies.append(Inertia(scalar(x["inertia.m"], c), s, packed(matrix("inertia.J", c))))  # type: ignore[arg-type]
+        bodies.append(Inertia(scalar(x["inertia.m"], c), s, packed(matrix("inertia.J", c))))
     return tuple(joints), tuple(bodies)
 
 

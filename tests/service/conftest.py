@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 from fastapi.testclient import TestClient
@@ -15,6 +16,8 @@ from service.app import create_app, open_store
 from service.settings import Settings
 from service.store import Store
 from service.tables import metadata
+
+Given, Answer = TypeVar("Given"), TypeVar("Answer")
 
 PENDULUM: dict[str, Any] = {
     "name": "pendulum",
@@ -60,6 +63,12 @@ HAND: dict[str, Any] = {"name": "hand", "substructure": "pendulum", "at": "arm.t
 def make_client(store: Store) -> TestClient:
     """A client of an app around the store; the app must never raise into the server."""
     return TestClient(create_app(store), base_url="http://localhost", raise_server_exceptions=True)
+
+
+def at_once(call: Callable[[Given], Answer], given: Sequence[Given]) -> list[Answer]:
+    """The results of calls that are made at the same time, each in a thread of its own."""
+    with ThreadPoolExecutor(len(given)) as pool:
+        return list(pool.map(call, given))
 
 
 @pytest.fixture(scope="session")

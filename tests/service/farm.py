@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import httpx2
 import numpy as np
@@ -74,11 +74,12 @@ class Server:
             self.process.wait(30)
             self.kills += 1
 
-    def stop(self) -> None:
-        """As by a service manager."""
-        if self.process is not None:
-            self.process.terminate()
-            self.process.wait(30)
+    def stop(self) -> int:
+        """As by a service manager; the exit status, 0 of one that was never started."""
+        if self.process is None:
+            return 0
+        self.process.terminate()
+        return self.process.wait(30)
 
     def workers(self) -> list[int]:
         """The processes that compute for it."""
@@ -97,54 +98,68 @@ def running(servers: Sequence[Server]) -> Iterator[None]:
             server.stop()
 
 
-class Assassin:
+class Repeated:
+    """Does something again and again, in a thread of its own, while a block lasts."""
+
+    def __init__(self) -> None:
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._work)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _work(self) -> None:
+        while not self._over.wait(self.pause()):
+            self.act()
+
+    def pause(self) -> float:
+        """Seconds until the next time."""
+        raise NotImplementedError
+
+    def act(self) -> None:
+        """Once."""
+        raise NotImplementedError
+
+
+class Assassin(Repeated):
     """Kills workers at random moments, and servers when told to."""
 
     def __init__(self, servers: Sequence[Server], seed: int, longest: float) -> None:
+        super().__init__()
         self.servers, self.longest = servers, longest
         self.random, self.kills = np.random.default_rng(seed), 0
-        self._over = threading.Event()
-        self._thread = threading.Thread(target=self._work)
 
-    def __enter__(self) -> Assassin:
-        self._thread.start()
-        return self
+    def pause(self) -> float:
+        return self.random.uniform(0.05, self.longest)
 
-    def __exit__(self, *_: object) -> None:
-        self._over.set()
-        self._thread.join()
-
-    def _work(self) -> None:
-        while not self._over.wait(self.random.uniform(0.05, self.longest)):
-            pids = [pid for server in self.servers for pid in server.workers()]
-            if pids:
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(int(self.random.choice(pids)), signal.SIGKILL)
-                    self.kills += 1
+    def act(self) -> None:
+        pids = [pid for server in self.servers for pid in server.workers()]
+        if pids:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(self.random.choice(pids)), signal.SIGKILL)
+                self.kills += 1
 
 
-class Submitter:
+class Submitter(Repeated):
     """Submits small jobs all the time, each under a key of its own, again and again until it is acknowledged."""
 
     def __init__(self, servers: Sequence[Server], body: Callable[[int], dict[str, Any]], pause: float) -> None:
-        self.servers, self.body, self.pause = servers, body, pause
+        super().__init__()
+        self.servers, self.body, self.seconds = servers, body, pause
         self.acknowledged: dict[str, str] = {}
         self.sent = 0
-        self._over = threading.Event()
-        self._thread = threading.Thread(target=self._work)
 
-    def __enter__(self) -> Submitter:
-        self._thread.start()
-        return self
+    def pause(self) -> float:
+        return self.seconds
 
-    def __exit__(self, *_: object) -> None:
-        self._over.set()
-        self._thread.join()
-
-    def _work(self) -> None:
-        while not self._over.wait(self.pause):
-            self.acknowledged[f"small-{self.sent}"] = submit(self.servers, self.body(self.sent), f"small-{self.sent}")
-            self.sent += 1
+    def act(self) -> None:
+        self.acknowledged[f"small-{self.sent}"] = submit(self.servers, self.body(self.sent), f"small-{self.sent}")
+        self.sent += 1
 
 
 def submit(servers: Sequence[Server], body: dict[str, Any], key: str, seconds: float = 300.0) -> str:
@@ -171,16 +186,3 @@ def finished(client: Client, job: str, seconds: float) -> dict[str, Any]:
         if view["state"] in ("succeeded", "failed", "cancelled") or time.monotonic() > end:
             return view
         time.sleep(0.1)
-
-
-def items(client: Client, job: str) -> list[dict[str, Any]]:
-    """All items of a job."""
-    found: list[dict[str, Any]] = []
-    token = ""
-    while True:
-        wanted = {"page_size": 1000, **({"page_token": token} if token else {})}
-        page = client.request("GET", f"/v1/jobs/{job}/result", params=wanted).json()
-        found += page["items"]
-        token = page["next_page_token"]
-        if not token:
-            return found

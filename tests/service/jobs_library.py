@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from service.jobs.engine import Budget, Engine, Report, Work
@@ -74,8 +74,10 @@ class MemoryLibrary:
         return works
 
 
-def compute(engine: Engine, works: Sequence[Work], seconds: float = 60.0) -> dict[str, Report]:
-    """The final reports of works."""
+def compute(
+    engine: Engine, works: Sequence[Work], seconds: float = 60.0, told: Callable[[int], None] = lambda _: None
+) -> dict[str, Report]:
+    """The final reports of works; ``told``: called with how many there are so far."""
     waiting, final = list(works), {}
     for _ in range(int(seconds / 0.05)):
         while waiting and engine.free:
@@ -84,6 +86,7 @@ def compute(engine: Engine, works: Sequence[Work], seconds: float = 60.0) -> dic
             if report.is_final:
                 assert report.id not in final
                 final[report.id] = report
+        told(len(final))
         if len(final) == len(works):
             return final
     raise AssertionError(f"{len(final)} of {len(works)} works ended in time")

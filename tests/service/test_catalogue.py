@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import threading
 from typing import Any
 
 import pytest
@@ -11,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from service.schemas import AliasView, FormulaIndex, VersionPage, VersionView
 
-from .conftest import PENDULUM, SLIDER
+from .conftest import PENDULUM, SLIDER, at_once
 
 VERSION_FIELDS = {
     "name", "version", "digest", "dof", "coordinates", "bodies", "joints", "ports", "parameters", "operations",
@@ -236,29 +235,13 @@ def test_yanked_versions_stay_where_they_are_used(filled: TestClient) -> None:
 
 
 def test_concurrent_submissions_give_one_version(client: TestClient) -> None:
-    codes: list[int] = []
-
-    def submit() -> None:
-        codes.append(client.post("/v1/substructures", json=PENDULUM).status_code)
-
-    threads = [threading.Thread(target=submit) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    codes = at_once(lambda _: client.post("/v1/substructures", json=PENDULUM).status_code, range(8))
     assert sorted(codes) == [200] * 7 + [201]
     assert client.get("/v1/substructures/pendulum").json()["version"] == 1
 
 
 def test_concurrent_versions_get_different_numbers(client: TestClient) -> None:
-    numbers: list[int] = []
+    def submit(k: int) -> int:
+        return int(client.post("/v1/substructures", json=changed(title=f"Title {k}")).json()["version"])
 
-    def submit(k: int) -> None:
-        numbers.append(client.post("/v1/substructures", json=changed(title=f"Title {k}")).json()["version"])
-
-    threads = [threading.Thread(target=submit, args=(k,)) for k in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert sorted(numbers) == list(range(1, 9))
+    assert sorted(at_once(submit, range(8))) == list(range(1, 9))

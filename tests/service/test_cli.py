@@ -99,7 +99,7 @@ def test_errors_of_the_surroundings(
     assert "mysql" in capsys.readouterr().err
     address = f"sqlite:///{tmp_path / 'x.db'}"
     monkeypatch.setenv("SUBSTRUCTURES_CATALOGUE", "no")
-    assert main(["serve", "--host", "0.0.0.0", "--database", address]) == 1  # noqa: S104
+    assert main(["serve", "--host", "0.0.0.0", "--database", address]) == 1  # noqa: S104 -- refused
     assert "without API keys" in capsys.readouterr().err
     monkeypatch.setenv("SUBSTRUCTURES_PROT", "1")
     assert main(["serve", "--database", address]) == 1

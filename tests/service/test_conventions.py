@@ -33,11 +33,11 @@ def problem(answer: Any, status: int, code: str) -> dict[str, Any]:
 
 
 def test_problems(client: TestClient) -> None:
-    problem(client.get("/nothing"), 404, "not-found")
+    assert "/openapi.json" in problem(client.get("/nothing"), 404, "not-found")["detail"]
     problem(client.get("/v1/trees/"), 404, "not-found")
     problem(client.get("/v1/trees/nothing"), 404, "unknown-tree")
     wrong = client.put("/v1/substructures", json={})
-    problem(wrong, 405, "method-not-allowed")
+    assert problem(wrong, 405, "method-not-allowed")["detail"] == "PUT is not possible at this path, but GET, POST"
     assert set(wrong.headers["allow"].replace(" ", "").split(",")) == {"GET", "POST"}
     problem(
         client.post("/v1/substructures", content=b"{}", headers={"Content-Type": "text/plain"}),
@@ -45,7 +45,9 @@ def test_problems(client: TestClient) -> None:
         "unsupported-media-type",
     )
     problem(client.post("/v1/substructures", content=b"{", headers=JSON), 422, "invalid-document")
-    problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")
+    assert problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")["detail"].endswith("found '0'")
+    for body, message in (({}, "'name' is needed"), ({"name": "x", "colour": 1}, "unknown field 'colour'")):
+        assert message in problem(client.post("/v1/trees", json=body), 422, "invalid-document")["detail"]
 
 
 def test_defects_are_500_without_details(
@@ -84,7 +86,7 @@ def test_host_is_checked(client: TestClient, host: str, status: int) -> None:
     answer = client.get("/livez", headers={"Host": host})
     assert answer.status_code == status
     if status == 400:
-        problem(answer, 400, "host-not-allowed")
+        assert "SUBSTRUCTURES_ALLOWED_HOSTS" in problem(answer, 400, "host-not-allowed")["detail"]
 
 
 def test_health(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import signal
-import socket
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import httpx2
 import pytest
 import sqlalchemy as sa
 from alembic.autogenerate import compare_metadata
@@ -25,6 +18,7 @@ from service.migrate import MigrationError, upgrade
 from service.tables import metadata, parts
 
 from .conftest import HAND, PENDULUM, TREE
+from .farm import Server, running
 
 
 @pytest.fixture
@@ -109,7 +103,7 @@ def test_readers_cannot_write(database: Database) -> None:
 
 def test_transactions_are_all_or_nothing(database: Database) -> None:
     statement = "INSERT INTO substructures VALUES ('a', NULL)"
-    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012
+    with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012 -- the second of two
         for _ in range(2):
             connection.exec_driver_sql(statement)
     with database.read() as connection:
@@ -135,54 +129,19 @@ def test_wrong_addresses(address: str) -> None:
             Database(address, exclusive=exclusive)
 
 
-class Server:
-    """A server process on a database file."""
-
-    def __init__(self, folder: Path) -> None:
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            self.port = free.getsockname()[1]
-        command = [
-            sys.executable,
-            "-m",
-            "service.cli",
-            "serve",
-            "--port",
-            str(self.port),
-            "--database",
-            f"sqlite:///{folder / 'x.db'}",
-        ]
-        self.process = subprocess.Popen(command, env={**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"})
-        self.client = Client(f"http://127.0.0.1:{self.port}")
-        self._wait()
-
-    def _wait(self) -> None:
-        for _ in range(300):
-            try:
-                self.client.request("GET", "/readyz")
-                return
-            except httpx2.TransportError:
-                time.sleep(0.05)
-        raise TimeoutError
-
-    def stop(self, how: signal.Signals) -> int:
-        """Send a signal; the exit status."""
-        self.client.close()
-        self.process.send_signal(how)
-        return self.process.wait(15)
-
-
 def test_acknowledged_writes_survive_a_kill(tmp_path: Path) -> None:
-    server = Server(tmp_path)
-    version, is_new = server.client.submit(PENDULUM)
-    server.client.create_tree(TREE)
-    tree = server.client.couple("cell", HAND)
-    server.stop(signal.SIGKILL)
-    assert is_new
-    server = Server(tmp_path)
-    try:
-        assert server.client.substructure("pendulum@1") == version
-        assert server.client.request("GET", "/v1/trees/cell").json() == tree
-        assert server.client.evaluate("cell", quantities=["metric"], q=[0, 0])["count"] == 1
-        assert server.client.submit(PENDULUM) == (version, False)
-    finally:
-        assert server.stop(signal.SIGTERM) == 0
+    server = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log")
+    with running([server]):
+        with Client(server.address) as client:
+            version, is_new = client.submit(PENDULUM)
+            client.create_tree(TREE)
+            tree = client.couple("cell", HAND)
+        server.kill()
+        server.start()
+        assert is_new
+        with Client(server.address) as client:
+            assert client.substructure("pendulum@1") == version
+            assert client.request("GET", "/v1/trees/cell").json() == tree
+            assert client.evaluate("cell", quantities=["metric"], q=[0, 0])["count"] == 1
+            assert client.submit(PENDULUM) == (version, False)
+        assert server.stop() == 0

@@ -108,7 +108,7 @@ def guarded(filled: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 def test_the_watch_sees(guarded: TestClient) -> None:
     assert guarded
-    assert eval(PAYLOADS[1])  # noqa: S307
+    assert eval(PAYLOADS[1])  # noqa: S307 -- shows that the payload would be seen
     assert len(WATCH.executed) == 1
     WATCH.executed.clear()
 

@@ -63,7 +63,10 @@ def test_in_flight(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("service.operations.trees.prepare_change", slow)
     answers: list[Any] = []
-    post = lambda: answers.append(filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY))  # noqa: E731
+
+    def post() -> None:
+        answers.append(filled.post("/v1/trees/cell/couplings", json=HAND, headers=KEY))
+
     thread = threading.Thread(target=post)
     thread.start()
     assert started.wait(10)

@@ -12,7 +12,7 @@ import pytest
 from service.client import Client
 
 from .conftest import PENDULUM, SLIDER
-from .farm import Server, finished, items, running, submit
+from .farm import Server, finished, running, submit
 from .test_jobs_dask import Cluster
 
 BATCH, WORKERS = 300, 4
@@ -25,7 +25,7 @@ JOB: dict[str, Any] = {
 
 def results(client: Client, job: str) -> dict[int, Any]:
     """What came of every item, by position."""
-    listed = items(client, job)
+    listed = list(client.job_items(job))
     found = {item["position"]: (item["state"], item["result"]) for item in listed}
     assert len(found) == len(listed) == BATCH
     return found

@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -152,25 +152,19 @@ def test_killed_worker_and_restarted_scheduler_lose_nothing(
     cluster: Cluster, engine: DaskEngine, library: MemoryLibrary
 ) -> None:
     works = cells(library, 300)
-    waiting, final = list(works), {}
-    is_killed = is_restarted = False
-    for _ in range(3000):
-        while waiting and engine.free:
-            engine.start(waiting.pop(0))
-        for report in engine.reports(0.05):
-            if report.is_final:
-                assert report.id not in final
-                final[report.id] = report
-        if len(final) > 60 and not is_killed:
-            is_killed = True
-            cluster.workers[0].kill()
-        if len(final) > 150 and not is_restarted:
-            is_restarted = True
-            cluster.restart_scheduler()
-            cluster.add_workers(3)
-        if len(final) == len(works):
-            break
-    assert is_restarted
+
+    def restart() -> None:
+        cluster.restart_scheduler()
+        cluster.add_workers(3)
+
+    disturbances: list[tuple[int, Callable[[], object]]] = [(60, cluster.workers[0].kill), (150, restart)]
+
+    def disturb(done: int) -> None:
+        while disturbances and done > disturbances[0][0]:
+            disturbances.pop(0)[1]()
+
+    final = compute(engine, works, 150, disturb)
+    assert not disturbances
     check(works, final)
 
 

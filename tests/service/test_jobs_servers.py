@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import socket
 import sqlite3
 import subprocess
 import sys
@@ -14,7 +12,6 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
-import httpx2
 import pytest
 
 from service.app import open_store
@@ -25,8 +22,10 @@ from service.settings import Settings
 from service.supervisor import Supervisor
 
 from .conftest import PENDULUM, TREE, make_client
+from .databases import fresh
 from .fake_engine import FakeEngine, export, finished, running, submitted
-from .test_jobs_queue import fresh
+from .farm import Server
+from .farm import running as running_servers
 
 
 def cells(count: int, name: str = "c") -> dict[str, Any]:
@@ -48,42 +47,25 @@ class Slow(FakeEngine):
         return super().compute(work)
 
 
-class Server:
-    """A server process; its workers are to end with it."""
-
-    def __init__(self, address: str, *options: str, command: str = "serve") -> None:
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            self.port = free.getsockname()[1]
-        words = [sys.executable, "-m", "service.cli", command, "--database", address, "--workers", "1", *options]
-        if command == "serve":
-            words += ["--port", str(self.port)]
-        environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false", "SUBSTRUCTURES_LIMIT_LEASE_SECONDS": "2"}
-        self.process = subprocess.Popen(words, env=environment)
-        self.client = Client(f"http://127.0.0.1:{self.port}")
-
-    def ready(self) -> Client:
-        for _ in range(600):
-            try:
-                self.client.request("GET", "/readyz")
-                return self.client
-            except httpx2.TransportError:
-                time.sleep(0.05)
-        raise TimeoutError
-
-    def stop(self, how: signal.Signals = signal.SIGKILL) -> int:
-        self.client.close()
-        self.process.send_signal(how)
-        return self.process.wait(20)
+@contextmanager
+def serving(database: str, folder: Path, *options: str) -> Iterator[tuple[Server, Client]]:
+    """A server with one worker, and its client."""
+    server = Server(database, folder / "log", ("--workers", "1", *options))
+    server.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "2"
+    with running_servers([server]), Client(server.address) as client:
+        yield server, client
 
 
 @contextmanager
-def serving(*arguments: Any, **options: Any) -> Iterator[Server]:
-    server = Server(*arguments, **options)
+def working(database: str) -> Iterator[None]:
+    """A worker that is killed in the end."""
+    command = [sys.executable, "-m", "service.cli", "worker", "--database", database, "--workers", "1"]
+    process = subprocess.Popen(command, env={**os.environ, "SUBSTRUCTURES_LIMIT_LEASE_SECONDS": "2"})
     try:
-        yield server
+        yield
     finally:
-        if server.process.poll() is None:
-            server.stop()
+        process.kill()
+        process.wait(30)
 
 
 def until(condition: Callable[[], bool], seconds: float = 30) -> None:
@@ -94,19 +76,16 @@ def until(condition: Callable[[], bool], seconds: float = 30) -> None:
 
 
 def test_a_killed_server_loses_and_doubles_nothing(tmp_path: Path) -> None:
-    address = f"sqlite:///{tmp_path / 'x.db'}"
-    with serving(address) as server:
-        client = server.ready()
+    with serving(f"sqlite:///{tmp_path / 'x.db'}", tmp_path) as (server, client):
         client.submit(PENDULUM)
         job = client.submit_job(cells(40))["id"]
         until(lambda: client.job(job)["progress"]["done"] >= 10)
-        server.stop()
-    with serving(address) as server:
-        client = server.ready()
+        server.kill()
+        server.start()
         view = client.wait(job)
         assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
         names = [item["result"]["name"] for item in client.job_items(job)]
-        assert server.stop(signal.SIGTERM) == 0
+        assert server.stop() == 0
     with closing(sqlite3.connect(tmp_path / "x.db")) as connection:
         trees = connection.execute("SELECT name, count(*) FROM trees GROUP BY name").fetchall()
         assert sorted(trees) == sorted((name, 1) for name in names)
@@ -151,13 +130,12 @@ def test_supervisors_share_a_queue_on_postgresql(tmp_path: Path) -> None:
 
 @pytest.mark.deep
 def test_a_killed_worker_on_postgresql_is_replaced(tmp_path: Path) -> None:
-    with fresh("postgresql", tmp_path) as address, serving(address, "--engine", "none") as server:
-        client = server.ready()
+    with fresh("postgresql", tmp_path) as address, serving(address, tmp_path, "--engine", "none") as (_, client):
         client.submit(PENDULUM)
         job = client.submit_job(cells(40))["id"]
-        with serving(address, command="worker"):
+        with working(address):
             until(lambda: client.job(job)["progress"]["done"] >= 5)
-        with serving(address, command="worker"):
+        with working(address):
             view = client.wait(job)
         assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
         assert len({item["result"]["tree"] for item in client.job_items(job)}) == 40

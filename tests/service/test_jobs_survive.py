@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import sqlite3
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,8 @@ import pytest
 from service.client import Client
 from substructures import catalogue
 
-from .farm import Assassin, Server, Submitter, finished, items, running, submit
-from .test_postgres import address, server
-
-__all__ = ["address"]  # a fixture
+from .databases import fresh
+from .farm import Assassin, Server, Submitter, finished, running, submit
 
 BATCH = 2000
 KILLS = 100  # of servers, and of workers, in the batch
@@ -59,7 +58,7 @@ def prepared(client: Client) -> None:
 def results(client: Client, job: str) -> dict[int, tuple[str, str]]:
     """What came of every item that succeeded, and the hash of its files; others were killed three times."""
     found = {}
-    for item in items(client, job):
+    for item in client.job_items(job):
         if item["state"] == "failed":
             assert (item["problem"]["code"], len(item["deaths"])) == ("worker-died", 3), item
             continue
@@ -83,19 +82,14 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[int, tuple[str
         return results(client, job)
 
 
-@pytest.fixture(params=["sqlite, one server", "postgresql, two servers"])
-def farm(request: pytest.FixtureRequest, tmp_path: Path) -> list[Server]:
-    """Servers on one database."""
-    log = tmp_path / "log"
-    if request.param.startswith("sqlite"):
-        return [Server(f"sqlite:///{tmp_path}/store.db", log)]
-    if server() is None:
-        pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
-    database = request.getfixturevalue("address")
-    both = [Server(database, log) for _ in range(2)]
-    for one in both:
-        one.environment["SUBSTRUCTURES_WORKERS"] = "1"
-    return both
+@pytest.fixture(params=["sqlite", "postgresql"])
+def farm(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Server]]:
+    """One server on SQLite, two on PostgreSQL."""
+    with fresh(request.param, tmp_path) as database:
+        servers = [Server(database, tmp_path / "log") for _ in range(2 if request.param == "postgresql" else 1)]
+        for one in servers:
+            one.environment["SUBSTRUCTURES_WORKERS"] = str(2 // len(servers))
+        yield servers
 
 
 def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
@@ -165,7 +159,7 @@ def test_after_a_restart_nothing_is_stuck(tmp_path: Path) -> None:
             prepared(client)
         job = submit([one], {"kind": "assemble", "items": [tree(2 * i) for i in range(100)]}, "batch")
         with Client(one.address) as client:
-            while not [item for item in items(client, job) if item["state"] == "running"]:
+            while not [item for item in client.job_items(job) if item["state"] == "running"]:
                 time.sleep(0.01)
         one.kill()
         one.start()

@@ -31,7 +31,7 @@ def request(states: int) -> dict[str, object]:
 def agree(model: Model, engine: Kernels, states: int) -> None:
     wanted = request(states)
     found, expected = evaluate(model, wanted, engine=engine), evaluate(model, wanted)
-    for name in wanted["quantities"]:  # type: ignore[attr-defined]
+    for name in wanted["quantities"]:
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-9)
 
 

@@ -93,7 +93,7 @@ def test_wrong_scopes(store: Store, scopes: Any) -> None:
 
 def test_refuses_to_be_open_to_others(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     check_exposure(store)
-    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"host": "0.0.0.0"}))  # noqa: S104
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"host": "0.0.0.0"}))  # noqa: S104 -- a setting; nothing listens
     with pytest.raises(SettingsError, match="without API keys"):
         check_exposure(store)
     new_key(store, "read")

@@ -1,54 +1,25 @@
-"""The main flows on PostgreSQL: TEST_POSTGRES_URL, or a server on 127.0.0.1:5432 that trusts us; otherwise skipped."""
+"""The main flows on PostgreSQL."""
 
 from __future__ import annotations
 
-import os
-import secrets
-import threading
 from collections.abc import Iterator
 
 import pytest
-import sqlalchemy as sa
 from fastapi.testclient import TestClient
-from sqlalchemy.engine import make_url
 
 from service.app import open_store
 from service.settings import Settings
 
-from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
-
-CANDIDATES = [os.environ.get("TEST_POSTGRES_URL"), "postgresql://postgres@127.0.0.1:5432/postgres"]
-
-
-def server() -> str | None:
-    """The address of the first server that answers."""
-    for address in filter(None, CANDIDATES):
-        url = make_url(address).set(drivername="postgresql+psycopg").update_query_dict({"connect_timeout": "2"})
-        engine = sa.create_engine(url)
-        try:
-            with engine.connect():
-                return url.render_as_string(hide_password=False)
-        except sa.exc.OperationalError:
-            continue
-        finally:
-            engine.dispose()
-    return None
+from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once, make_client
+from .databases import fresh
+from .databases import server as server
 
 
 @pytest.fixture(scope="module")
-def address() -> Iterator[str]:
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A fresh database that is dropped afterwards."""
-    base = server()
-    if base is None:
-        pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
-    name = f"substructures_test_{secrets.token_hex(6)}"
-    engine = sa.create_engine(base, isolation_level="AUTOCOMMIT")
-    with engine.connect() as connection:
-        connection.exec_driver_sql(f'CREATE DATABASE "{name}"')
-    yield make_url(base).set(database=name).render_as_string(hide_password=False)
-    with engine.connect() as connection:
-        connection.exec_driver_sql(f'DROP DATABASE "{name}" WITH (FORCE)')
-    engine.dispose()
+    with fresh("postgresql", tmp_path_factory.mktemp("postgres")) as found:
+        yield found
 
 
 @pytest.fixture
@@ -90,34 +61,19 @@ def test_nul_is_harmless(client: TestClient) -> None:
 
 def test_concurrency(client: TestClient) -> None:
     definition = {**PENDULUM, "name": "contended"}
-    codes: list[int] = []
-
-    def submit() -> None:
-        codes.append(client.post("/v1/substructures", json=definition).status_code)
-
-    threads = [threading.Thread(target=submit) for _ in range(6)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    codes = at_once(lambda _: client.post("/v1/substructures", json=definition).status_code, range(6))
     assert sorted(codes) == [200] * 5 + [201]
 
 
 def test_concurrent_couplings(client: TestClient) -> None:
     client.post("/v1/substructures", json=SLIDER)
     client.post("/v1/trees", json={"name": "rail", "instances": [{"name": "base0", "substructure": "slider"}]})
-    codes: list[int] = []
 
-    def couple(name: str) -> None:
-        body = {"name": name, "substructure": "slider", "at": "base0.top"}
-        codes.append(client.post("/v1/trees/rail/couplings", json=body).status_code)
+    def couple(k: int) -> int:
+        body = {"name": f"s{k}", "substructure": "slider", "at": "base0.top"}
+        return client.post("/v1/trees/rail/couplings", json=body).status_code
 
-    threads = [threading.Thread(target=couple, args=(f"s{k}",)) for k in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert codes == [201] * 4
+    assert at_once(couple, range(4)) == [201] * 4
     assert client.get("/v1/trees/rail").json()["dof"] == 5
 
 

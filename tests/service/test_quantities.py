@@ -78,7 +78,7 @@ def test_one_direction_for_all_states_and_npz(double: TestClient) -> None:
         "inputs.tau.arm.q": np.array(TAU),
     }
     states = {key: np.array(STATES[key]) for key in ("q", "qd", "qdd")}
-    np.savez(stream, quantities=np.array(names), **states, **members)  # type: ignore[arg-type]
+    np.savez(stream, quantities=np.array(names), **states, **members)
     answer = double.post(URL, content=stream.getvalue(), headers={"Content-Type": "application/x-npz"})
     assert answer.status_code == 200, answer.text
     found = np.load(io.BytesIO(answer.content), allow_pickle=False)
@@ -107,7 +107,7 @@ def test_refused_directions(double: TestClient, more: dict[str, Any], pointer: s
 
 def test_an_array_and_an_object_of_one_name(double: TestClient) -> None:
     stream = io.BytesIO()
-    np.savez(stream, quantities=np.array(["metric"]), q=np.zeros(2), along=np.zeros(2), **{"along.q": np.zeros(2)})  # type: ignore[arg-type]
+    np.savez(stream, quantities=np.array(["metric"]), q=np.zeros(2), along=np.zeros(2), **{"along.q": np.zeros(2)})
     answer = double.post(URL, content=stream.getvalue(), headers={"Content-Type": "application/x-npz"})
     assert answer.status_code == 422, answer.text
 

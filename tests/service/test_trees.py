@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from typing import Any
 
 import pytest
@@ -10,7 +9,7 @@ from fastapi.testclient import TestClient
 
 from service.schemas import TreePage, TreeView
 
-from .conftest import HAND, PENDULUM, SLIDER, TREE
+from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once
 
 TREE_FIELDS = {
     "name", "revision", "digest", "dof", "coordinates", "parameters", "instances", "operations", "certificate", "links",
@@ -109,18 +108,12 @@ def test_old_revisions_can_be_branched(filled: TestClient) -> None:
 
 def test_concurrent_couplings_lose_nothing(filled: TestClient) -> None:
     names = [f"s{k}" for k in range(6)]
-    codes: list[int] = []
 
-    def couple(name: str) -> None:
+    def couple(name: str) -> int:
         body = {"name": name, "substructure": "slider", "at": "arm.tip"}
-        codes.append(filled.post("/v1/trees/cell/couplings", json=body).status_code)
+        return filled.post("/v1/trees/cell/couplings", json=body).status_code
 
-    threads = [threading.Thread(target=couple, args=(name,)) for name in names]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert codes == [201] * 6
+    assert at_once(couple, names) == [201] * 6
     tree = filled.get("/v1/trees/cell").json()
     assert tree["revision"] == 7
     assert {instance["name"] for instance in tree["instances"]} == {"arm", *names}
@@ -134,6 +127,7 @@ def test_if_match_guards_against_other_changes(filled: TestClient) -> None:
         filled.delete("/v1/trees/cell/couplings/hand", headers=seen),
     ):
         assert (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
+        assert answer.headers["etag"] == filled.get("/v1/trees/cell").headers["etag"]
 
 
 def test_list(filled: TestClient) -> None:

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 from dataclasses import dataclass
-
-import pytest
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, program
@@ -24,12 +21,13 @@ class Sample:
     point: dict[str, float]
 
 
-def _sample(seed: int, size: int = 40, divide: bool = True) -> Sample:
+def sample(seed: int, size: int = 40, divide: bool = True) -> Sample:
+    """Random sums, products, quotients, sines and cosines, many of them equal as functions."""
     rng = random.Random(seed)  # noqa: S311 -- test data
     graph = Graph()
     point = {name: rng.uniform(-1.5, 1.5) for name in ("x", "y", "q1", "q2")}
     exprs = [graph.symbol(n) for n in point] + [graph.number(rng.randint(-3, 3)) for _ in range(2)] + [graph.pi]
-    floats = [*point.values(), *(float(int(e.value)) for e in exprs[4:6]), math.pi]  # type: ignore[arg-type]
+    floats = [*point.values(), *(float(int(e.value)) for e in exprs[4:6]), math.pi]
     angles = [(graph.symbol(n), point[n]) for n in ("q1", "q2")]
     while len(exprs) < size:
         i, j = rng.randrange(len(exprs)), rng.randrange(len(exprs))
@@ -53,19 +51,8 @@ def _sample(seed: int, size: int = 40, divide: bool = True) -> Sample:
     return Sample(graph, exprs, floats, point)
 
 
-@pytest.fixture
-def sample() -> Callable[..., Sample]:
-    """sample(seed, size=40, divide=True) -> Sample."""
-    return _sample
-
-
-def _collected(graph: Graph, **outputs: Formulas | Expr) -> Program:
+def collected(graph: Graph, **outputs: Formulas | Expr) -> Program:
+    """A program of these outputs; all symbols are parameters."""
     formulas = {n: o if isinstance(o, Formulas) else Formulas((), {(): o}) for n, o in outputs.items()}
     names = {str(e.value) for e in graph.table.values() if e.op == "sym"}
     return program(graph, formulas, {n: Symbol(n, "parameter", "m") for n in names})
-
-
-@pytest.fixture
-def collected() -> Callable[..., Program]:
-    """collected(graph, name=Expr or Formulas) -> Program."""
-    return _collected

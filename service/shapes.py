@@ -1,0 +1,17 @@
+"""What all shapes of requests and answers are made of."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Digest = Annotated[str, Field(pattern=r"^sha256:[0-9a-f]{64}$", description="sha256 of the canonical bytes")]
+Time = Annotated[str, Field(description="UTC, ISO 8601")]
+Links = dict[str, Any]
+
+
+class Shape(BaseModel):
+    """Base: no unknown fields."""
+
+    model_config = ConfigDict(extra="forbid")
