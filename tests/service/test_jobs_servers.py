@@ -26,7 +26,7 @@ from service.supervisor import Supervisor
 
 from .conftest import PENDULUM, TREE, make_client
 from .fake_engine import FakeEngine, export, finished, running, submitted
-from .test_jobs_queue import fresh
+from .queue_rounds import fresh
 
 
 def cells(count: int, name: str = "c") -> dict[str, Any]:
