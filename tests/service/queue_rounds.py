@@ -13,7 +13,7 @@ import pytest
 import sqlalchemy as sa
 from sqlalchemy.engine import make_url
 
-from service.job_tables import job_events, job_items, jobs, result_files, results
+from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
 from service.jobs.engine import Outcome
 from service.operations.job_rounds import Ended, Played, Round, play
 from service.queries import jobs as queries
@@ -26,7 +26,7 @@ from .test_postgres import server
 def clear(store: Store) -> None:
     """Remove all jobs."""
     with store.database.write() as connection:
-        for table in (job_events, job_items, jobs, result_files, results):
+        for table in (job_events, job_uploads, job_items, jobs, result_files, results, uploads):
             connection.execute(table.delete())
 
 

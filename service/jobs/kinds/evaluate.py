@@ -3,7 +3,8 @@
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
 named there are 0). ``format``: npz, or arrow (:mod:`service.arrow`). Its parts have a field ``range``, the first state
-and the one behind the last.
+and the one behind the last. Of states that were uploaded (:mod:`service.operations.uploads`) an item has its chunk:
+``states`` is the digest of the npz file with the columns.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib import import_module
 from importlib.util import find_spec
+from io import BytesIO
 from typing import Any
 
 import numpy as np
 
-from service.arrays import as_npz
+from service.arrays import as_npz, read_npz
 from service.cache import Cache
+from service.columns import request_of
 from service.jobs.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import model_of, pinned_model
@@ -60,8 +63,7 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     tree = known_tree(item, library)
     summary = read_json(tree.summary.encode())
     request = _request(item)
-    size = 8 * numbers_per_state(read_quantities(request), len(summary["coordinates"]), len(summary["frames"]))
-    chunk = max(1, min(limits.job_states, limits.binary_bytes // size))
+    chunk = states_per_item(request, len(summary["coordinates"]), len(summary["frames"]), limits)
     described = _described(item, tree, summary, library)
     count = _count(described) if described else _listed(request)
     if count is not None and count > chunk * limits.job_items:
@@ -74,6 +76,12 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     if described:
         return [{**common, **described, "range": each} for each in ranges]
     return [{**common, "request": _sliced(request, count, *each), "range": each} for each in ranges]
+
+
+def states_per_item(request: Mapping[str, Any], dof: int, frames: int, limits: Limits) -> int:
+    """How many states an item may have. Raises InvalidDocument."""
+    size = 8 * numbers_per_state(read_quantities(request), dof, frames)
+    return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
 def _request(item: Item) -> dict[str, Any]:
@@ -139,10 +147,11 @@ def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> di
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
     tree = known_tree(item, library)
     pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
+    states = (item["states"],) if "states" in item else ()
     if all(QUANTITIES[name].source != REGRESSOR for name in read_quantities(item["request"])):
-        return {**item, **pinned}, (tree.program,)
+        return {**item, **pinned}, (tree.program, *states)
     parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library)
-    return {**item, **pinned, "parts": parts}, (tree.program, *blobs)
+    return {**item, **pinned, "parts": parts}, (tree.program, *states, *blobs)
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
@@ -151,7 +160,8 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     progress(0.1)
     columns = _columns(item)
     sources = Sources(model, regressor=lambda: _regressor(item, blobs)) if "parts" in item else None
-    answer = evaluate(model, _with_columns(model, item["request"], columns), None, _engine, sources)
+    request = _with_columns(model, _uploaded(item, blobs), columns)
+    answer = evaluate(model, request, None, _engine, sources)
     progress(0.9)
     data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)
     summary = {
@@ -185,6 +195,15 @@ def _regressor(item: Item, blobs: Blobs) -> RegressorModel:
         found = regressor(*tree_parts(item["parts"], blobs), item["nodes"])
         _regressors.put(item["tree"], found)
     return found
+
+
+def _uploaded(item: Item, blobs: Blobs) -> dict[str, Any]:
+    """The request with the states that were uploaded for the item."""
+    request: dict[str, Any] = item["request"]
+    if "states" not in item:
+        return request
+    content = blobs[item["states"]]
+    return request_of(request, read_npz(BytesIO(content), len(content)))
 
 
 def _columns(item: Item) -> dict[str, Array]:
