@@ -46,3 +46,11 @@ def pointer_of(name: str) -> str:
 def has_rows(value: Any, pointer: str) -> bool:
     """Whether an array may have an entry for every state: (N, n) for states, (N,) for all others."""
     return isinstance(value, np.ndarray) and value.ndim == (2 if pointer in _STATES else 1)
+
+
+def parted(columns: Request) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+    """The columns with a row for every state, which are the longest, and what is the same for all states."""
+    lengths = {name: len(x) for name, x in columns.items() if has_rows(x, pointer_of(name))}
+    count = max(lengths.values(), default=1)
+    rows = {name: columns[name] for name, length in lengths.items() if length == count}
+    return rows, {name: x for name, x in columns.items() if name not in rows}

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from service.arrays import flat, write_npz
-from service.columns import Request, has_rows, pointer_of, request_of
+from service.columns import Request, parted, pointer_of, request_of
 from service.jobs.kinds.evaluate import states_per_item
 from service.operations import jobs
 from service.queries.trees import Tree
@@ -100,10 +100,8 @@ def _parted(sources: Sources, request: Request, first: int) -> tuple[dict[str, A
 
     ``first``: how many states came before.
     """
-    columns = flat(request)
-    lengths = {name: len(x) for name, x in columns.items() if has_rows(x, pointer_of(name))}
-    count = max(lengths.values(), default=1)
-    rows = {name: columns[name] for name, length in lengths.items() if length == count}
+    rows, rest = parted(flat(request))
+    count = _length(rows) if rows else 1
     try:
         states = check(sources, request)
     except InvalidDocument as error:
@@ -111,8 +109,8 @@ def _parted(sources: Sources, request: Request, first: int) -> tuple[dict[str, A
     if states.count != count:
         message = f"{states.count:,} values in the metadata where there are {count:,} states"
         raise InvalidDocument.at("", "wrong-length", message)
-    rest = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in columns.items() if name not in rows}
-    return rows, request_of({}, rest), states.single
+    constants = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in rest.items()}
+    return rows, request_of({}, constants), states.single
 
 
 def _moved(fault: Fault, rows: Iterable[str], first: int) -> Fault:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Mapping
 from datetime import timedelta
-from threading import Event
-from typing import Any
+from threading import Event, current_thread
+from typing import IO, Any
 
 import numpy as np
 import pytest
@@ -203,17 +203,21 @@ def test_arrays_that_take_too_long_become_jobs(
     begun, go_on = Event(), Event()
     read = batches.npz_request
 
-    def slow(*given: Any) -> Any:
-        if not begun.is_set():
+    def slow(file: IO[bytes], limits: Limits) -> Any:
+        if current_thread().name.startswith("request"):
+            file.read(10)
             begun.set()
             go_on.wait(20)
-        return read(*given)
+        return read(file, limits)
 
     monkeypatch.setattr(batches, "npz_request", slow)
-    answer = upload(client, whole(), Prefer="wait=0", **{"Idempotency-Key": "1"})
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 0.5})
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
+    answer = upload(client, whole(), Prefer="", **{"Idempotency-Key": "1"})
+    assert begun.is_set()
     go_on.set()
     assert (answer.status_code, answer.json()["progress"]["total"]) == (202, 3)
-    assert upload(client, whole(), Prefer="wait=0", **{"Idempotency-Key": "1"}).content == answer.content
+    assert upload(client, whole(), Prefer="", **{"Idempotency-Key": "1"}).content == answer.content
     assert count(store, jobs, uploads) == [1, 3]
 
 
