@@ -21,12 +21,12 @@ from service.arrays import as_npz, read_npz
 from service.cache import Cache
 from service.columns import request_of
 from service.jobs.engine import Outcome
-from service.jobs.kinds.assemble import pinned_tree, tree_parts
-from service.jobs.kinds.decoded import model_of, pinned_model
+from service.jobs.kinds.decoded import model_of
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
+from service.jobs.kinds.trees import pinned, regressor_of
 from service.settings import Limits
 from substructures.compile import Kernel, compile_program
 from substructures.documents import read_json
@@ -42,7 +42,6 @@ from substructures.evaluation import (
 )
 from substructures.expr.program import Program
 from substructures.model import Model
-from substructures.regressor import RegressorModel, regressor
 from substructures.states import Array
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
@@ -52,7 +51,6 @@ ABOUT = ("coordinates", "digest", "frames", "columns")
 COMPILED = 1000
 CAPACITY = 2_000_000
 
-_regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 _kernels: Cache[Kernel] = Cache(
     CAPACITY, lambda kernel: 100 + 10 * sum(len(o.entries) for o in kernel.outputs.values())
 )
@@ -145,13 +143,9 @@ def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> di
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
-    tree = known_tree(item, library)
-    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
-    states = (item["states"],) if "states" in item else ()
-    if all(QUANTITIES[name].source != REGRESSOR for name in read_quantities(item["request"])):
-        return {**item, **pinned}, (tree.program, *states)
-    parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library)
-    return {**item, **pinned, "parts": parts}, (tree.program, *states, *blobs)
+    has_parts = any(QUANTITIES[name].source == REGRESSOR for name in read_quantities(item["request"]))
+    found, blobs = pinned(item, library, item["nodes"], has_parts)
+    return found, (*blobs, item["states"]) if "states" in item else blobs
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
@@ -159,7 +153,7 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     model = model_of(item, blobs)
     progress(0.1)
     columns = _columns(item)
-    sources = Sources(model, regressor=lambda: _regressor(item, blobs)) if "parts" in item else None
+    sources = Sources(model, regressor=lambda: regressor_of(item, blobs)) if "parts" in item else None
     request = _with_columns(model, _uploaded(item, blobs), columns)
     answer = evaluate(model, request, None, _engine, sources)
     progress(0.9)
@@ -187,14 +181,6 @@ def _written(answer: dict[str, Any], form: str, has_axis: bool) -> bytes:
 
 def _row(value: Any) -> Any:
     return {name: _row(x) for name, x in value.items()} if isinstance(value, Mapping) else np.asarray(value)[np.newaxis]
-
-
-def _regressor(item: Item, blobs: Blobs) -> RegressorModel:
-    found = _regressors.get(item["tree"])
-    if found is None:
-        found = regressor(*tree_parts(item["parts"], blobs), item["nodes"])
-        _regressors.put(item["tree"], found)
-    return found
 
 
 def _uploaded(item: Item, blobs: Blobs) -> dict[str, Any]:
