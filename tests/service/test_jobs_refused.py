@@ -138,6 +138,7 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             ("/items/0/request", "states"),
         ),
         ("evaluate", {"items": [EVALUATION | {"format": []}]}, ("/items/0/format", "unknown-format")),
+        ("evaluate", {"items": [EVALUATION | {"states": "sha256:0"}]}, ("/items/0/states", "unknown-field")),
     ],
 )
 def test_what_cannot_be_resolved_is_refused_with_a_pointer(
