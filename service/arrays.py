@@ -200,3 +200,11 @@ def as_npz(answer: Mapping[str, Any]) -> Npz:
     failures = {"state": np.array([row["state"] for row in rows], np.int64)}
     failures |= {key: np.array([row[key] for row in rows], np.str_) for key in ("quantity", "code", "message")}
     return write_npz(flat({**answer, "failures": failures}))
+
+
+def as_answer(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
+    """The inverse of :func:`as_npz`: the answer as JSON would have it, with arrays for the quantities."""
+    result = nested({name: a if a.dtype.kind == "f" else a.tolist() for name, a in arrays.items()})
+    failures = result["failures"]
+    rows = zip(*failures.values(), strict=True)
+    return {**result, "failures": [dict(zip(failures, row, strict=True)) for row in rows]}

@@ -14,6 +14,7 @@ import httpx2
 from service import __version__, cli_jobs, demo, keys, logs, openapi
 from service.app import bare_app
 from service.cli_analysis import add_commands
+from service.cli_progress import follow
 from service.client import Client, ProblemError
 from service.database import Database, DatabaseError
 from service.migrate import MigrationError
@@ -163,7 +164,7 @@ def _submit(options: argparse.Namespace) -> int:
         version = answer.json()
         if answer.status_code == 202:
             print(f"became the job {version['id']}")
-            return cli_jobs.follow(client, version["id"]) if options.wait else 0
+            return follow(client, version["id"]) if options.wait else 0
     stored = "stored" if answer.status_code == 201 else "was stored already"
     print(f"{version['name']}@{version['version']} {stored}, {version['digest']}")
     return 0

@@ -6,20 +6,22 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from time import monotonic
-from typing import Any, TextIO
+from typing import Any
 
+from service import arrow
+from service.arrays import read_npz
 from service.backup import backup, restore
+from service.cli_progress import counted, follow
 from service.client import Client
+from service.job_caller import FORMATS, PATIENCE
 from service.settings import from_environment
 from substructures.documents import read_json, read_yaml
 
 Add = Callable[[Any, str, Callable[[argparse.Namespace], int], str], argparse.ArgumentParser]
 SERVER = "http://127.0.0.1:8000"
-WIDTH = 30
-LINES = 10.0  # seconds between lines where there is no terminal
 
 
 def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentParser], None]) -> None:
@@ -28,7 +30,16 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
     actions = jobs.add_subparsers(title="actions", required=True, metavar="ACTION")
     command = add(actions, "submit", _submit, "queue the job in a file")
     command.add_argument("file", type=Path, help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML')
-    command.add_argument("--wait", action="store_true", help="wait until it has ended")
+    _add_wait(command)
+    add_server(command)
+    command = add(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
+    command.add_argument("tree", help="name of a tree")
+    command.add_argument(
+        "file", type=Path, help="states: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml"
+    )
+    command.add_argument("--quantities", help="metric,forces,... (default: those in the file)")
+    command.add_argument("--format", choices=tuple(FORMATS), default="npz", help="of the results (npz)")
+    _add_wait(command)
     add_server(command)
     command = add(actions, "list", _list, "list jobs, the newest first")
     command.add_argument("--state", help="only those in this state")
@@ -44,6 +55,8 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
         command = add(actions, name, run, text)
         command.add_argument("id")
         add_server(command)
+        if run is _watch:
+            _add_patience(command)
     command.add_argument("--output", type=Path, help="save everything there is as this zip file")
     command = add(commands, "backup", _backup, "copy the SQLite store to a file, also while a server runs")
     command.add_argument("file", type=Path)
@@ -52,6 +65,16 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
     command.add_argument("file", type=Path)
     command.add_argument("--overwrite", action="store_true", help="replace a store that is there")
     add_database(command)
+
+
+def _add_wait(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--wait", action="store_true", help="wait until it has ended")
+    _add_patience(command)
+
+
+def _add_patience(command: argparse.ArgumentParser) -> None:
+    text = f"seconds to go on when the server cannot be reached ({PATIENCE:g})"
+    command.add_argument("--patience", type=float, default=PATIENCE, metavar="SECONDS", help=text)
 
 
 def add_server(command: argparse.ArgumentParser) -> None:
@@ -72,16 +95,44 @@ def _client(options: argparse.Namespace) -> Client:
 
 def _submit(options: argparse.Namespace) -> int:
     with _client(options) as client:
-        job = client.submit_job(read_document(options.file))
-        print(job["id"], flush=True)
-        return follow(client, job["id"]) if options.wait else 0
+        return _queued(client, client.submit_job(read_document(options.file)), options)
+
+
+def _evaluate(options: argparse.Namespace) -> int:
+    with _states(options.file) as (constants, states), _client(options) as client:
+        if options.quantities:
+            constants["quantities"] = options.quantities.split(",")
+        return _queued(client, client.submit_states(options.tree, states, options.format, **constants), options)
+
+
+@contextmanager
+def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | Iterable[Mapping[str, Any]]]]:
+    """What is the same for all states of a file, and the states, as ``Client.submit_states`` wants them.
+
+    Raises InvalidDocument.
+    """
+    with path.open("rb") as file:
+        if path.suffix == ".npz":
+            arrays = read_npz(file, sys.maxsize)
+            texts = {name: x.tolist() for name, x in arrays.items() if x.dtype.kind == "U"}
+            yield texts, {name: x for name, x in arrays.items() if name not in texts}
+        elif path.suffix in (".arrow", ".arrows"):
+            reader = arrow.Reader(file, sys.maxsize)
+            yield {name: json.loads(text) for name, text in reader.metadata.items()}, reader
+        else:
+            yield {}, read_document(path)
+
+
+def _queued(client: Client, job: Mapping[str, Any], options: argparse.Namespace) -> int:
+    print(job["id"], flush=True)
+    return follow(client, job["id"], options.patience) if options.wait else 0
 
 
 def _list(options: argparse.Namespace) -> int:
     filters = {name: getattr(options, name) for name in ("state", "kind") if getattr(options, name)}
     with _client(options) as client:
         for _, job in zip(range(options.count), client.jobs(**filters), strict=False):
-            print(f"{job['id']}  {job['created'][:19]}  {job['kind']:<9} {job['state']:<10} {_counted(job)}")
+            print(f"{job['id']}  {job['created'][:19]}  {job['kind']:<9} {job['state']:<10} {counted(job)}")
     return 0
 
 
@@ -99,7 +150,7 @@ def _cancel(options: argparse.Namespace) -> int:
 
 def _watch(options: argparse.Namespace) -> int:
     with _client(options) as client:
-        return follow(client, options.id)
+        return follow(client, options.id, options.patience)
 
 
 def _result(options: argparse.Namespace) -> int:
@@ -127,65 +178,3 @@ def _restore(options: argparse.Namespace) -> int:
 
 def _database(options: argparse.Namespace) -> str:
     return from_environment(os.environ, database=options.database).database
-
-
-def follow(client: Client, job: str) -> int:
-    """Show the progress of a job until it has ended; 0 when all items succeeded."""
-    bar = Bar(sys.stderr)
-    end = client.wait(job, bar.show)
-    bar.end(end)
-    return 0 if end["state"] == "succeeded" and not end["progress"]["failed"] else 1
-
-
-class Bar:
-    """A line that is written over on a terminal; elsewhere a new line now and then."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream, self._next, self._width = stream, 0.0, 0
-
-    def show(self, job: dict[str, Any]) -> None:
-        """Show where a job is."""
-        if self._stream.isatty():
-            line = text(job)
-            self._stream.write("\r" + line.ljust(self._width))
-            self._width = len(line)
-        elif monotonic() >= self._next:
-            self._stream.write(text(job) + "\n")
-            self._next = monotonic() + LINES
-        self._stream.flush()
-
-    def end(self, job: dict[str, Any]) -> None:
-        """Leave the last line."""
-        self._next = 0.0
-        self.show(job)
-        if self._stream.isatty():
-            self._stream.write("\n")
-
-
-def text(job: dict[str, Any]) -> str:
-    """A line about a job: a bar, the state, counts, rate and time left."""
-    progress = job["progress"]
-    done = int(WIDTH * progress["fraction"])
-    words = [
-        f"[{'#' * done}{'.' * (WIDTH - done)}]",
-        f"{100 * progress['fraction']:.0f} %",
-        job["state"],
-        _counted(job),
-    ]
-    if progress["rate"]:
-        words.append(f"{progress['rate']:.3g}/s")
-    if progress["eta_seconds"] is not None:
-        words.append(f"{_time(progress['eta_seconds'])} left")
-    return "  ".join(words)
-
-
-def _counted(job: dict[str, Any]) -> str:
-    progress = job["progress"]
-    failed = f", {progress['failed']:,} failed" if progress["failed"] else ""
-    return f"{progress['done']:,} of {progress['total']:,}{failed}"
-
-
-def _time(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -7,7 +7,8 @@
               '-> succeeded (all known) | cancelled                  '-> succeeded (known) | cancelled
 
     jobs --< job_items ... results --< result_files         (an item finds its result by its key)
-      '---< job_events
+      |---< job_events
+      '---< job_uploads >--- uploads                       (chunks of states that items refer to, by digest)
 
 The key of an item is the sha256 of its kind and of what is to be computed, with all references pinned: equal items
 have equal results, whoever asks.
@@ -105,6 +106,23 @@ job_events = Table(
     Column("time", Text, nullable=False),
     Column("type", Text, nullable=False),
     Column("data", Text, nullable=False),
+)
+
+uploads = Table(  # chunks of states, npz, named by their sha256
+    "uploads",
+    metadata,
+    Column("digest", Text, primary_key=True),
+    Column("content", LargeBinary, nullable=False),
+    Column("touched", Text, nullable=False),  # when it was uploaded last
+    Index(None, "touched"),
+)
+
+job_uploads = Table(
+    "job_uploads",
+    metadata,
+    Column("job", Text, ForeignKey("jobs.id"), primary_key=True),
+    Column("digest", Text, ForeignKey("uploads.digest"), primary_key=True),
+    Index(None, "digest"),
 )
 
 state_changes = Table(

@@ -8,7 +8,7 @@ from typing import Any
 
 import orjson
 
-from service.analyses.formulas import QUANTITIES, Made
+from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
 from service.refusals import not_found, unprocessable
 from substructures.derived import DERIVED
 from substructures.errors import InvalidDocument, TooLarge, listed
@@ -58,6 +58,11 @@ def check_quantity(model: Model, quantity: str) -> None:
     names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
     raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
+
+
+def needs_parts(quantity: str) -> bool:
+    """Whether a quantity needs the parts of the tree, beside its formulas."""
+    return quantity in (*OUTPUTS, *OF_PARTS)
 
 
 def model_quantity(sources: Sources, quantity: str) -> Program:

@@ -44,6 +44,7 @@ class Limits(BaseModel):
     job_seconds: float = Field(1800.0, gt=0, description="longest time of one attempt on an item, seconds")
     lease_seconds: float = Field(20.0, gt=0, description="after this time the items of a dead server are taken over")
     job_days: float = Field(30.0, gt=0, description="how long finished jobs and their results are kept, days")
+    upload_hours: float = Field(1.0, gt=0, description="how long uploaded states without a job are kept, hours")
     job_items: int = Field(20_000, gt=0, description="most items of one job")
     job_states: int = Field(10_000, gt=0, description="most states of one item; larger sets are split into items")
     job_nodes: int = Field(1_000_000, gt=0, description="most operations of a program derived or coupled by a job")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import os
 from collections.abc import AsyncIterator, Iterator
 from tempfile import SpooledTemporaryFile
+from typing import IO, Any
 
 from anyio.to_thread import run_sync
 
@@ -32,8 +35,42 @@ class Spool(SpooledTemporaryFile[bytes]):
         if waiting:
             await run_sync(self.write, bytes(waiting))
 
+    def reader(self) -> IO[bytes]:
+        """A file with a position of its own, from the start: a request that took too long may still read another."""
+        if isinstance(self._file, io.BytesIO):
+            return io.BytesIO(self._file.getvalue())
+        self.flush()
+        return io.BufferedReader(_OnDisk(os.dup(self.fileno())), PIECE)
+
     def pieces(self) -> Iterator[bytes]:
         """All of it, from the start."""
-        self.seek(0)
-        while piece := self.read(PIECE):
-            yield piece
+        with self.reader() as file:
+            while piece := file.read(PIECE):
+                yield piece
+
+
+class _OnDisk(io.RawIOBase):
+    """A file read by position, with a descriptor of its own."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor, self._position = descriptor, 0
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        self._position = offset + (0, self._position, os.fstat(self._descriptor).st_size)[whence]
+        return self._position
+
+    def readinto(self, buffer: Any) -> int:
+        count = os.preadv(self._descriptor, [buffer], self._position)
+        self._position += count
+        return count
+
+    def close(self) -> None:
+        if not self.closed:
+            os.close(self._descriptor)
+        super().close()

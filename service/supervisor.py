@@ -25,9 +25,9 @@ from time import monotonic
 from service.cache import Cache
 from service.jobs.engine import Budget, Engine, Outcome, Report, Work
 from service.operations.job_rounds import Ended, Round, play, put_back_all
+from service.operations.retention import sweep
 from service.queries import content, jobs, queue
 from service.queries.attempts import Attempt
-from service.queries.common import now
 from service.refusals import Refused, problem
 from service.store import Store
 from substructures.documents import read_json
@@ -37,7 +37,7 @@ GATHER = 0.05  # seconds for which ends are gathered while there is work to go o
 AHEAD = 200  # items claimed ahead at most
 NEWS = 0.05  # seconds to wait for news of what runs
 BLOBS = 64 * 2**20  # bytes of definitions and programs kept at hand
-SWEEP = 60.0  # seconds between looks for jobs to be removed
+SWEEP = 60.0  # seconds between looks for jobs and uploads to be removed
 _log = logging.getLogger(__name__)
 
 
@@ -97,7 +97,7 @@ class Supervisor:
                     self._store.wake.set()
                     return
                 if self._is_due("sweep", SWEEP):
-                    self._sweep()
+                    sweep(self._store, self._stop)
             except Exception:
                 _log.exception("the queue cannot be read; it is tried again")
             self._store.wake.wait(POLL)
@@ -116,7 +116,7 @@ class Supervisor:
         if self._is_due("renew", self._lease.total_seconds() / 4):
             self._renew(engine)
         if self._is_due("sweep", SWEEP):
-            self._sweep()
+            sweep(self._store, self._stop)
 
     def _is_round_due(self, free: int, before: int) -> bool:
         """At once when somebody waits; otherwise ends are gathered for a moment."""
@@ -224,13 +224,6 @@ class Supervisor:
         for identifier in known_ids - mine:
             engine.stop(identifier)
             self._forget(identifier)
-
-    def _sweep(self) -> None:
-        before = now(-timedelta(days=self._limits.job_days))
-        removed = 1
-        while removed and not self._stop.is_set():  # one job a transaction, so that nobody waits for long
-            with self._store.database.write() as connection:
-                removed = jobs.remove_finished(connection, before, 1)
 
     def _hand_back(self) -> None:
         try:

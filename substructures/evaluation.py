@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from substructures.directions import direction_values
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.model import Model
@@ -32,6 +33,7 @@ __all__ = [
     "REGRESSOR",
     "Engine",
     "Sources",
+    "check",
     "cost",
     "evaluate",
     "interpreted",
@@ -85,6 +87,21 @@ def evaluate(
         answer["columns"] = {"names": list(sources.columns().names), "units": list(sources.columns().units)}
     answer |= {name: _single(value) if states.single else value for name, value in results.items()}
     return answer | {"failures": _failures(results)}
+
+
+def check(sources: Sources, request: Mapping[str, Any]) -> States:
+    """The states of a request, when :func:`evaluate` would accept it; nothing is computed.
+
+    Raises as :func:`evaluate`, but for formulas that are too large to be made here.
+    """
+    quantities = read_quantities(request)
+    states = read_states(sources.model, request, None)
+    with suppress(TooLarge):
+        values = _values(sources, request, states, quantities)
+        for _, program, names in steps(sources, quantities):
+            if program is not None:
+                require(program, names, values)
+    return states
 
 
 def _computed(

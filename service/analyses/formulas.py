@@ -22,6 +22,7 @@ from substructures.analysis.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.perturbation import perturbation, state_space
 from substructures.analysis.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.routh import routh
+from substructures.analysis.velocity_constraints import VelocityConstraints
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.program import Program
 
@@ -51,12 +52,15 @@ class Made:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """``outputs``: those of the program that are shown, default all; ``called``: what the science calls an option."""
+    """``outputs``: those of the program that are shown, default all; ``called``: what the science calls an option;
+    ``needs_parts``: of the tree, beside its formulas.
+    """
 
     make: Callable[[Source, Options], Made]
     options: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     called: Mapping[str, str] = field(default_factory=dict)
+    needs_parts: bool = False
 
     def pointer(self, given: str) -> str:
         """The place in the query that a pointer of the science means."""
@@ -213,7 +217,13 @@ _QUANTITIES = {
     "ricci": _Quantity(_curvature, (), ("ricci",)),
     "scalar_curvature": _Quantity(_curvature, (), ("scalar_curvature",)),
     "adjoint": _Quantity(_adjoint, ("controls", "running", "terminal", "parameters")),
-    "base_parameters": _Quantity(_base_parameters, ("drives",), ("grouping", "base_parameters")),
-    "base_regressor": _Quantity(_base_parameters, ("drives",), ("base_regressor",)),
+    "base_parameters": _Quantity(_base_parameters, ("drives",), ("grouping", "base_parameters"), needs_parts=True),
+    "base_regressor": _Quantity(_base_parameters, ("drives",), ("base_regressor",), needs_parts=True),
 }
 QUANTITIES = tuple(_QUANTITIES)
+#: those that need the parts of the tree, beside its formulas
+OF_PARTS = tuple(name for name, quantity in _QUANTITIES.items() if quantity.needs_parts)
+#: formulas that follow from a model and a document: what checks its shape, and what makes them
+WITH_DOCUMENT: dict[str, tuple[Callable[[Any], object], Callable[[Source, Mapping[str, Any]], Made]]] = {
+    "velocity-equations": (VelocityConstraints.read, velocity_equations_of)
+}

@@ -39,13 +39,15 @@ Request = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Analysis:
-    """``schema``: of the request; ``media``: what the result can be; ``text``: what it is."""
+    """``schema``: of the request; ``media``: what the result can be; ``text``: what it is; ``needs_parts``: of the
+    tree, beside its formulas.
+    """
 
     schema: type[BaseModel]
     compute: Callable[[Source, Request, Report], Any]
     text: str
     media: tuple[str, ...] = PLAIN
-    needs_model_only: bool = True
+    needs_parts: bool = False
 
 
 def require_object(request: Any) -> Request:
@@ -186,12 +188,12 @@ ANALYSES: dict[str, Analysis] = {
         ExcitationRequest,
         _excitation,
         "How well a motion excites the base inertial parameters",
-        needs_model_only=False,
+        needs_parts=True,
     ),
     "identifications": Analysis(
         IdentificationRequest,
         _identification,
         "Base inertial parameters from a measured motion",
-        needs_model_only=False,
+        needs_parts=True,
     ),
 }

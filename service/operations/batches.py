@@ -10,6 +10,7 @@ import numpy as np
 
 from service import arrow
 from service.arrays import flat, read_npz
+from service.columns import Request, has_rows, request_of
 from service.operations import evaluations
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
@@ -18,20 +19,16 @@ from substructures.evaluation import Sources
 from substructures.states import Array, numeric, read_states
 
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
-#: fields whose columns may also be given one by one: ``q.<coordinate>``, ``parameters.<name>``, ...
-_GROUPS = ("along.inputs", "along.q", "along.qd", "along.qdd", "along", "q", "qd", "qdd", "inputs", "parameters")
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
 _CONSTANTS = ("quantities", "parameters", "inputs", "along", "t")
-_STATES = ("/q", "/qd", "/qdd", "/along/q", "/along/qd", "/along/qdd")
 
-Request = Mapping[str, Any]
 Evaluate = Callable[[Request], Mapping[str, Any]]
 
 
 def npz_request(file: IO[bytes], limits: Limits) -> dict[str, Any]:
     """The request in an npz file: ``q, qd, qdd, t, quantities``, ``inputs.<name>``, ``parameters.<name>``, ..."""
     arrays = read_npz(file, limits.binary_bytes)
-    return _request({}, {name: a.tolist() if a.dtype.kind == "U" else a for name, a in arrays.items()})
+    return request_of({}, {name: a.tolist() if a.dtype.kind == "U" else a for name, a in arrays.items()})
 
 
 def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
@@ -44,31 +41,9 @@ def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
         if states > limits.stream_states:
             raise TooLarge("the number of states", states, limits.stream_states)
         if count:
-            yield _request(constants, columns)
+            yield request_of(constants, columns)
     if not states:
         raise InvalidDocument.at("/q", "missing", "the stream has no states")
-
-
-def _request(constants: Request, columns: Mapping[str, Any]) -> dict[str, Any]:
-    """The request with nested objects, from columns whose names are joined by dots."""
-    request = {name: dict(value) if isinstance(value, Mapping) else value for name, value in constants.items()}
-    for name, column in columns.items():
-        *steps, place = _path(name)
-        holder: Any = request
-        for step in steps:
-            holder = holder.setdefault(step, {}) if isinstance(holder, dict) else None
-        if not isinstance(holder, dict) or place in holder:
-            raise InvalidDocument.at(pointer_step(name), "given-twice", f"'{name}' is given twice")
-        holder[place] = column
-    return request
-
-
-def _path(name: str) -> tuple[str, ...]:
-    """Where a column belongs in the nested request."""
-    if name in _GROUPS:
-        return tuple(name.split("."))
-    group = next((each for each in _GROUPS if name.startswith(f"{each}.") and name != f"{each}."), None)
-    return (name,) if group is None else (*group.split("."), name[len(group) + 1 :])
 
 
 def joined(requests: Iterable[Request], limits: Limits) -> Request:
@@ -82,7 +57,9 @@ def joined(requests: Iterable[Request], limits: Limits) -> Request:
     if len(kept) == 1:
         return kept[0]
     batches = [_arrays(request) for request in kept]
-    return _request({}, flat(kept[0]) | {name: np.concatenate([each[name] for each in batches]) for name in batches[0]})
+    return request_of(
+        {}, flat(kept[0]) | {name: np.concatenate([each[name] for each in batches]) for name in batches[0]}
+    )
 
 
 def _arrays(request: Any) -> dict[str, Array]:
@@ -113,17 +90,12 @@ def _numbers(value: Any, pointer: str) -> Any:
     return numeric(value, pointer) if isinstance(value, list | tuple | np.ndarray) else value
 
 
-def _has_rows(value: Any, pointer: str) -> bool:
-    """Whether an array may have an entry for every state: (N, n) for states, (N,) for all others."""
-    return isinstance(value, np.ndarray) and value.ndim == (2 if pointer in _STATES else 1)
-
-
 def _lengths(fields: Mapping[str, Any], above: str) -> Iterator[int]:
     for name, value in fields.items():
         pointer = above + pointer_step(name)
         if isinstance(value, Mapping):
             yield from _lengths(value, pointer)
-        elif _has_rows(value, pointer):
+        elif has_rows(value, pointer):
             yield len(value)
 
 
@@ -134,7 +106,7 @@ def _cut(fields: Mapping[str, Any], some: slice, count: int, above: str) -> dict
         if isinstance(value, Mapping):
             part[name] = _cut(value, some, count, pointer)
         else:
-            part[name] = value[some] if _has_rows(value, pointer) and len(value) == count else value
+            part[name] = value[some] if has_rows(value, pointer) and len(value) == count else value
     return part
 
 

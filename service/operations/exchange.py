@@ -9,9 +9,9 @@ from typing import Any
 
 from service import arrays, arrow
 from service.answers import JSON, Answer, Stream, json_answer, streamed
+from service.columns import Request
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
-from service.operations.batches import Request
 from service.problems import Refused
 from service.settings import Limits
 from service.spool import Spool
@@ -40,15 +40,15 @@ def _matches(pattern: str, media: str) -> bool:
 
 def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
     """The request, or the requests for one batch of states after the other. Raises InvalidDocument, Refused 415."""
-    body.seek(0)
+    file = body.reader()
     if sent == arrays.MEDIA_TYPE:
-        return [batches.npz_request(body, limits)]
+        return [batches.npz_request(file, limits)]
     if sent == arrow.MEDIA_TYPE:
         if not arrow.is_available():
             raise Refused(415, "arrow-not-installed", _EXTRA)
-        return batches.arrow_requests(body, limits)
+        return batches.arrow_requests(file, limits)
     if sent == JSON:
-        return [read_json(body.read())]
+        return [read_json(file.read())]
     raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from service.database import Connection
 from service.jobs import kinds
 from service.operations.library import StoreLibrary
-from service.queries import jobs
+from service.queries import jobs, uploads
 from service.queries.jobs import Job, NewItem
 from service.refusals import Refused, not_found
 from service.settings import Limits
@@ -31,6 +31,7 @@ class Submission:
 
     kind: str
     items: Sequence[NewItem]
+    uploads: Sequence[str] = ()  # digests of the states that the items refer to
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,13 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
         library = StoreLibrary(connection)
         expanded = kinds.expand(kind, body, store.settings.limits, library)
         return Submission(kind, _resolved(kind, expanded, library, _places(body, len(expanded)), members or {}))
+
+
+def prepare_items(store: Store, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]) -> Submission:
+    """Resolve items that are expanded, and that refer to states uploaded before. Raises as :func:`prepare`."""
+    with store.database.read() as connection:
+        resolved = _resolved(kind, items, StoreLibrary(connection), _places({}, len(items)), {})
+    return Submission(kind, resolved, digests)
 
 
 def prepare_one(
@@ -123,7 +131,9 @@ def submit(connection: Connection, submission: Submission, principal: str, limit
         if waiting + new > limit:
             detail = f"{whose} is full: {waiting:,} items wait, the limit is {limit:,}; nothing was queued"
             raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
-    return find(connection, jobs.add_job(connection, submission.kind, principal, submission.items))
+    identifier = jobs.add_job(connection, submission.kind, principal, submission.items)
+    uploads.refer(connection, identifier, submission.uploads)
+    return find(connection, identifier)
 
 
 def find(connection: Connection, identifier: str) -> Job:

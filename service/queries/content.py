@@ -10,6 +10,7 @@ from typing import Any
 from sqlalchemy import Connection, insert, select
 
 from service.queries.common import insert_missing, now
+from service.queries.uploads import get_upload
 from service.tables import formulas, parts, programs, tags
 
 #: a tenth of the time of the usual 6, for a seventh more bytes
@@ -87,8 +88,9 @@ def get_definition(connection: Connection, digest: str) -> bytes | None:
 
 
 def get_blob(connection: Connection, digest: str) -> bytes | None:
-    """The definition or the program with this digest."""
-    return get_definition(connection, digest) or get_program(connection, digest)
+    """The definition, the program or the uploaded states with this digest."""
+    found = get_definition(connection, digest) or get_program(connection, digest)
+    return get_upload(connection, digest) if found is None else found
 
 
 def list_formulas(

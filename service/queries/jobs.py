@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, and_, bindparam, case, delete, exists, func, insert, or_, select, update
 
-from service.job_tables import job_events, job_items, jobs, result_files, results
+from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
 from service.queries.common import now
 from service.queries.states import OPEN, QUEUED, RUNNING
 
@@ -234,8 +234,9 @@ def remove_finished(connection: Connection, before: str, most: int) -> int:
     if not ids:
         return 0
     keys = list(connection.execute(select(job_items.c.key).where(job_items.c.job.in_(ids)).distinct()).scalars())
-    for table, column in ((job_events, job_events.c.job), (job_items, job_items.c.job), (jobs, jobs.c.id)):
-        connection.execute(delete(table).where(column.in_(ids)))
+    for table in (job_events, job_uploads, job_items):
+        connection.execute(delete(table).where(table.c.job.in_(ids)))
+    connection.execute(delete(jobs).where(jobs.c.id.in_(ids)))
     for table, column in ((result_files, result_files.c.key), (results, results.c.key)):
         is_shared = exists().where(job_items.c.key == column)
         for start in range(0, len(keys), 500):

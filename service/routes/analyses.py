@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
@@ -30,20 +29,13 @@ def _endpoint(name: str, analysis: Analysis) -> Callable[..., Response]:
     def run(ref: str, request: Request, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
-        later = deferred(once, "analyse", item, "/request") if analysis.needs_model_only else None
-        return once.compute(lambda: analyse(store, ref, name, body, media), later)
+        return once.compute(lambda: analyse(store, ref, name, body, media), deferred(once, "analyse", item, "/request"))
 
     return run
 
 
 def _add(name: str, analysis: Analysis) -> None:
     others = {media: binary() for media in analysis.media if media != JSON}
-    described: dict[int | str, dict[str, Any]] = {
-        200: {"content": others},
-        **(ACCEPTED if analysis.needs_model_only else {}),
-    }
-    if analysis.needs_model_only:
-        described |= ACCEPTED
     router.add_api_route(
         f"/{name}",
         _endpoint(name, analysis),
@@ -53,7 +45,7 @@ def _add(name: str, analysis: Analysis) -> None:
         response_model=AnalysisResult,
         dependencies=READ,
         openapi_extra=body_of(analysis.schema.__name__),
-        responses=described,
+        responses={200: {"content": others}, **ACCEPTED},
     )
 
 
@@ -65,11 +57,13 @@ for _name, _analysis in ANALYSES.items():
     "/velocity-equations",
     dependencies=READ,
     openapi_extra=body_of("VelocityConstraints"),
-    responses=printed(PRINTED),
+    responses={**printed(PRINTED), **ACCEPTED},
 )
 def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, style: StyleOf) -> Response:
     """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
 
     Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.
     """
-    return once.compute(lambda: velocity_equations(store, ref, body, style))
+    how = {"format": style.format, "form": style.form, "bind": style.bind}
+    item = {"tree": ref, "quantity": "velocity-equations", "request": body, **how}
+    return once.compute(lambda: velocity_equations(store, ref, body, style), deferred(once, "export", item, "/request"))

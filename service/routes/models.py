@@ -12,12 +12,12 @@ from service.arrays import MEDIA_TYPE as NPZ
 from service.arrow import MEDIA_TYPE as ARROW
 from service.negotiation import MEDIA_TYPES
 from service.once import Commit, OnceSpooled
-from service.operations import analyses, models, trees
+from service.operations import analyses, models, trees, uploads
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
 from service.requests import SpooledBody, StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
-from service.routes.deferred import ACCEPTED, deferred
+from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
@@ -43,6 +43,10 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
     of the field, null where a state has no result and the reason, as JSON, in the column `failures`; coordinates and
     digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a
     fault in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
+
+    With `Prefer: respond-async`, or when it takes too long, it becomes a job, acknowledged when all states are checked
+    and on the disk. States are evaluated in items of at most `job_states`, whose results, npz or Arrow by Accept (npz
+    for JSON), can be fetched while the job runs; what was uploaded goes with the job.
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
@@ -57,10 +61,14 @@ def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once
         return evaluation.answer(read_requests(body, sent, store.settings.limits), wanted)
 
     def later() -> Commit:
-        (given,) = read_requests(body, sent, store.settings.limits)
-        return deferred(once, "evaluate", {"tree": ref, "request": given}, "/request")()
+        once.require("jobs")
+        requests, form = read_requests(body, sent, store.settings.limits), "arrow" if wanted == ARROW else "npz"
+        if sent == JSON:
+            (given,) = requests
+            return deferred(once, "evaluate", {"tree": ref, "request": given, "format": form}, "/request")()
+        return committed(store, uploads.prepare(store, tree, evaluation.sources, requests, form), once.principal)
 
-    return once.compute(work, later if sent == JSON else None)  # arrays stay out of the queue
+    return once.compute(work, later)
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

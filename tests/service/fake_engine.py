@@ -104,3 +104,8 @@ def eventually(
             return view
         assert time.monotonic() < end, view
         time.sleep(0.01)
+
+
+def items(client: TestClient, job: str) -> list[dict[str, Any]]:
+    """The items of a job with what came of them."""
+    return list(client.get(f"/v1/jobs/{job}/result?page_size=1000").json()["items"])

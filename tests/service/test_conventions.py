@@ -11,7 +11,6 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.arrays import write_npz
 from service.schemas import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store import Store
@@ -191,9 +190,7 @@ def test_slow_work_that_cannot_be_queued(
     before = rows()
     limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
     monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
-    given = {"quantities": ["metric"], "q": [0.1]}
-    body = b"".join(write_npz(given).pieces)
-    answer = filled.post("/v1/trees/cell/evaluations", content=body, headers={"Content-Type": "application/x-npz"})
+    answer = filled.post("/v1/trees/cell/kernels", json={"quantities": ["metric"]})
     problem(answer, 503, "took-too-long")
     assert rows() == before
 

@@ -77,10 +77,6 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
     first, second = (o.files["text"].decode() for o in outcomes(library, "export", {"items": items}))
     assert "energy in J, constant" in first
     assert "output" in second
-    (item,) = library.items("export", {"items": [{**common, "quantity": "base_parameters"}]})
-    refused = run("export", item, library.blobs, lambda _: None).problem
-    assert refused is not None
-    assert refused["errors"][0]["code"] == "needs-parts"
 
 
 @pytest.mark.parametrize(
@@ -96,6 +92,14 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
         ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),
         ("analyse", {"tree": "cell", "request": {}}, "/items/0/analysis"),
         ("export", {"tree": "cell", "quantity": "x", "format": "text", "options": {"a": "b"}}, "/items/0/options"),
+        ("export", {"tree": "cell", "quantity": "metric", "format": "text", "request": {}}, "/items/0/request"),
+        ("export", {"tree": "cell", "quantity": "velocity-equations", "format": "text"}, "/items/0/request"),
+        (
+            "export",
+            {"tree": "cell", "quantity": "velocity-equations", "format": "text", "request": {"constraints": 1}},
+            "/items/0/request/constraints",
+        ),
+        ("analyse", {"tree": "cell", "analysis": "excitations", "request": {"q": [[0]]}}, "/items/0/request/qdd"),
     ],
 )
 def test_wrong_items(library: MemoryLibrary, kind: str, item: dict[str, Any], pointer: str) -> None:

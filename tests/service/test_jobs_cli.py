@@ -9,10 +9,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from service import arrow
 from service.cli import main
-from service.cli_jobs import Bar, text
+from service.cli_progress import Bar, text
 from service.client import Client, ProblemError
 from service.server import background
 from service.settings import Settings
@@ -105,6 +107,49 @@ def test_requests_that_become_jobs(address: str, monkeypatch: pytest.MonkeyPatch
         assert (version["name"], version["version"]) == ("late", 1)
         assert client.create_tree({**TREE, "name": "late"})["revision"] == 1
         assert client.couple("late", HAND)["revision"] == 2
+
+
+@pytest.mark.parametrize("suffix", ["npz", "arrow", "json"])
+def test_states_in_files(
+    address: str, tmp_path: Path, suffix: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    q, masses = np.linspace(0, 1, 30)[:, None], np.linspace(1, 2, 30)
+    file, server = tmp_path / f"states.{suffix}", ["--server", address]
+    if suffix == "npz":
+        np.savez(file, **{"q": q, "parameters.arm.m": masses})
+    elif suffix == "arrow":
+        parts = [arrow.Table({"q": q[rows], "parameters.arm.m": masses[rows]}) for rows in (slice(7), slice(7, 30))]
+        file.write_bytes(b"".join(arrow.write_tables(parts, {})))
+    else:
+        file.write_text(json.dumps({"q": q.tolist(), "parameters": {"arm.m": masses.tolist()}}))
+    command = ["jobs", "evaluate", "cell@1", str(file), "--quantities", "metric,forces", "--wait", *server]
+    assert main([*command, "--format", "npz" if suffix == "arrow" else "arrow"]) == 0
+    job = capsys.readouterr().out.strip()
+    with Client(address) as client:
+        known = client.evaluate("cell@1", quantities=["metric", "forces"], q=q, parameters={"arm.m": masses})
+        (part,) = client.results(job)
+        assert part["range"] == [0, 30]
+        np.testing.assert_allclose(part["forces"], known["forces"], rtol=1e-12)
+        monkeypatch.setattr("service.job_caller.AT_ONCE", 100)  # then it travels as an Arrow stream
+        many = client.submit_states("cell@1", {"q": q, "parameters.arm.m": masses, "t": 0.0}, quantities=["forces"])
+        assert client.wait(many["id"])["state"] == "succeeded"
+    file.write_bytes(b"nothing")
+    assert main(command) == 1
+
+
+def test_evaluations_that_become_jobs(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are waited for, and their parts are put together."""
+    known, begin = Client._transfer, {"Prefer": "respond-async"}
+    q = np.linspace(0, 1, 20_001)[:, None]
+    with Client(address) as client:
+        expected = client.evaluate("cell@1", quantities=["forces", "kinematics"], q=q, parameters={"g": 0.0})
+        monkeypatch.setattr(Client, "_transfer", lambda self, *given, **more: known(self, *given, **more, **begin))
+        found = client.evaluate("cell@1", quantities=["forces", "kinematics"], q=q, parameters={"g": 0.0})
+        parts = list(client.evaluate_batches("cell@1", [{"q": q}], quantities=["forces"], parameters={"g": 0.0}))
+    assert found.keys() == expected.keys()
+    assert (found["count"], found["failures"], len(parts)) == (20_001, [], 3)
+    np.testing.assert_allclose(found["kinematics"]["position"], expected["kinematics"]["position"], rtol=1e-12)
+    np.testing.assert_allclose(np.concatenate([part["forces"] for part in parts]), expected["forces"], rtol=1e-12)
 
 
 class Terminal(io.StringIO):

@@ -12,10 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs.engine import Budget, Outcome, Report, Work
+from service.jobs.engine import Budget, Work
 from service.jobs.kinds import run
 from service.jobs.local import LocalEngine
-from service.jobs.wire import Frame, Reader, WireError, read_report, read_work, report_frame, work_frame
 from substructures.documents import write_json
 
 from .conftest import PENDULUM, SLIDER, TREE
@@ -211,46 +210,3 @@ def test_runner_that_cannot_start_is_tried_again_after_a_pause(monkeypatch: pyte
         ready(engine)
     finally:
         engine.close()
-
-
-def test_frames_arrive_in_any_pieces() -> None:
-    work = Work("a", "verify", {"x": 1, "y": [0.1, "pi"]}, {"sha256:1": b"\x00\xff", "sha256:2": b""}, Budget(1.5, 7))
-    report = Report("b", 1.0, Outcome({"n": 2}, {"f": b"12", "g": b""}, {"code": "x"}))
-    data = work_frame(work).to_bytes() + report_frame(report).to_bytes()
-    for size in (1, 7, len(data)):
-        reader = Reader()
-        first, second = (f for k in range(0, len(data), size) for f in reader.feed(data[k : k + size]))
-        again = read_work(first, {})
-        assert (again.id, again.blobs, again.budget) == (work.id, work.blobs, work.budget)
-        assert [float(again.item["y"][0]), again.item["y"][1]] == [0.1, "pi"]
-        assert read_report(second) == report
-
-
-def test_blobs_are_sent_once() -> None:
-    blobs: dict[str, bytes] = {}
-    work = Work("a", "verify", {}, {"1": b"one", "2": b"two"}, BUDGET)
-    assert read_work(work_frame(work), blobs).blobs == work.blobs
-    again = work_frame(work, frozenset(("1", "2")))
-    assert set(again.contents) == {"item"}
-    assert read_work(again, blobs).blobs == work.blobs
-    read_work(work_frame(Work("b", "verify", {}, {}, BUDGET), frozenset(), ("1",)), blobs)
-    assert set(blobs) == {"2"}
-    with pytest.raises(WireError):
-        read_work(again, blobs)
-
-
-@pytest.mark.parametrize(
-    "data",
-    [
-        b"\xff\xff\xff\xff",
-        b"\x00\x00\x00\x02[]",
-        b"\x00\x00\x00\x02{}",
-        b'\x00\x00\x00\x18{"contents": [["a", -1]]}',
-        b"\x00\x00\x00\x03nul",
-    ],
-)
-def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
-    with pytest.raises(WireError):
-        list(Reader().feed(data + b" " * 100))
-    with pytest.raises(WireError):
-        read_report(Frame({"id": "x"}))

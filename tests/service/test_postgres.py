@@ -12,7 +12,6 @@ from service.settings import Settings
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once, make_client
 from .databases import fresh
-from .databases import server as server
 
 
 @pytest.fixture(scope="module")

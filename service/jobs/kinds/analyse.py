@@ -14,15 +14,13 @@ import orjson
 from service.analyses.numbers import ANALYSES, check_request
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import model_of, pinned_model, source_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
 from service.jobs.kinds.library import Library
+from service.jobs.kinds.trees import pinned, source_of
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
 
-#: analyses that need no more than the formulas of the tree
-KNOWN = tuple(name for name, analysis in ANALYSES.items() if analysis.needs_model_only)
 TOLD = ("status", "message", "is_right", "cost")
 
 
@@ -48,8 +46,8 @@ def _limits(limits: Limits) -> Item:
 
 def _check(item: Item) -> None:
     name, form = item["analysis"], item["format"]
-    if name not in KNOWN:
-        message = f"unknown analysis '{str(name)[:40]}'; there are {', '.join(KNOWN)}"
+    if name not in tuple(ANALYSES):
+        message = f"unknown analysis '{str(name)[:40]}'; there are {', '.join(ANALYSES)}"
         raise InvalidDocument.at("/analysis", "unknown-analysis", message)
     known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
     if form not in known:
@@ -75,15 +73,13 @@ def _requests(name: str, item: Item, is_closed: bool) -> list[Any]:
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
-    tree = known_tree(item, library)
-    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
-    return {**item, **pinned}, (tree.program,)
+    return pinned(item, library, item["limits"]["program_nodes"], ANALYSES[item["analysis"]].needs_parts)
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
-    model, name = model_of(item, blobs), item["analysis"]
-    source = source_of(item, model, item["limits"])
+    source, name = source_of(item, blobs, item["limits"]), item["analysis"]
+    model = source.model
     result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
     media = MEDIA_TYPES[item["format"]]
     data = written(result, media, model)

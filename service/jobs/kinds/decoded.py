@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from service.analyses.source import Source
 from service.cache import Cache
 from service.jobs.kinds.library import StoredTree
-from service.settings import Limits
 from substructures.definition import Definition
 from substructures.documents import read_json
-from substructures.errors import InvalidDocument
 from substructures.model import Model
 from substructures.part import Part
-from substructures.regressor import RegressorModel
 
 CAPACITY = 300_000  # operations
 
@@ -50,12 +46,3 @@ def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
         model = Model.load({**item["model"], "certificate": {}}, blobs[item["program"]])
         _models.put(key, model)
     return model
-
-
-def source_of(item: Mapping[str, Any], model: Model, limits: Mapping[str, int]) -> Source:
-    """What analyses of the tree of an item work on; those that need its parts are refused."""
-    return Source(model, item["tree"].partition("@")[2], _no_parts, Limits(**limits))
-
-
-def _no_parts() -> RegressorModel:
-    raise InvalidDocument.at("", "needs-parts", "this needs the parts of the tree, and is no work for jobs")

@@ -3,7 +3,8 @@
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
 named there are 0). ``format``: npz, or arrow (:mod:`service.arrow`). Its parts have a field ``range``, the first state
-and the one behind the last.
+and the one behind the last. Of states that were uploaded (:mod:`service.operations.uploads`) an item has its chunk:
+``states`` is the digest of the npz file with the columns.
 """
 
 from __future__ import annotations
@@ -11,19 +12,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib import import_module
 from importlib.util import find_spec
+from io import BytesIO
 from typing import Any
 
 import numpy as np
 
-from service.arrays import as_npz
+from service.arrays import as_npz, read_npz
 from service.cache import Cache
+from service.columns import request_of
 from service.jobs.engine import Outcome
-from service.jobs.kinds.assemble import pinned_tree, tree_parts
-from service.jobs.kinds.decoded import model_of, pinned_model
+from service.jobs.kinds.decoded import model_of
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
+from service.jobs.kinds.trees import pinned, regressor_of
 from service.settings import Limits
 from substructures.compile import Kernel, compile_program
 from substructures.documents import read_json
@@ -39,7 +42,6 @@ from substructures.evaluation import (
 )
 from substructures.expr.program import Program
 from substructures.model import Model
-from substructures.regressor import RegressorModel, regressor
 from substructures.states import Array
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
@@ -49,7 +51,6 @@ ABOUT = ("coordinates", "digest", "frames", "columns")
 COMPILED = 1000
 CAPACITY = 2_000_000
 
-_regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 _kernels: Cache[Kernel] = Cache(
     CAPACITY, lambda kernel: 100 + 10 * sum(len(o.entries) for o in kernel.outputs.values())
 )
@@ -60,8 +61,7 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     tree = known_tree(item, library)
     summary = read_json(tree.summary.encode())
     request = _request(item)
-    size = 8 * numbers_per_state(read_quantities(request), len(summary["coordinates"]), len(summary["frames"]))
-    chunk = max(1, min(limits.job_states, limits.binary_bytes // size))
+    chunk = states_per_item(request, len(summary["coordinates"]), len(summary["frames"]), limits)
     described = _described(item, tree, summary, library)
     count = _count(described) if described else _listed(request)
     if count is not None and count > chunk * limits.job_items:
@@ -74,6 +74,12 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     if described:
         return [{**common, **described, "range": each} for each in ranges]
     return [{**common, "request": _sliced(request, count, *each), "range": each} for each in ranges]
+
+
+def states_per_item(request: Mapping[str, Any], dof: int, frames: int, limits: Limits) -> int:
+    """How many states an item may have. Raises InvalidDocument."""
+    size = 8 * numbers_per_state(read_quantities(request), dof, frames)
+    return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
 def _request(item: Item) -> dict[str, Any]:
@@ -137,12 +143,9 @@ def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> di
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
-    tree = known_tree(item, library)
-    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
-    if all(QUANTITIES[name].source != REGRESSOR for name in read_quantities(item["request"])):
-        return {**item, **pinned}, (tree.program,)
-    parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library)
-    return {**item, **pinned, "parts": parts}, (tree.program, *blobs)
+    has_parts = any(QUANTITIES[name].source == REGRESSOR for name in read_quantities(item["request"]))
+    found, blobs = pinned(item, library, item["nodes"], has_parts)
+    return found, (*blobs, item["states"]) if "states" in item else blobs
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
@@ -150,8 +153,9 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     model = model_of(item, blobs)
     progress(0.1)
     columns = _columns(item)
-    sources = Sources(model, regressor=lambda: _regressor(item, blobs)) if "parts" in item else None
-    answer = evaluate(model, _with_columns(model, item["request"], columns), None, _engine, sources)
+    sources = Sources(model, regressor=lambda: regressor_of(item, blobs)) if "parts" in item else None
+    request = _with_columns(model, _uploaded(item, blobs), columns)
+    answer = evaluate(model, request, None, _engine, sources)
     progress(0.9)
     data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)
     summary = {
@@ -179,12 +183,13 @@ def _row(value: Any) -> Any:
     return {name: _row(x) for name, x in value.items()} if isinstance(value, Mapping) else np.asarray(value)[np.newaxis]
 
 
-def _regressor(item: Item, blobs: Blobs) -> RegressorModel:
-    found = _regressors.get(item["tree"])
-    if found is None:
-        found = regressor(*tree_parts(item["parts"], blobs), item["nodes"])
-        _regressors.put(item["tree"], found)
-    return found
+def _uploaded(item: Item, blobs: Blobs) -> dict[str, Any]:
+    """The request with the states that were uploaded for the item."""
+    request: dict[str, Any] = item["request"]
+    if "states" not in item:
+        return request
+    content = blobs[item["states"]]
+    return request_of(request, read_npz(BytesIO(content), len(content)))
 
 
 def _columns(item: Item) -> dict[str, Array]:

@@ -1,0 +1,41 @@
+"""Chunks of states that are uploaded for jobs, by digest. One that no job refers to is kept for a while: its job may
+be about to be queued, or the same states be sent again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sqlalchemy import Connection, delete, exists, insert, select, update
+
+from service.job_tables import job_uploads, uploads
+from service.queries.common import now, put_all
+
+
+def put_uploads(connection: Connection, contents: Mapping[str, bytes]) -> None:
+    """Store contents by digest; of those that are there the age begins anew."""
+    touched = now()
+    for digest in sorted(contents):  # in one order, so that two uploads of the same do not wait for each other
+        known = update(uploads).where(uploads.c.digest == digest).values(touched=touched)
+        if not connection.execute(known).rowcount:
+            put_all(connection, uploads, [{"digest": digest, "content": contents[digest], "touched": touched}])
+
+
+def get_upload(connection: Connection, digest: str) -> bytes | None:
+    """The content of a chunk."""
+    return connection.execute(select(uploads.c.content).where(uploads.c.digest == digest)).scalar()
+
+
+def refer(connection: Connection, job: str, digests: Iterable[str]) -> None:
+    """Note that a job needs chunks, which are stored."""
+    rows = [{"job": job, "digest": digest} for digest in dict.fromkeys(digests)]
+    if rows:
+        connection.execute(insert(job_uploads), rows)
+
+
+def remove_unused(connection: Connection, before: str, most: int) -> int:
+    """Remove up to ``most`` chunks that no job refers to and that were uploaded before a time: how many."""
+    unused = (uploads.c.touched < before) & ~exists().where(job_uploads.c.digest == uploads.c.digest)
+    some = select(uploads.c.digest).where(unused).limit(most).with_for_update(skip_locked=True)
+    digests = list(connection.execute(some).scalars())
+    return connection.execute(delete(uploads).where(uploads.c.digest.in_(digests))).rowcount if digests else 0

@@ -1,0 +1,147 @@
+"""Submissions of jobs that cannot be resolved are refused with a pointer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from service.settings import Limits
+from substructures.errors import InvalidDocument
+
+from .conftest import HAND, TREE
+from .job_outcomes import FREE, known_library
+from .jobs_library import MemoryLibrary
+
+
+@pytest.fixture(scope="module")
+def library() -> MemoryLibrary:
+    return known_library()
+
+
+def faults(library: MemoryLibrary, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> set[Any]:
+    """Pointer and code of what is wrong with a submission."""
+    with pytest.raises(InvalidDocument) as caught:
+        library.items(kind, request, limits)
+    return {(fault.pointer, fault.code) for fault in caught.value.faults}
+
+
+EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric"]}}
+
+
+@pytest.mark.parametrize(
+    ("kind", "request_", "expected"),
+    [
+        ("dance", {"items": [{}]}, ("/kind", "unknown-kind")),
+        ("verify", {}, ("/items", "missing")),
+        ("verify", {"items": []}, ("/items", "empty")),
+        ("verify", {"items": {}}, ("/items", "empty")),
+        ("verify", {"items": [{}], "template": {}}, ("/items", "missing")),
+        ("verify", {"items": [{}], "priority": 1}, ("/priority", "unknown-field")),
+        ("verify", {"items": [{"substructure": "pendulum"}] * 101}, ("/items", "too-many-items")),
+        ("verify", {"items": [{"substructure": "pendulum"}, 5]}, ("/items/1", "object-expected")),
+        ("verify", {"items": [{"substructure": "pendulum"}, {}]}, ("/items/1/substructure", "missing")),
+        ("verify", {"items": [{"substructure": "pendulum", "x": 1}]}, ("/items/0/x", "unknown-field")),
+        ("verify", {"items": [{"substructure": "nothing"}]}, ("/substructure", "unknown-substructure")),
+        ("verify", {"items": [{"substructure": {}}]}, ("/substructure", "unknown-substructure")),
+        ("assemble", {"items": [{"name": "BAD"}]}, ("/name", "string-pattern-mismatch")),
+        (
+            "assemble",
+            {"items": [FREE | {"instances": [{"name": "a", "substructure": "x"}]}]},
+            ("/instances/0/substructure", "unknown-substructure"),
+        ),
+        (
+            "assemble",
+            {"items": [FREE | {"instances": [{"name": "a", "substructure": "pendulum", "parameters": {"x": 1}}]}]},
+            ("/instances/0/parameters/x", "unknown-parameter"),
+        ),
+        (
+            "assemble",
+            {"items": [{**TREE, "instances": [*TREE["instances"], HAND | {"at": "arm.nose"}]}]},
+            ("/instances/1/at", "unknown-port"),
+        ),
+        ("assemble", {"template": TREE}, ("/choices", "missing")),
+        ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "list-expected")),
+        ("assemble", {"template": TREE, "choices": {"leg": ["x"]}}, ("/choices/leg", "unknown-choice")),
+        (
+            "assemble",
+            {"template": TREE, "choices": {"/instances/7/at": ["x"]}},
+            ("/choices/~1instances~17~1at", "unknown-choice"),
+        ),
+        ("assemble", {"template": TREE, "choices": {"arm.l": list(range(101))}}, ("/choices", "too-many-items")),
+        ("assemble", {"template": [], "choices": {"arm": ["x"]}}, ("/template", "object-expected")),
+        ("derive", {"items": [{"name": "x", "bodies": 3}]}, ("/bodies", "tuple-type")),
+        ("export", {"items": [{"tree": "cell"}]}, ("/items/0/quantity", "missing")),
+        ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/tree", "unknown-tree")),
+        (
+            "export",
+            {"items": [{"tree": "cell", "quantity": "metric", "format": "x"}]},
+            ("/items/0/format", "unknown-format"),
+        ),
+        (
+            "export",
+            {"items": [{"tree": "cell", "quantity": 5, "format": "c"}]},
+            ("/items/0/quantity", "string-expected"),
+        ),
+        ("evaluate", {"items": [{"tree": "no", "request": {}}]}, ("/items/0/tree", "unknown-tree")),
+        ("evaluate", {"items": [{"tree": "cell", "request": []}]}, ("/items/0/request", "object-expected")),
+        ("evaluate", {"items": [{"tree": "cell", "request": {}}]}, ("/items/0/request/quantities", "missing")),
+        (
+            "evaluate",
+            {"items": [{"tree": "cell", "request": {"quantities": [{}]}}]},
+            ("/items/0/request/quantities/0", "unknown-quantity"),
+        ),
+        ("evaluate", {"items": [EVALUATION | {"grid": {}}]}, ("/items/0/grid", "object-expected")),
+        ("evaluate", {"items": [EVALUATION | {"grid": {"arm.x": [1]}}]}, ("/items/0/grid/arm.x", "unknown-name")),
+        (
+            "evaluate",
+            {"items": [EVALUATION | {"grid": {"arm.q": [1, "x"]}}]},
+            ("/items/0/grid/arm.q/1", "number-expected"),
+        ),
+        ("evaluate", {"items": [EVALUATION | {"grid": {"arm.q": {"from": 0}}}]}, ("/items/0/grid/arm.q", "axis")),
+        (
+            "evaluate",
+            {"items": [EVALUATION | {"grid": {"arm.q": {"from": 0, "to": 1, "count": 0}}}]},
+            ("/items/0/grid/arm.q/count", "count"),
+        ),
+        (
+            "evaluate",
+            {
+                "items": [
+                    EVALUATION
+                    | {
+                        "grid": {
+                            "arm.q": {"from": 0, "to": 1, "count": 10000},
+                            "arm.m": {"from": 0, "to": 1, "count": 10000},
+                        }
+                    }
+                ]
+            },
+            ("/items/0/grid", "too-many-states"),
+        ),
+        ("evaluate", {"items": [EVALUATION | {"sample": {}}]}, ("/items/0/sample/count", "count")),
+        ("evaluate", {"items": [EVALUATION | {"sample": {"count": 1, "seed": -1}}]}, ("/items/0/sample/seed", "seed")),
+        (
+            "evaluate",
+            {"items": [EVALUATION | {"sample": {"count": 1, "ranges": {"arm.q": [2, 1]}}}]},
+            ("/items/0/sample/ranges/arm.q", "range"),
+        ),
+        (
+            "evaluate",
+            {"items": [{**EVALUATION, "tree": "free", "sample": {"count": 1}}]},
+            ("/items/0/sample/ranges", "missing"),
+        ),
+        (
+            "evaluate",
+            {"items": [EVALUATION | {"sample": {"count": 1}, "grid": {"arm.q": 0}}]},
+            ("/items/0/request", "states"),
+        ),
+        ("evaluate", {"items": [EVALUATION | {"format": []}]}, ("/items/0/format", "unknown-format")),
+        ("evaluate", {"items": [EVALUATION | {"states": "sha256:0"}]}, ("/items/0/states", "unknown-field")),
+    ],
+)
+def test_what_cannot_be_resolved_is_refused_with_a_pointer(
+    library: MemoryLibrary, kind: str, request_: dict[str, Any], expected: tuple[str, str]
+) -> None:
+    assert expected in faults(library, kind, request_, Limits(job_items=100, job_states=100))
