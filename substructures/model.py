@@ -93,6 +93,17 @@ class Model:
         return cls(Program.from_bytes(program_bytes), *names, *described, closures)
 
 
+def require_open(closures: Sequence[Rows], instead: str) -> None:
+    """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
+    if closures:
+        names = ", ".join(f"'{rows.name}'" for rows in closures)
+        message = (
+            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
+            f"{instead}, or leave the closures out"
+        )
+        raise InvalidDocument.at("", "has-closures", message)
+
+
 def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:
     """Couple stored parts (by instance name) to a model and verify it.
 

@@ -25,14 +25,10 @@ from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.model import Model
+from substructures.solve import CLOSED, RANK
 from substructures.states import Array
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
-CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
-#: singular values of the Jacobian below this part of the largest one count as zero
-RANK = 1e-8
-
-
 SINGULAR = (
     "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
     "(another start, a shorter time span), or change the lengths"
@@ -55,7 +51,7 @@ class Constrained:
         self.model, self.n = model, model.dof
         _check_fixed(model, request.fixed)
         span = request.span if isinstance(request, ClosedRequest) else (request.t, request.t)
-        needs = [*NEEDS, *(CLOSURES if model.closures else ())]
+        needs = [*NEEDS, *(CLOSED if model.closures else ())]
         self.along = read_along(model, request, span, needs)
         self.prescribed = Prescribed(model, request.prescribed, span)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
@@ -73,7 +69,7 @@ class Constrained:
             self.G[self.closed + k, a] = 1
 
     def _bind(self, inputs: list[str], folder: Path | None) -> None:
-        outputs = [*NEEDS, *(CLOSURES if self.closed else ())]
+        outputs = [*NEEDS, *(CLOSED if self.closed else ())]
         source = with_power(self.model, outputs, inputs)
         self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))

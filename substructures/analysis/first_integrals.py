@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.formulas import Entries, ModelFormulas, require_open
+from substructures.analysis.formulas import MOTIONS, Entries, ModelFormulas
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
@@ -21,7 +21,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import reachable, transfer
-from substructures.model import Model
+from substructures.model import Model, require_open
 
 Kind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
 Rule = Literal["constant", "falling", "balance"]
@@ -63,7 +63,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     Raises InvalidDocument for closures, for a coordinate without inertia, and for unknown names (``/inputs``,
     ``/parameters``).
     """
-    require_open(model)
+    require_open(model.closures, MOTIONS)
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     inputs, zero = list(inputs), list(zero)
     faults = [

@@ -11,33 +11,29 @@ from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Output, Symbol
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 
 LENGTH = {"R": "rad", "P": "m"}
+#: what takes closures
+MOTIONS = "use loop states, simulations or velocity equations with constraints of the type 'closure'"
 Entries = dict[tuple[int, ...], Expr]
 
 
-def require_tree(model: Model) -> None:
-    """Raises InvalidDocument: ``no-coordinates`` for a model in which nothing moves, and as :func:`require_open`."""
+def require_moving(model: Model) -> None:
+    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves."""
     if not model.dof:
         raise InvalidDocument.at("", "no-coordinates", "the tree has no joint: there is nothing that moves")
-    require_open(model)
+
+
+def require_tree(model: Model) -> None:
+    """Raises InvalidDocument: as :func:`require_moving`, and ``has-closures`` for a model with closed loops."""
+    require_moving(model)
+    require_open(model.closures, MOTIONS)
 
 
 def inputs_of(model: Model) -> tuple[str, ...]:
     """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
     return tuple(s.name for s in model.program.symbols if s.kind == "input")
-
-
-def require_open(model: Model) -> None:
-    """Raises InvalidDocument (``has-closures``) for a model with closed loops: its coordinates are not independent."""
-    if model.closures:
-        names = ", ".join(f"'{rows.name}'" for rows in model.closures)
-        message = (
-            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
-            "use loops, simulations or quasi-velocities with constraints of the type 'closure', or leave them out"
-        )
-        raise InvalidDocument.at("", "has-closures", message)
 
 
 class ModelFormulas:

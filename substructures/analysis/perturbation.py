@@ -14,14 +14,14 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from substructures.analysis.expressions import read_expressions
-from substructures.analysis.formulas import ModelFormulas, inputs_of, require_open
+from substructures.analysis.formulas import MOTIONS, ModelFormulas, inputs_of
 from substructures.analysis.known import Known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.replayed import ID
 from substructures.sensitivity import inverse_dynamics_jacobians
 
@@ -54,7 +54,7 @@ def perturbation(model: Model) -> Program:
 
     Raises InvalidDocument for closures and for forces without derivative.
     """
-    require_open(model)
+    require_open(model.closures, MOTIONS)
     return _perturbation(Known(model.program.digest, model))
 
 
@@ -90,7 +90,7 @@ def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[s
     ``outputs``: expressions in coordinates, velocities, inputs, parameters and t; ``inputs``: default all. Raises
     InvalidDocument: bad expressions (``/outputs/i``), unknown inputs, forces without derivative, singular metric.
     """
-    require_open(model)
+    require_open(model.closures, "use the formulas 'perturbation', which have multipliers, or linearisations (numbers)")
     require_smooth(model)
     chosen = inputs_of(model) if inputs is None else tuple(inputs)
     require_inputs(model, chosen)

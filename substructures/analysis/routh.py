@@ -21,7 +21,7 @@ from substructures.analysis.first_integrals import FirstIntegrals, first_integra
 from substructures.analysis.formulas import Entries, Factors, ModelFormulas
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, Symbol, array, program
-from substructures.model import Model
+from substructures.model import Model, require_open
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,9 @@ class Reduced:
 def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
     """The model without the given cyclic coordinates (default: all), inputs at 0.
 
-    Raises InvalidDocument for a coordinate that is not cyclic (see first_integrals), or for none.
+    Raises InvalidDocument for a coordinate that is not cyclic (see first_integrals), or for none, and for closures.
     """
+    require_open(model.closures, "use first integrals, and simulations")
     found: FirstIntegrals = first_integrals(model)
     names = list(found.cyclic if coordinates is None else dict.fromkeys(coordinates))
     cyclic = require_cyclic(model, found, names)
