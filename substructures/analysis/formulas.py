@@ -36,6 +36,11 @@ def inputs_of(model: Model) -> tuple[str, ...]:
     return tuple(s.name for s in model.program.symbols if s.kind == "input")
 
 
+def multipliers_of(model: Model) -> tuple[str, ...]:
+    """The symbols of the multipliers of all closures, row by row."""
+    return tuple(f"lambda.{rows.name}.{row}" for rows in model.closures for row in rows.rows)
+
+
 class ModelFormulas:
     """Outputs of a model with all dependent elements; the symbols ``zero`` are put to 0.
 
@@ -92,9 +97,21 @@ class ModelFormulas:
 
     @cached_property
     def acceleration(self) -> list[Expr]:
-        """q''^a from g q'' = Q - Gamma q' q'. Raises InvalidDocument (``singular-metric``)."""
+        """q''^a from g q'' = Q - Gamma q' q' + G^T lambda. Raises InvalidDocument (``singular-metric``)."""
         forces, bias = self.vector("forces"), self.vector("bias")
-        return self.factors.solve([f - b for f, b in zip(forces, bias, strict=True)])
+        return self.factors.solve([f - b + r for f, b, r in zip(forces, bias, self.reactions, strict=True)])
+
+    @cached_property
+    def reactions(self) -> list[Expr]:
+        """G^T lambda of closures, with a symbol ``lambda.<closure>.<row>`` [N, N m] for every row; else zeros."""
+        result = [self.graph.zero] * self.n
+        names = multipliers_of(self.model)
+        for name in names:
+            unit = "N" if name.rpartition(".")[2] in ("x", "y", "z", "length") else "N m"
+            self.symbols[name] = Symbol(name, "input", unit)
+        for (k, a), x in self.elements("closure.jacobian").items() if names else ():
+            result[a] = result[a] + x * self.graph.symbol(names[k])
+        return result
 
     @cached_property
     def momenta(self) -> list[Expr]:
