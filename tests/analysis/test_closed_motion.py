@@ -21,9 +21,6 @@ from closed_trees import (
 from random_trees import Plain
 
 from substructures import InvalidDocument, Model, catalogue
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.linearise import linearise
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.simulate import simulate
 from substructures.analysis.simulate_closed import simulate_closed
@@ -389,9 +386,6 @@ def test_one_entry_for_all_models() -> None:
     for call in (
         lambda: simulate(model, blade | {"span": [0, 1]}),
         lambda: simulate_tree(model, {"q": [0, 0, 0], "span": [0, 1]}),
-        lambda: first_integrals(model),
-        lambda: linearise(model, {"q": [0, 0, 0]}),
-        lambda: equilibria(model),
     ):
         with pytest.raises(InvalidDocument, match="closure"):
             call()
