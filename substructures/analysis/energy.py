@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 from substructures.analysis.formulas import ModelFormulas
-from substructures.analysis.known import Known
+from substructures.analysis.known import Known, known_model
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.vanish import Vanishing
@@ -22,7 +22,7 @@ def energy_rule(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = 
 
     ``inputs``: inputs that may have any value, all others are 0; ``zero``: parameters that are 0. Closures do no work.
     """
-    return _energy_rule(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
+    return _energy_rule(known_model(model), frozenset(inputs), frozenset(zero))
 
 
 @lru_cache(maxsize=32)

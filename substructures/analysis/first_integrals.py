@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 from substructures.analysis.energy import Rule, closures_of, depends_on, judged_energy
 from substructures.analysis.formulas import Entries, ModelFormulas
-from substructures.analysis.known import Known
+from substructures.analysis.known import Known, known_model
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
@@ -75,7 +75,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     ]
     if faults:
         raise InvalidDocument(faults)
-    return _first_integrals(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
+    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
 
 
 @lru_cache(maxsize=32)

@@ -17,7 +17,7 @@ from functools import lru_cache
 
 from substructures.analysis.expressions import read_expressions
 from substructures.analysis.formulas import LENGTH, ModelFormulas, inputs_of
-from substructures.analysis.known import Known
+from substructures.analysis.known import Known, known_model
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
@@ -59,7 +59,7 @@ def perturbation(model: Model) -> Program:
 
     Raises InvalidDocument for forces without derivative.
     """
-    return _perturbation(Known(model.program.digest, model))
+    return _perturbation(known_model(model))
 
 
 @lru_cache(maxsize=32)

@@ -12,6 +12,7 @@ from random_trees import Plain
 
 from substructures import InvalidDocument, Model
 from substructures.analysis.equilibria import equilibria
+from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.linearise import linearise
 from substructures.analysis.linearise_closed import ClosedLinearisation
 from substructures.analysis.perturbation import perturbation
@@ -159,6 +160,11 @@ def test_formulas_of_the_perturbation() -> None:
     assert Program.from_bytes(source.to_bytes()) == source
     assert {"lambda.wrist.x", "lambda.wrist.y"} <= {s.name for s in source.symbols}
     assert source.outputs["closure.jacobian_second"].shape == (5, 3)
+    pin = {"type": "pin", "from": "x.rod_end", "to": "x.pin"}
+    for name in ("wrist", "pin"):  # the same program but for these names
+        model = closed_entry("slider-crank", [pin | {"name": name}], DOWN)
+        assert f"lambda.{name}.x" in {s.name for s in perturbation(model).symbols}
+        assert f"'{name}'" in first_integrals(model).integrals[0].reason
 
 
 def test_failures_have_advice() -> None:
