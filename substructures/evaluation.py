@@ -71,6 +71,8 @@ def evaluate(
     forward dynamics ``along``: the direction, with ``q, qd, qdd, inputs`` as in the request. The answer holds numpy
     arrays, leading axis N dropped for one state with ``q`` (n,); ``failures`` lists states with a result that is not
     finite; ``frames`` names the rows of kinematics, ``columns`` those of the regressor.
+    ``forward_dynamics`` of a model with closures are the accelerations on them (substructures.solve.closed_solve), in
+    states that meet them; other quantities are those of the tree without them.
     Raises InvalidDocument (with pointers), MissingValue (a parameter without a value) and TooLarge.
     """
     quantities = read_quantities(request)

@@ -153,12 +153,13 @@ ANALYSES: dict[str, Analysis] = {
     "linearisations": Analysis(
         LinearisationRequest,
         _linearisation,
-        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria",
+        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
+        "of closed loops in independent coordinates, about one state",
     ),
     "equilibria": Analysis(
         EquilibriaRequest,
         lambda source, request, _: equilibria(source.model, request),
-        "All equilibria that are found, each with its vibrations and stability",
+        "All equilibria that are found, each with its vibrations and stability; also of closed loops",
     ),
     "root-loci": Analysis(
         RootLocusRequest,
