@@ -125,9 +125,9 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
 
 def closed_dynamics(model: Model) -> Program:
     """What accelerations of a tree with closures are computed from, once for every model."""
-    if FD not in model.derived:
-        model.derived[FD] = model.program.select([*DYNAMICS, *CLOSED])
-    return model.derived[FD]
+    if "closed_dynamics" not in model.derived:
+        model.derived["closed_dynamics"] = model.program.select([*DYNAMICS, *CLOSED])
+    return model.derived["closed_dynamics"]
 
 
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:

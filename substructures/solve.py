@@ -13,8 +13,11 @@ Array = NDArray[np.float64]
 CLOSED = ("closure.residual", "closure.jacobian", "closure.acceleration")
 #: singular values of the Jacobian below this part of the largest one count as zero
 RANK = 1e-8
-#: residuals of positions and velocities of a state that counts as closed, over its largest number or 1
-MET = 1e-6
+#: residuals of positions of a state that counts as closed, over its largest number or 1: below RANK, because rows that
+#: depend on each other in closed positions do so only there
+MET = 1e-9
+#: the same for velocities
+MET_RATE = 1e-6
 
 
 def cholesky_solve(g: Array, f: Array) -> Array:
@@ -59,7 +62,7 @@ def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callab
     speed = np.abs(qd).max(axis=1, initial=1)
     opening = np.abs(np.einsum("nka,na->nk", G, np.broadcast_to(qd, result.shape))).max(axis=1, initial=0)
     good = np.abs(found["closure.residual"]).max(axis=1, initial=0) <= MET * np.abs(q).max(axis=1, initial=1)
-    good = good & (opening <= MET * speed) & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
+    good = good & (opening <= MET_RATE * speed) & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
     for rank in np.unique(ranks):
         some = np.flatnonzero(good & (ranks == rank))
         N = rows[some, rank:].swapaxes(1, 2)

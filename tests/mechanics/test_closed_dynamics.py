@@ -21,7 +21,7 @@ from substructures.analysis.perturbation import state_space
 from substructures.analysis.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.routh import routh
 from substructures.definition import Definition
-from substructures.derived import derived
+from substructures.derived import derived, kept
 from substructures.evaluation import evaluate
 from substructures.regressor import regressor
 
@@ -68,6 +68,25 @@ def test_open_and_singular_states_have_no_accelerations() -> None:
     lengths = {"x.l0": 0.4, "x.l1": 0.1, "x.l2": 0.4, "x.l3": 0.1}
     folded = accelerations(model, rest, rest, parameters=lengths)
     assert np.isnan(folded[FD]).all()
+
+
+def test_a_redundant_closure_does_not_lock_what_is_nearly_closed() -> None:
+    """1e-8 beside a closed position of Bricard's linkage five rows are independent: nothing could move."""
+    model = bricard()
+    state = analyse_loops(model, {"q": [2, 0.1, 2, 0.1, 2]}).consistent
+    beside = state.q + 1e-8 * np.array([1, 2, -1, 0, 0])
+    answer = accelerations(model, np.array([state.q, beside]), np.zeros(5))
+    assert np.abs(answer[FD][0]).max() > 0.1
+    assert np.isnan(answer[FD][1]).all()
+
+
+def test_numbers_do_not_make_formulas() -> None:
+    """What accelerations are computed from is not kept as their formula."""
+    model = four_bar()
+    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2]}).consistent
+    accelerations(model, state.q, state.qd)
+    with pytest.raises(InvalidDocument, match="'pin'"):
+        kept(model, FD)
 
 
 def refused() -> list[tuple[str, Callable[[Model], Any]]]:

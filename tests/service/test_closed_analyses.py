@@ -125,10 +125,13 @@ def test_formulas_that_closures_would_falsify(
     assert advice in error["message"]
 
 
+DRIVEN: dict[str, Any] = {"controls": ["tau.s.left"], "horizon": 1, "intervals": 2, "q": HANGING}
 NUMBERS: list[tuple[str, dict[str, Any], str]] = [
     ("sensitivities", {"q": HANGING, "span": [0, 1], "by": ["s.c"]}, "has-closures"),
     ("curvatures", {"q": HANGING}, "has-closures"),
     ("identifications", {"q": [HANGING], "qd": [HANGING], "qdd": [HANGING], "tau": [HANGING]}, "has-closures"),
+    ("cost-gradients", DRIVEN, "has-closures"),
+    ("optimal-controls", DRIVEN, "has-closures"),
     ("velocity-equations", {"constraints": []}, "open-closure"),
     ("linearisations", {"q": [HANGING, HANGING]}, "one-state"),
     ("evaluations", {"quantities": ["forward_dynamics_derivative"], "q": HANGING, "along": {}}, "has-closures"),
