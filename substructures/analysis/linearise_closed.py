@@ -94,8 +94,12 @@ def linearise_closed(model: Model, request: Mapping[str, Any]) -> ClosedLinearis
         multipliers = least_multipliers(s, qdd)
     except Singular as error:
         message = message or str(error)
-    result = _reduced(s, read, chosen, values, qdd, multipliers)
-    message = message or fault_of(model.coordinates, qdd, result.D, result.K)
+    _put(s, values, qdd, multipliers)
+    found = interpret(perturbation(model), values, [*MATRICES, *ALONG])
+    message = message or fault_of(model.coordinates, qdd, found["damping"], found["stiffness"])
+    found["input"] = found["input"][:, [inputs_of(model).index(name) for name in chosen]]
+    found["C"], found["Dy"] = (x[0] for x in output_matrices(model, read, chosen, values, 1))
+    result = _reduced(s, found, (chosen, tuple(read.outputs)), qdd, multipliers)
     if message:
         return _failed(result, message)
     return _at_equilibrium(model, read, result)
@@ -121,23 +125,23 @@ def _constrained(model: Model, read: LinearisationRequest, values: Mapping[str, 
     return Constrained(model, LoopRequest.read({"q": q, "qd": qd, "t": values["t"], **numbers}))
 
 
+def _put(s: Constrained, values: dict[str, float], qdd: Array, multipliers: Array) -> None:
+    """The state where s is, its accelerations and multipliers among the values."""
+    for prime, numbers in (("", s.q), ("'", s.qd), ("''", qdd)):
+        values |= {f"{name}{prime}": float(x) for name, x in zip(s.model.coordinates, numbers, strict=True)}
+    values |= dict(zip(multipliers_of(s.model), multipliers.tolist(), strict=True))
+
+
 def _reduced(
     s: Constrained,
-    read: LinearisationRequest,
-    chosen: tuple[str, ...],
-    values: dict[str, float],
+    found: Mapping[str, Array],
+    names: tuple[tuple[str, ...], tuple[str, ...]],
     qdd: Array,
     multipliers: Array,
 ) -> ClosedLinearisation:
-    """Everything at the state where s is."""
-    model, n = s.model, s.n
-    for prime, numbers in (("", s.q), ("'", s.qd), ("''", qdd)):
-        values |= {f"{name}{prime}": float(x) for name, x in zip(model.coordinates, numbers, strict=True)}
-    values |= dict(zip(multipliers_of(model), multipliers.tolist(), strict=True))
-    found = interpret(perturbation(model), values, [*MATRICES, *ALONG])
-    M, D, K, F = (found[name] for name in ("metric", "damping", "stiffness", "input"))
-    F = F[:, [inputs_of(model).index(name) for name in chosen]]
-    C, Dy = (x[0] for x in output_matrices(model, read, chosen, values, 1))
+    """Everything at the state where s is, in independent coordinates; ``names``: of inputs and outputs."""
+    coordinates, n = s.model.coordinates, s.n
+    M, D, K, F, C = (found[name] for name in ("metric", "damping", "stiffness", "input", "C"))
     y = independent_coordinates(s.G)
     N, rate, second = _tangent(s.independent_rows(), y, *(found[name] for name in ALONG))
     with np.errstate(invalid="ignore"):
@@ -145,13 +149,12 @@ def _reduced(
         d, k = N.T @ (D @ N + 2 * M @ rate), N.T @ (K @ N + D @ rate + M @ second)
         output = np.hstack([C[:, :n] @ N + C[:, n:] @ rate, C[:, n:] @ N])
     return ClosedLinearisation(
-        model.coordinates,
-        chosen,
-        tuple(read.outputs),
+        coordinates,
+        *names,
         *(m, d, k, f),
         *_state_space(m, d, k, f),
-        *(output, Dy, qdd, found["residual"]),
-        independent=tuple(model.coordinates[a] for a in y),
+        *(output, found["Dy"], qdd, found["residual"]),
+        independent=tuple(coordinates[a] for a in y),
         constraints=s.labels,
         q=s.q,
         qd=s.qd,

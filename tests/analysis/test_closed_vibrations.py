@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank
 from random_trees import Plain
 
 from substructures import InvalidDocument, Model
+from substructures.analysis.drawings import draw_root_locus
 from substructures.analysis.equilibria import equilibria
 from substructures.analysis.first_integrals import first_integrals
 from substructures.analysis.linearise import linearise
@@ -101,7 +103,7 @@ def test_a_governor_that_runs_steadily() -> None:
     assert np.sort(np.abs(values))[:2] == pytest.approx([0, 0], abs=1e-6)
 
 
-def damped() -> Model:
+def damped(**more: Any) -> Model:
     """The hanging parallelogram with a damper in its first crank."""
     cranks: list[Plain] = [
         {"name": f"c{k}", "parent": "base", "joint": {"type": "revolute", "coordinate": f"c{k}", "d": k}, "mass": 1}
@@ -112,7 +114,7 @@ def damped() -> Model:
     cranks[0]["joint"] |= {"damping": "c"}
     table = {"name": "table", "parent": "c0", "mass": 2, "com": [0.5, 0, 0]}
     table |= {"joint": {"type": "revolute", "coordinate": "table", "d": 1}}
-    part = {"name": "p", "bodies": [*cranks, table], "parameters": {"c": {"value": 1}}}
+    part = {"name": "p", "bodies": [*cranks, table], "parameters": {"c": {"value": 1}}, **more}
     part["ports"] = [
         {"name": "a", "body": "table", "position": [1, 0, 0]},
         {"name": "b", "body": "c1", "position": [1, 0, 0]},
@@ -182,6 +184,27 @@ def test_failures_have_advice() -> None:
     massless = linearise(model, {"q": [0.7, 0.2, 1.2], "parameters": dict.fromkeys(("x.m1", "x.m2", "x.m3"), 0)})
     assert massless.status == "failed"
     assert "masses" in massless.message
+
+
+def test_a_structure_does_not_move() -> None:
+    """A rod to the coupler holds the four-bar: nothing is left, also for a root locus."""
+    pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
+    rod = {"name": "rod", "type": "rod", "from": "x.coupler_end", "to": "world", "length": 0.3}
+    model = closed_entry("four-bar", [pin, rod], DOWN)
+    found = linearise(model, {"q": [0.7, 0.2, 1.2]})
+    assert (found.status, found.A.shape, found.modes) == ("finished", (0, 0), ())
+    assert found.stability is not None
+    assert found.stability.verdict == "stable"
+    locus = root_locus(model, {"parameter": "x.m1", "values": [1, 2], "q": [0.7, 0.2, 1.2]})
+    assert locus.eigenvalues.shape == (2, 0)
+    assert draw_root_locus(locus).startswith("<svg")
+
+
+def test_a_root_at_zero_is_named() -> None:
+    loads: list[Plain] = [{"type": "joint", "coordinate": "table", "force": "-sqrt(table'^2)*table'"}]
+    found = linearise(damped(loads=loads), {"q": [-np.pi / 2, -np.pi / 2, np.pi / 2]})
+    assert found.status == "failed"
+    assert "'x.table'" in found.message
 
 
 def test_bodies_without_mass_between_others() -> None:
