@@ -70,6 +70,16 @@ def test_open_and_singular_states_have_no_accelerations() -> None:
     assert np.isnan(folded[FD]).all()
 
 
+def test_one_position_for_many_velocities_and_inputs() -> None:
+    model = four_bar(DOWN)
+    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2], "qd": [1, 0, 0]}).consistent
+    speeds, torque = np.array([0.0, 1.0, 3.0]), {"tau.x.crank": [0.0, 1.0, 2.0]}
+    many = accelerations(model, state.q, speeds[:, None] * state.qd, inputs=torque)[FD]
+    for k, speed in enumerate(speeds):
+        one = accelerations(model, state.q, speed * state.qd, inputs={"tau.x.crank": torque["tau.x.crank"][k]})[FD]
+        np.testing.assert_allclose(many[k], one, rtol=1e-12)
+
+
 def test_a_redundant_closure_does_not_lock_what_is_nearly_closed() -> None:
     """1e-8 beside a closed position of Bricard's linkage five rows are independent: nothing could move."""
     model = bricard()
