@@ -21,7 +21,11 @@ class Direction(BaseModel):
 
 
 class EvaluationRequest(BaseModel):
-    """States to evaluate; SI units, angles in rad."""
+    """States to evaluate; SI units, angles in rad.
+
+    ``forward_dynamics`` of a tree with closures are the accelerations on them, in states that meet them; all other
+    quantities are those of the tree without its closures (``inverse_dynamics``: what actuators and closures exert).
+    """
 
     quantities: list[str]
     parameters: dict[str, Column] = Field({}, description="values in place of defaults; one, or one for every state")

@@ -25,7 +25,7 @@ from substructures.quantities import (
     steps,
 )
 from substructures.sensitivity import FD, SINGULAR
-from substructures.solve import cholesky_solve
+from substructures.solve import CLOSED, cholesky_solve, closed_solve
 from substructures.states import Array, States, known_values, read_states, require
 
 __all__ = [
@@ -45,6 +45,11 @@ __all__ = [
 #: numbers of a block where an intermediate result is larger than the result
 BLOCK = 2_000_000
 
+
+OPEN = (
+    "the state does not meet the closures (also their velocities), or they lose rank there, or the metric is singular: "
+    "take consistent states from loop states"
+)
 
 #: outputs of a program for (program, values, names, number of states)
 Engine = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
@@ -68,13 +73,15 @@ def evaluate(
     forward dynamics ``along``: the direction, with ``q, qd, qdd, inputs`` as in the request. The answer holds numpy
     arrays, leading axis N dropped for one state with ``q`` (n,); ``failures`` lists states with a result that is not
     finite; ``frames`` names the rows of kinematics, ``columns`` those of the regressor.
+    ``forward_dynamics`` of a model with closures are the accelerations on them (substructures.solve.closed_solve), in
+    states that meet them; other quantities are those of the tree without them.
     Raises InvalidDocument (with pointers), MissingValue (a parameter without a value) and TooLarge.
     """
     quantities = read_quantities(request)
     sources = sources or Sources(model)
     states = read_states(model, request, limit)
     values = _values(sources, request, states, quantities)
-    found = _computed(sources, quantities, values, engine, states.count)
+    found = _computed(sources, quantities, values, engine, states)
     results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in quantities}
     answer: dict[str, Any] = {
         "coordinates": list(model.coordinates),
@@ -86,7 +93,7 @@ def evaluate(
     if REGRESSOR in found:
         answer["columns"] = {"names": list(sources.columns().names), "units": list(sources.columns().units)}
     answer |= {name: _single(value) if states.single else value for name, value in results.items()}
-    return answer | {"failures": _failures(results)}
+    return answer | {"failures": _failures(results, bool(model.closures))}
 
 
 def check(sources: Sources, request: Mapping[str, Any]) -> States:
@@ -105,16 +112,19 @@ def check(sources: Sources, request: Mapping[str, Any]) -> States:
 
 
 def _computed(
-    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], engine: Engine, count: int
+    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], engine: Engine, states: States
 ) -> dict[str, dict[str, Array]]:
     """Outputs by source."""
+    count = states.count
     found: dict[str, dict[str, Array]] = {}
     for source, program, names in steps(sources, quantities):
         if program is None:
             found[source] = {name: np.full((count, sources.model.dof), np.nan) for name in names}
             continue
         require(program, names, values)
-        if program is sources.model.program and source == FD:
+        if source == FD and sources.model.closures:
+            found[source] = _closed(sources.model, program, values, engine, states)
+        elif program is sources.model.program and source == FD:
             found[source] = _solved(sources.model, values, engine, count)
         else:
             found[source] = engine(program, values, names, count)
@@ -130,6 +140,20 @@ def _solved(model: Model, values: Mapping[str, Any], engine: Engine, count: int)
         found = engine(model.program, some, list(DYNAMICS), len(result[part]))
         result[part] = cholesky_solve(found["metric"], found["forces"] - found["bias"])
     return {FD: result, "pivots": np.ones((count, model.dof))}
+
+
+def _closed(
+    model: Model, program: Program, values: Mapping[str, Any], engine: Engine, states: States
+) -> dict[str, Array]:
+    """Forward dynamics of a tree with closures."""
+    outputs = engine(program, values, [*DYNAMICS, *CLOSED], states.count)
+
+    def second(velocities: Array) -> Array:
+        given = {f"{name}'": velocities[:, a] for a, name in enumerate(model.coordinates)}
+        return engine(program, {**values, **given}, [CLOSED[2]], states.count)[CLOSED[2]]
+
+    found = closed_solve(outputs, states.q, states.qd, second)
+    return {FD: found, "pivots": np.ones_like(found)}
 
 
 def _values(sources: Sources, request: Mapping[str, Any], states: States, quantities: Sequence[str]) -> dict[str, Any]:
@@ -161,7 +185,7 @@ def _single(value: Any) -> Any:
     return {name: v[0] for name, v in value.items()} if isinstance(value, dict) else value[0]
 
 
-def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _failures(results: Mapping[str, Any], has_closures: bool) -> list[dict[str, Any]]:
     failures = []
     for name, value in results.items():
         arrays = value.values() if isinstance(value, dict) else (value,)
@@ -171,6 +195,7 @@ def _failures(results: Mapping[str, Any]) -> list[dict[str, Any]]:
                 total = some.sum()  # much quicker than a look at every number, and finite only if all are
             if not np.isfinite(total):
                 bad = np.union1d(bad, np.flatnonzero(~np.isfinite(some).all(axis=tuple(range(1, some.ndim)))))
-        message = SINGULAR if QUANTITIES[name].pivots else "the result is not finite"
+        singular = OPEN if has_closures else SINGULAR
+        message = singular if QUANTITIES[name].pivots else "the result is not finite"
         failures += [{"state": int(i), "quantity": name, "code": "not-finite", "message": message} for i in bad]
     return failures

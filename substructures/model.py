@@ -30,7 +30,7 @@ from typing import Any
 from substructures.bias import bias_forces, inverse_dynamics
 from substructures.closures import Rows, closure_formulas
 from substructures.coupling import Coupled, couple_parts, over_formulas
-from substructures.errors import TooLarge
+from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.kinematics import frame_kinematics
 from substructures.mechanics.linear3 import S, add, apply, cross, transpose
@@ -91,6 +91,17 @@ class Model:
         described = (summary["parameters"], summary["certificate"])
         closures = tuple(Rows.read(plain) for plain in summary.get("closures", ()))
         return cls(Program.from_bytes(program_bytes), *names, *described, closures)
+
+
+def require_open(closures: Sequence[Rows], instead: str) -> None:
+    """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
+    if closures:
+        names = ", ".join(f"'{rows.name}'" for rows in closures)
+        message = (
+            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
+            f"{instead}, or leave the closures out"
+        )
+        raise InvalidDocument.at("", "has-closures", message)
 
 
 def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:

@@ -13,6 +13,7 @@ from substructures.expr.program import Program
 from substructures.model import KINEMATICS, Model
 from substructures.regressor import RegressorModel
 from substructures.sensitivity import FD, SingularMetric
+from substructures.solve import CLOSED
 
 FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t", "along"))
 MODEL, REGRESSOR = "model", "regressor"
@@ -122,13 +123,26 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     return sum(several.get(name, n) for name in quantities)
 
 
+def closed_dynamics(model: Model) -> Program:
+    """What accelerations of a tree with closures are computed from, once for every model."""
+    if "closed_dynamics" not in model.derived:
+        model.derived["closed_dynamics"] = model.program.select([*DYNAMICS, *CLOSED])
+    return model.derived["closed_dynamics"]
+
+
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
-    """(source, program, its outputs); no program: no state has a result."""
+    """(source, program, its outputs); no program: no state has a result.
+
+    Forward dynamics of a tree with closures, or of one too large for formulas of it, comes from outputs of the model.
+    """
     wanted: dict[str, set[str]] = {}
     for name in quantities:
         quantity = QUANTITIES[name]
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     for source, names in wanted.items():
+        if source == FD and sources.model.closures:
+            yield source, closed_dynamics(sources.model), [*DYNAMICS, *CLOSED]
+            continue
         try:
             yield source, sources.program(source), sorted(names)
         except SingularMetric:

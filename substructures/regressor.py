@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.bias import body_motions, from_body
+from substructures.closures import Rows
 from substructures.coupling import OWN, Run, couple_parts, over_formulas
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
@@ -61,7 +62,8 @@ class RegressorModel:
     ``.Jxx .Jyy .Jzz .Jxy .Jxz .Jyz`` = integral of x x^T dm [kg m^2] (Theta = tr(J) 1 - J), about the origin of the
     body frame in its axes. A link is a moving body with all that is fixed to it in the same part; ``instance.base``
     is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
-    joints are no links. ``parameters``: the free parameters with default, unit and description.
+    joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
+    tree; their forces, which Y pi has to balance with the actuators, are not part of it.
     """
 
     program: Program
@@ -70,6 +72,7 @@ class RegressorModel:
     names: tuple[str, ...]
     units: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    closures: tuple[Rows, ...] = ()
 
     def evaluate(self, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Array]:
         """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
@@ -126,6 +129,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         tuple(name for name, _ in named),
         tuple(unit for _, unit in named),
         {name: value for name, value in assembly.parameters.items() if name in used},
+        tuple(cut.rows for cut in assembly.cuts),
     )
 
 

@@ -22,13 +22,14 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array
 from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.part import MAX_NODES
 from substructures.replayed import ID, Replayed, vector
 
 FD = "forward_dynamics"
 #: kinds of symbols that have a direction
 VARIED = frozenset(("coordinate", "velocity", "acceleration", "input"))
+BY_STATE = "evaluate it at states (numbers take closures), or use velocity equations with constraints of type 'closure'"
 SINGULAR = "the metric is singular or not positive definite: check masses, inertias and coordinates"
 
 
@@ -84,8 +85,9 @@ def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
     ``forward_dynamics`` (n,) [rad/s^2, m/s^2]; ``pivots`` (n,): D_k / |g_kk|, between 0 (singular metric) and 1, all
     positive where the metric is positive definite. In a state with a singular metric the division by zero gives
     infinities and NaN. Raises TooLarge for more than ``max_nodes`` operations, SingularMetric where no state has
-    accelerations.
+    accelerations, InvalidDocument for closures.
     """
+    require_open(model.closures, BY_STATE)
     r = Replayed(model)
     factors, pivots = _factors(r, max_nodes)
     return r.program({FD: vector(_accelerations(r, factors)), "pivots": vector(pivots)})
@@ -97,6 +99,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     ``forward_dynamics_derivative`` (n,): g d(q'') = -dID at q'' = FD with dq'' = 0, along the symbols ``d.*`` of
     coordinates, velocities and inputs. Raises as forward_dynamics.
     """
+    require_open(model.closures, "use linearisations")
     r = Replayed(model)
     factors, pivots = _factors(r, max_nodes)
     found = _accelerations(r, factors)

@@ -16,7 +16,7 @@ from substructures.analysis.base_parameters import BaseParameters, base_paramete
 from substructures.analysis.control import Cost
 from substructures.analysis.curvature import curvature
 from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.formulas import inputs_of
+from substructures.analysis.formulas import inputs_of, multipliers_of
 from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.perturbation import perturbation, state_space
@@ -149,7 +149,9 @@ def _routhian(source: Source, options: Options) -> Made:
 
 
 def _perturbation(source: Source, _: Options) -> Made:
-    members = {"coordinates": list(source.model.coordinates), "inputs": inputs_of(source.model)}
+    members: dict[str, Any] = {"coordinates": list(source.model.coordinates), "inputs": inputs_of(source.model)}
+    if source.model.closures:
+        members["multipliers"] = multipliers_of(source.model)
     return Made(perturbation(source.model), members)
 
 

@@ -19,10 +19,12 @@ from service.analyses.requests import (
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Report, Source
 from substructures.analysis.curvature import curvature_values
-from substructures.analysis.equilibria import EquilibriaRequest, equilibria
+from substructures.analysis.equilibria import equilibria
+from substructures.analysis.equilibrium_search import EquilibriaRequest
 from substructures.analysis.gradient import GradientRequest, cost_gradient
 from substructures.analysis.identification import excitation, identify
-from substructures.analysis.linearise import LinearisationRequest, linearise
+from substructures.analysis.linearisation import LinearisationRequest
+from substructures.analysis.linearise import linearise
 from substructures.analysis.loops import analyse_loops
 from substructures.analysis.optimal_control import optimal_control
 from substructures.analysis.parameter_sensitivity import sensitivities
@@ -153,12 +155,13 @@ ANALYSES: dict[str, Analysis] = {
     "linearisations": Analysis(
         LinearisationRequest,
         _linearisation,
-        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria",
+        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
+        "of closed loops in independent coordinates, about one state",
     ),
     "equilibria": Analysis(
         EquilibriaRequest,
         lambda source, request, _: equilibria(source.model, request),
-        "All equilibria that are found, each with its vibrations and stability",
+        "All equilibria that are found, each with its vibrations and stability; also of closed loops",
     ),
     "root-loci": Analysis(
         RootLocusRequest,

@@ -9,8 +9,10 @@ _rolling                   ``writers``: trajectories as files
 loops                      ``analyse_loops``: mobility, redundancy, reactions at a state
 quasi_velocities           ``quasi_velocity_equations``: Voronets and Boltzmann-Hamel as formulas
 equilibria, linearise,     positions of rest; M, D, K and A, B, C, D, modes (``vibrations``), stability; roots over a
-root_locus                 parameter; ``perturbation``: the same as formulas
-first_integrals, routh     constants of the motion as formulas; cyclic coordinates left out
+root_locus                 parameter; ``perturbation``: the same as formulas (``linearise_tree``, ``linearise_closed``:
+                           one each; ``linearisation``: request and result; ``equilibrium_search``,
+                           ``equilibria_closed``: how positions of rest are found)
+first_integrals, routh     constants of the motion as formulas (``energy``: its rule); cyclic coordinates left out
 curvature                  of the configuration space
 adjoint, gradient,         equations of the adjoint as formulas; the gradient of a cost; optimal control by shooting
 optimal_control            (``control``: the documents; ``shooting``, ``shooting_program``)

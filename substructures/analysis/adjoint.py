@@ -38,13 +38,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.analysis.control import Cost, declared, read_costs
+from substructures.analysis.control import LINEAR, Cost, declared, read_costs
 from substructures.derived import derived
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.scope import Scope
 
 ID = "inverse_dynamics"
@@ -73,8 +73,9 @@ def adjoint_equations(
 ) -> AdjointEquations:
     """The adjoint equations of a model for controls (names of inputs), a cost, and ``varied`` parameters.
 
-    Raises InvalidDocument with pointers into the document of the cost (``/cost/running``).
+    Raises InvalidDocument with pointers into the document of the cost (``/cost/running``), and for closures.
     """
+    require_open(model.closures, LINEAR)
     scope = Scope(Graph())
     source = derived(model, ID)
     declared(model, scope, {s.name: s for s in (*source.symbols, *model.program.symbols)})

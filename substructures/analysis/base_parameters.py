@@ -35,6 +35,7 @@ from substructures.expr.modular import Field, NoSquareRoot
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.expr.walk import transfer
+from substructures.model import require_open
 from substructures.printers import entries
 from substructures.regressor import RegressorModel
 
@@ -97,8 +98,9 @@ class BaseParameters:
 def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:
     """The base parameters of a tree, from its regressor; ``drives``: some of DRIVES.
 
-    Raises InvalidDocument for an unknown drive, TooLarge (size, limit).
+    Raises InvalidDocument for an unknown drive and for closures, TooLarge (size, limit).
     """
+    require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
     for i, name in enumerate(drives):
         if name not in DRIVES:
             message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}"

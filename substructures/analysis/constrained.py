@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -18,21 +19,19 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
 from substructures.analysis.inputs import VaryingInputs, read_along, state_names
+from substructures.analysis.known import Known
 from substructures.analysis.prescribed import Prescribed
 from substructures.analysis.requests import ClosedRequest, LoopRequest
 from substructures.analysis.work import POWER, with_power
-from substructures.compile import compile_program
+from substructures.compile import Kernel, compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
+from substructures.expr.program import Program
 from substructures.model import Model
+from substructures.solve import CLOSED, RANK
 from substructures.states import Array
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
-CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration")
-#: singular values of the Jacobian below this part of the largest one count as zero
-RANK = 1e-8
-
-
 SINGULAR = (
     "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
     "(another start, a shorter time span), or change the lengths"
@@ -55,7 +54,7 @@ class Constrained:
         self.model, self.n = model, model.dof
         _check_fixed(model, request.fixed)
         span = request.span if isinstance(request, ClosedRequest) else (request.t, request.t)
-        needs = [*NEEDS, *(CLOSURES if model.closures else ())]
+        needs = [*NEEDS, *(CLOSED if model.closures else ())]
         self.along = read_along(model, request, span, needs)
         self.prescribed = Prescribed(model, request.prescribed, span)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
@@ -73,13 +72,13 @@ class Constrained:
             self.G[self.closed + k, a] = 1
 
     def _bind(self, inputs: list[str], folder: Path | None) -> None:
-        outputs = [*NEEDS, *(CLOSURES if self.closed else ())]
-        source = with_power(self.model, outputs, inputs)
+        outputs = [*NEEDS, *(CLOSED if self.closed else ())]
+        known = Known(self.model.program.digest, self.model)
+        source, kernel = _compiled(known, tuple(outputs), frozenset(inputs), folder)
         self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
         self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
-        kernel = compile_program(source, list(self._out), folder)
         columns = [(state_names(self.model), self._x), *self.inputs.columns]
         self._run = kernel.bind(self._out, self.along.values | {"t": self._t}, columns=columns)
         self.g = self._out["metric"][0]
@@ -185,6 +184,15 @@ class Factor:
         """x, y with g x + G^T y = a and G x = b."""
         x, _ = lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
         return x[: self.n], x[self.n :]
+
+
+@lru_cache(maxsize=32)
+def _compiled(
+    known: Known, outputs: tuple[str, ...], inputs: frozenset[str], folder: Path | None
+) -> tuple[Program, Kernel]:
+    """Outputs of a model with their POWER, once for the same model."""
+    source = with_power(known.source, outputs, inputs)
+    return source, compile_program(source, [*outputs, POWER], folder)
 
 
 def rank_of(G: Array) -> int:

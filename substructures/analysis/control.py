@@ -15,19 +15,22 @@ from typing import Annotated, Any, Literal, TypeVar
 import numpy as np
 from pydantic import Field
 
-from substructures.analysis.formulas import inputs_of, require_open
+from substructures.analysis.formulas import inputs_of
 from substructures.definition import Model as Document
 from substructures.definition import escape, read_model
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.scope import Scope
 from substructures.states import Array, numeric, read_states
 
 MAX_INTERVALS = 10_000
 #: numbers that are kept of a motion, for the way back
 MAX_NUMBERS = 50_000_000
+
+#: what takes closures
+LINEAR = "use the state space of linearisations, and simulations to try controls"
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -69,7 +72,7 @@ P = TypeVar("P", bound=Problem)
 
 def read_problem(kind: type[P], model: Model, data: Mapping[str, Any]) -> P:
     """A request of this kind, with all names checked. Raises InvalidDocument with pointers."""
-    require_open(model)
+    require_open(model.closures, LINEAR)
     problem = read_model(kind, data)
     known = inputs_of(model)
     faults = [

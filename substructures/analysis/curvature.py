@@ -29,7 +29,7 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Output, Program, array, program
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.part import MAX_NODES
 from substructures.states import read_states, symbol_values
 
@@ -47,8 +47,10 @@ def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
 
     ``riemann`` (n, n, n, n): R_abcd; ``ricci`` (n, n): R_bd; ``scalar_curvature`` (); ``inverse_metric`` (n, n):
     g^ab, by L D L^T without square roots; ``christoffel_second`` (n, n, n): Gamma^a_bc. Raises InvalidDocument for a
-    metric that is singular for all values of its symbols, TooLarge (size, limit) for more than ``max_nodes`` nodes.
+    metric that is singular for all values of its symbols and for closures (the space of a mechanism with loops is
+    curved in its own way within that of its coordinates), TooLarge (size, limit) for more than ``max_nodes`` nodes.
     """
+    require_open(model.closures, "describe the mechanism in independent coordinates")
     space = _Space(model, max_nodes)
     try:
         outputs = space.outputs()

@@ -67,7 +67,7 @@ def draw_root_locus(locus: RootLocus) -> str:
     branches = range(real.shape[1])
     plane = tuple(Line(f"branch {k + 1}", real[:, k], imaginary[:, k], dots=True) for k in branches)
     parts = tuple(Line(f"branch {k + 1}", locus.values, real[:, k]) for k in branches)
-    zero = (("", 0.0),) if len(real) and real.min() <= 0 <= real.max() else ()
+    zero = (("", 0.0),) if real.size and real.min() <= 0 <= real.max() else ()
     panels = [
         Panel("eigenvalues", "real part in 1/s", "imaginary part in 1/s", plane, zero),
         Panel("real parts over the parameter", "parameter", "1/s", parts),

@@ -1,50 +1,35 @@
-"""Equilibria Q_a(q, q' = 0) = 0 from the force formulas, by Newton's method with the exact Jacobian -K."""
+"""Equilibria from the force formulas, by Newton's method with the exact Jacobian: Q_a(q, q' = 0) = 0, and with closures
+Q_a + lambda_k G_ka = 0, phi_k(q) = 0.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import Field
-from scipy.optimize import least_squares
 
-from substructures.analysis.formulas import require_tree
-from substructures.analysis.known import program_kernel
-from substructures.analysis.linearise import Linearisation, linearise
-from substructures.analysis.perturbation import perturbation
-from substructures.analysis.request_fields import Positive, Real
-from substructures.definition import Model as Document
+from substructures.analysis.equilibria_closed import ClosedSearch
+from substructures.analysis.equilibrium_search import EquilibriaRequest, Search
+from substructures.analysis.formulas import require_moving
+from substructures.analysis.linearisation import Linearisation
+from substructures.analysis.linearise import linearise
+from substructures.analysis.linearise_closed import ClosedLinearisation
 from substructures.definition import read_model
-from substructures.errors import InvalidDocument
 from substructures.model import Model
-from substructures.states import Array, numeric, read_states, symbol_values
+from substructures.states import Array
 
 #: two equilibria closer than this are one [rad, m]
 SAME = 1e-6
 #: singular values of K below this share of the largest leave a direction undetermined
 SINGULAR = 1e-9
-#: forces left over, relative to the largest entry of K times 1 rad or 1 m
-RESIDUAL = 1e-10
-NEEDS = ("metric", "forces")
-
-
-class EquilibriaRequest(Document):
-    """Where to look: ``starts`` (N, n), and ``count`` random ones in +-pi for angles, +-``reach`` for distances."""
-
-    starts: Any = None
-    count: Annotated[int, Field(ge=0, le=10_000)] = 32
-    reach: Positive = Field(1.0, description="m")
-    seed: Annotated[int, Field(ge=0)] = 0
-    t: Real = 0.0
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """``q`` (n,): angles in (-pi, pi]. ``free``: directions (k, n) in which the forces do not decide (K singular).
+    """``q`` (n,): angles in (-pi, pi]. ``free``: directions (k, n) in which the forces do not decide (K singular); with
+    closures those that keep them.
 
     ``at``: the linearisation there with modes and stability.
     """
@@ -56,7 +41,7 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class Equilibria:
-    """All that were found, in the order of their coordinates. ``held``: coordinates on which no force
+    """All that were found, in the order of their coordinates. ``held``: coordinates on which no force and no closure
     depends, kept at their start. ``message``: advice when nothing was found.
     """
 
@@ -73,11 +58,12 @@ class Equilibria:
 def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equilibria:
     """Equilibria of a model; ``request``: see EquilibriaRequest.
 
-    Raises InvalidDocument (pointers; ``not-smooth``) and MissingValue.
+    Starts of closed loops are first moved onto the closures; an equilibrium in a singular position has a linearisation
+    that is ``failed``. Raises InvalidDocument (pointers; ``not-smooth``) and MissingValue.
     """
-    require_tree(model)
+    require_moving(model)
     read = read_model(EquilibriaRequest, request or {})
-    search = _Search(model, read)
+    search = ClosedSearch(model, read) if model.closures else Search(model, read)
     starts = search.starts()
     held = search.held(starts)
     moving = [a for a in range(model.dof) if a not in held]
@@ -89,103 +75,21 @@ def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equili
             found.append(q)
     names = tuple(model.coordinates[a] for a in held)
     ordered = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])] if found and model.dof else found
-    results = tuple(search.described(q) for q in ordered)
+    results = tuple(_described(model, read, q) for q in ordered)
     message = "" if results else search.advice(starts[0], held)
     return Equilibria(results, names, message)
 
 
-class _Search:
-    """Forces and their Jacobian at rest, compiled."""
-
-    def __init__(self, model: Model, read: EquilibriaRequest) -> None:
-        n = model.dof
-        self.model, self.read = model, read
-        states = read_states(model, {"q": np.zeros(n)}, None)
-        given = {"parameters": read.parameters, "inputs": read.inputs, "t": read.t}
-        values = {name: float(np.ravel(x)[0]) for name, x in symbol_values(model, given, states, NEEDS).items()}
-        values |= {f"{name}''": 0.0 for name in model.coordinates}
-        self.q, self.F, self.K = np.zeros((1, n)), np.zeros((1, n)), np.zeros((1, n, n))
-        outputs = {"residual": self.F, "stiffness": self.K}
-        kernel = program_kernel(perturbation(model))
-        self.run = kernel.bind(outputs, values, columns=[(list(model.coordinates), self.q)])
-        turning = [kind == "R" for kind in model.joints]
-        self.size = np.where(turning, np.pi, read.reach)
-        self.turning = np.array([t and self._is_periodic(a) for a, t in enumerate(turning)], dtype=bool)
-
-    def _is_periodic(self, a: int) -> bool:
-        """Whether a full turn changes nothing (no spring in the joint)."""
-        q = np.linspace(0.3, 0.9, self.model.dof)
-        before, turned = (self.at(q + x * np.eye(len(q))[a])[0] for x in (0, 2 * np.pi))
-        return bool(np.abs(turned - before).max() <= 1e-9 * max(1.0, float(np.abs(before).max())))
-
-    def starts(self) -> Array:
-        """Those given, zero, and random ones, (N, n)."""
-        n, rng = self.model.dof, np.random.default_rng(self.read.seed)
-        rows = [np.zeros((1, n)), rng.uniform(-1, 1, (self.read.count, n)) * self.size]
-        if self.read.starts is not None:
-            given = np.atleast_2d(numeric(self.read.starts, "/starts"))
-            if given.ndim != 2 or given.shape[1] != n:
-                message = f"shape {given.shape} found, (N, {n}) expected"
-                raise InvalidDocument.at("/starts", "wrong-length", message)
-            rows.insert(0, given)
-        return np.concatenate(rows)
-
-    def at(self, q: Array) -> tuple[Array, Array]:
-        """-Q and its Jacobian at rest."""
-        self.q[0] = q
-        self.run()
-        return self.F[0].copy(), self.K[0].copy()
-
-    def held(self, starts: Array) -> list[int]:
-        """Coordinates on which no force at rest depends."""
-        sizes = np.array([np.abs(self.at(q)[1]).max(axis=0) for q in starts[:: max(1, len(starts) // 8)]]).max(axis=0)
-        return np.flatnonzero(sizes <= 1e-13 * sizes.max(initial=0)).tolist()
-
-    def solve(self, start: Array, moving: Sequence[int]) -> Array | None:
-        """An equilibrium near a start; None when there is none in reach."""
-        q = start.copy()
-
-        def both(x: Array) -> tuple[Array, Array]:
-            q[moving] = x
-            F, K = self.at(q)
-            return F, K[:, moving]
-
-        if len(moving):
-            with np.errstate(all="ignore"):
-                q[moving] = least_squares(
-                    lambda x: both(x)[0], start[moving], lambda x: both(x)[1], xtol=1e-15, ftol=1e-15, gtol=1e-15
-                ).x
-            q[moving] += self._last_step(q, moving)
-        F, K = self.at(q)
-        if not np.abs(F).max(initial=0) <= RESIDUAL * max(1.0, float(np.abs(K).max(initial=0))):
-            return None
-        return np.where(self.turning, np.pi - np.mod(np.pi - q, 2 * np.pi), q)
-
-    def _last_step(self, q: Array, moving: Sequence[int]) -> Array:
-        """One step of Newton's method, of least size where K is singular."""
-        F, K = self.at(q)
-        if not (np.isfinite(F).all() and np.isfinite(K).all()):
-            return np.zeros(len(moving))
-        step = np.linalg.lstsq(K[:, moving], -F, rcond=1e-10)[0]
-        return np.asarray(step if np.abs(step).max(initial=0) < 1e-3 else np.zeros(len(moving)))
-
-    def distance(self, p: Array, q: Array) -> float:
-        """Largest difference of coordinates, of angles by the shorter way."""
-        d = np.abs(p - q)
-        return float(np.where(self.turning, np.minimum(d, np.abs(2 * np.pi - d)), d).max(initial=0))
-
-    def described(self, q: Array) -> Equilibrium:
-        """With its singular directions and its linearisation."""
-        _, K = self.at(q)
-        _, sizes, rows = np.linalg.svd(K)
-        free = rows[sizes <= SINGULAR * max(1.0, float(sizes.max(initial=0)))]
-        request = {"q": q, "t": self.read.t, "parameters": self.read.parameters, "inputs": self.read.inputs}
-        return Equilibrium(q, free, linearise(self.model, request))
-
-    def advice(self, q: Array, held: Sequence[int]) -> str:
-        """Why there is none."""
-        F, _ = self.at(q)
-        names = ", ".join(f"'{self.model.coordinates[a]}'" for a in held if abs(F[a]) > RESIDUAL)
-        if names:
-            return f"nothing balances the constant force on {names}: change gravity or inputs, or add a spring"
-        return "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"
+def _described(model: Model, read: EquilibriaRequest, q: Array) -> Equilibrium:
+    """With its singular directions and its linearisation."""
+    at = linearise(model, {"q": q, "t": read.t, "parameters": read.parameters, "inputs": read.inputs})
+    if isinstance(at, ClosedLinearisation):
+        q = at.q
+    if at.status == "failed" or not len(at.K):
+        return Equilibrium(q, np.zeros((0, model.dof)), at)
+    _, sizes, rows = np.linalg.svd(at.K)
+    free = rows[sizes <= SINGULAR * max(1.0, float(sizes.max(initial=0)))]
+    if isinstance(at, ClosedLinearisation):
+        free = free @ at.tangent.T
+        free /= np.linalg.norm(free, axis=1, keepdims=True)
+    return Equilibrium(q, free, at)

@@ -3,6 +3,8 @@
 Energy: H' = Q_a q'^a + V' is the zero formula. Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0,
 then p_c = g_cb q'^b. Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero
 formula, which is so exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
+Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
+g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0.
 What is zero is decided by the graph, where equal formulas are one node, and by :mod:`substructures.expr.vanish`.
 """
 
@@ -13,18 +15,18 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.formulas import Entries, ModelFormulas, require_open
-from substructures.analysis.known import Known
+from substructures.analysis.energy import Rule, closures_of, depends_on, judged_energy
+from substructures.analysis.formulas import Entries, ModelFormulas
+from substructures.analysis.known import Known, known_model
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.vanish import Vanishing
-from substructures.expr.walk import reachable, transfer
+from substructures.expr.walk import transfer
 from substructures.model import Model
 
 Kind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
-Rule = Literal["constant", "falling", "balance"]
 AXES = "xyz"
 UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
 
@@ -60,10 +62,9 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     """Everything constant that follows from symmetry, with the energy (also where it is not constant).
 
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
-    Raises InvalidDocument for closures, for a coordinate without inertia, and for unknown names (``/inputs``,
-    ``/parameters``).
+    What the reactions of closures could change, whatever they are, is not constant.
+    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
-    require_open(model)
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     inputs, zero = list(inputs), list(zero)
     faults = [
@@ -74,7 +75,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     ]
     if faults:
         raise InvalidDocument(faults)
-    return _first_integrals(Known(model.program.digest, model), frozenset(inputs), frozenset(zero))
+    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
 
 
 @lru_cache(maxsize=32)
@@ -102,20 +103,9 @@ class _Search:
 
     def energy(self, given: frozenset[str]) -> None:
         """H = T + V, unless a varying input is part of V."""
-        f = self.f
-        if depends_on([f.scalar("potential_energy")], given):
-            return
-        rule, reason = self._energy_rule()
-        self.found.append((Integral("energy", "energy", rule, "J", reason), f.energy))
-
-    def _energy_rule(self) -> tuple[Rule, str]:
-        power, rates = self.f.power, {str(v.value): v for v in self.f.rates}
-        if self.vanishes(power):
-            return "constant", "all forces have a potential that does not depend on time: Q_a q'^a + V' = 0"
-        twice = directional([power], rates)[0]
-        if self.vanishes(twice - 2 * power) and not depends_on([power], {"t"}):
-            return "falling", "forces without potential are linear in the velocities: it falls where they damp"
-        return "balance", "it changes by the power of the forces without potential"
+        judged = judged_energy(self.f, self.vanishes, given)
+        if judged is not None:
+            self.found.append((Integral("energy", "energy", judged[0], "J", judged[1]), self.f.energy))
 
     def cyclic(self) -> None:
         """p_c for every coordinate c that neither metric nor forces depend on."""
@@ -123,11 +113,14 @@ class _Search:
         gamma, forces = f.elements("christoffel"), f.vector("forces")
         # d_c g_ab = Gamma_abc + Gamma_bac
         varied = {c for (a, b, c), x in gamma.items() if not self.vanishes(x + gamma.get((b, a, c), self.zero))}
+        if f.model.closures:
+            varied |= {c for (_, c), x in f.elements("closure.jacobian").items() if not self.vanishes(x)}
         for c, name in enumerate(f.model.coordinates):
             if c not in varied and self.vanishes(forces[c]):
                 self.cyclic_names.append(name)
                 unit = "N m s" if f.model.joints[c] == "R" else "N s"
                 reason = f"the metric does not depend on '{name}' and no generalised force acts on it"
+                reason += f"; {closures_of(f.model)} do not depend on it" if f.model.closures else ""
                 self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
 
     def _note(self, integral: Integral, value: Expr) -> None:
@@ -164,7 +157,8 @@ class _Search:
             return
         word = "force along" if kind == "linear_momentum" else "moment about"
         where = "" if kind == "linear_momentum" else " through the origin"
-        reason = f"gravity, loads and the world exert no resultant {word} {label}{where}"
+        world = f"{closures_of(self.f.model)} and the world" if self.f.model.closures else "the world"
+        reason = f"gravity, loads and {world} exert no resultant {word} {label}{where}"
         self._note(Integral(f"{kind}.{label}", kind, "constant", UNITS[kind], reason), value)
 
     def _constant(self, expr: Expr) -> Expr | None:
@@ -223,21 +217,3 @@ class _Search:
             value = self.f.graph.sum(angular[i] * (pull[i] / pull[acting[0]]) for i in acting)
             if self.vanishes(self.f.rate([value])[0]):
                 self._momentum_found("angular_momentum", "force", value)
-
-
-def depends_on(exprs: Sequence[Expr], names: Iterable[str]) -> bool:
-    """Whether one of the symbols occurs."""
-    wanted = frozenset(names)
-    return any(node.op == "sym" and str(node.value) in wanted for node in reachable(exprs))
-
-
-def require_cyclic(model: Model, found: FirstIntegrals, names: Sequence[str]) -> list[int]:
-    """Indices of cyclic coordinates. Raises InvalidDocument for others, and for none."""
-    if not names:
-        raise InvalidDocument.at("/coordinates", "no-cyclic-coordinate", "the model has no cyclic coordinate")
-    for i, name in enumerate(names):
-        if name not in found.cyclic:
-            known = ", ".join(found.cyclic) or "none"
-            message = f"'{str(name)[:80]}' is not a cyclic coordinate; cyclic are: {known}"
-            raise InvalidDocument.at(f"/coordinates/{i}", "not-cyclic", message)
-    return [model.coordinates.index(name) for name in names]

@@ -11,17 +11,24 @@ from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Output, Symbol
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 
 LENGTH = {"R": "rad", "P": "m"}
+#: what takes closures
+MOTIONS = "use loop states, simulations or velocity equations with constraints of the type 'closure'"
 Entries = dict[tuple[int, ...], Expr]
 
 
-def require_tree(model: Model) -> None:
-    """Raises InvalidDocument: ``no-coordinates`` for a model in which nothing moves, and as :func:`require_open`."""
+def require_moving(model: Model) -> None:
+    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves."""
     if not model.dof:
         raise InvalidDocument.at("", "no-coordinates", "the tree has no joint: there is nothing that moves")
-    require_open(model)
+
+
+def require_tree(model: Model) -> None:
+    """Raises InvalidDocument: as :func:`require_moving`, and ``has-closures`` for a model with closed loops."""
+    require_moving(model)
+    require_open(model.closures, MOTIONS)
 
 
 def inputs_of(model: Model) -> tuple[str, ...]:
@@ -29,15 +36,9 @@ def inputs_of(model: Model) -> tuple[str, ...]:
     return tuple(s.name for s in model.program.symbols if s.kind == "input")
 
 
-def require_open(model: Model) -> None:
-    """Raises InvalidDocument (``has-closures``) for a model with closed loops: its coordinates are not independent."""
-    if model.closures:
-        names = ", ".join(f"'{rows.name}'" for rows in model.closures)
-        message = (
-            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
-            "use loops, simulations or quasi-velocities with constraints of the type 'closure', or leave them out"
-        )
-        raise InvalidDocument.at("", "has-closures", message)
+def multipliers_of(model: Model) -> tuple[str, ...]:
+    """The symbols of the multipliers of all closures, row by row."""
+    return tuple(f"lambda.{rows.name}.{row}" for rows in model.closures for row in rows.rows)
 
 
 class ModelFormulas:
@@ -96,9 +97,21 @@ class ModelFormulas:
 
     @cached_property
     def acceleration(self) -> list[Expr]:
-        """q''^a from g q'' = Q - Gamma q' q'. Raises InvalidDocument (``singular-metric``)."""
+        """q''^a from g q'' = Q - Gamma q' q' + G^T lambda. Raises InvalidDocument (``singular-metric``)."""
         forces, bias = self.vector("forces"), self.vector("bias")
-        return self.factors.solve([f - b for f, b in zip(forces, bias, strict=True)])
+        return self.factors.solve([f - b + r for f, b, r in zip(forces, bias, self.reactions, strict=True)])
+
+    @cached_property
+    def reactions(self) -> list[Expr]:
+        """G^T lambda of closures, with a symbol ``lambda.<closure>.<row>`` [N, N m] for every row; else zeros."""
+        result = [self.graph.zero] * self.n
+        names = multipliers_of(self.model)
+        for name in names:
+            unit = "N" if name.rpartition(".")[2] in ("x", "y", "z", "length") else "N m"
+            self.symbols[name] = Symbol(name, "input", unit)
+        for (k, a), x in self.elements("closure.jacobian").items() if names else ():
+            result[a] = result[a] + x * self.graph.symbol(names[k])
+        return result
 
     @cached_property
     def momenta(self) -> list[Expr]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
+from substructures.model import Model
 
 
 @dataclass(frozen=True)
@@ -17,6 +18,11 @@ class Known:
 
     digest: str
     source: Any = field(compare=False)
+
+
+def known_model(model: Model) -> Known:
+    """A model: its program, and the names of the rows of its closures."""
+    return Known(f"{model.program.digest} {model.closures}", model)
 
 
 @lru_cache(maxsize=64)

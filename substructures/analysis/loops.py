@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.constrained import RANK, SINGULAR, Constrained, Singular, rank_of
+from substructures.analysis.constrained import SINGULAR, Constrained, Singular, rank_of
 from substructures.analysis.project import CLOSED, Consistent, consistent_state
 from substructures.analysis.requests import LoopRequest
 from substructures.model import Model
+from substructures.solve import RANK
 from substructures.states import Array
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]

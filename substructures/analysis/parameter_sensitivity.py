@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.formulas import ModelFormulas
+from substructures.analysis.formulas import ModelFormulas, require_tree
 from substructures.analysis.inputs import Along, VaryingInputs, state_names
 from substructures.analysis.integrate import Settings, integrate
 from substructures.analysis.known import Known, program_kernel
@@ -75,8 +75,9 @@ def require_parameters(model: Model, names: Sequence[str]) -> None:
 
 def variational(model: Model, parameters: Sequence[str]) -> Program:
     """``acceleration`` (n,) and its ``variation`` (n,) along the symbols ``d.<name>`` of coordinates, velocities and
-    the given parameters.
+    the given parameters. Raises InvalidDocument for closures and for a metric that is always singular.
     """
+    require_tree(model)
     return _variational(Known(model.program.digest, model), tuple(parameters))
 
 

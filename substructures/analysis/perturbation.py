@@ -3,25 +3,27 @@
 About any q, q', q'', at given inputs and time:
 
     M_ab = g_ab        D_ab = 2 Gamma_abc q'^c - dQ_a/dq'^b
-    K_ab = d_b g_ac q''^c + d_b Gamma_acd q'^c q'^d - d_b Q_a        F_ai = dQ_a/du_i
+    K_ab = d_b g_ac q''^c + d_b Gamma_acd q'^c q'^d - d_b Q_a - lambda_k d_b G_ka        F_ai = dQ_a/du_i
+
+With closures phi_k (G_ka = d_a phi_k, multipliers lambda_k) M dq'' + D dq' + K dq = F du + G^T dlambda and G dq = 0.
 
 and as first order equations dx' = A dx + B du, dy = C dx + D du, x = (q, q'), for outputs y = h(q, q', u, t).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from substructures.analysis.expressions import read_expressions
-from substructures.analysis.formulas import ModelFormulas, inputs_of, require_open
-from substructures.analysis.known import Known
+from substructures.analysis.formulas import LENGTH, ModelFormulas, inputs_of
+from substructures.analysis.known import Known, known_model
 from substructures.errors import Fault, InvalidDocument
-from substructures.expr.differentiate import gradient
+from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
-from substructures.model import Model
+from substructures.model import Model, require_open
 from substructures.replayed import ID
 from substructures.sensitivity import inverse_dynamics_jacobians
 
@@ -50,12 +52,14 @@ def require_smooth(model: Model) -> None:
 
 def perturbation(model: Model) -> Program:
     """M, D, K, F as formulas: outputs ``metric``, ``damping``, ``stiffness`` (n, n), ``input`` (n, inputs_of(model)),
-    and ``residual`` (n,): g q'' + Gamma q' q' - Q, zero where q'' is that of the motion.
+    and ``residual`` (n,): g q'' + Gamma q' q' - Q - G^T lambda, zero where q'' is that of the motion. With closures of
+    m rows also ``closure.residual`` (m,), ``closure.jacobian`` (m, n): G, and along the motion its first and second
+    derivative by time, ``closure.jacobian_rate`` and ``closure.jacobian_second`` (m, n); symbols of the multipliers:
+    multipliers_of(model).
 
-    Raises InvalidDocument for closures and for forces without derivative.
+    Raises InvalidDocument for forces without derivative.
     """
-    require_open(model)
-    return _perturbation(Known(model.program.digest, model))
+    return _perturbation(known_model(model))
 
 
 @lru_cache(maxsize=32)
@@ -75,7 +79,30 @@ def _perturbation(known: Known) -> Program:
         "input": array((f.n, len(names)), lambda a, i: -by_input[a][i]),
         "residual": found[ID],
     }
+    if model.closures:
+        outputs |= _with_closures(f, outputs)
     return program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
+
+
+def _with_closures(f: ModelFormulas, found: Mapping[str, Formulas]) -> dict[str, Formulas]:
+    """The outputs that closures add or change."""
+    K, residual, n = found["stiffness"].entries, found["residual"].entries, f.n
+    second = gradient(f.reactions, f.model.coordinates)
+    G, shape = f.elements("closure.jacobian"), f.model.program.outputs["closure.jacobian"].shape
+    position, rates = [str(x.value) for x in f.q], dict(zip(f.model.coordinates, f.rates, strict=True))
+    accelerations = {f"{name}'": f.graph.symbol(f"{name}''") for name in position}
+    for a, name in enumerate(position):
+        f.symbols[f"{name}''"] = Symbol(f"{name}''", "acceleration", f"{LENGTH[f.model.joints[a]]}/s^2")
+    rate = directional(list(G.values()), rates)
+    bent = directional(rate, rates | accelerations)
+    return {
+        "stiffness": array((n, n), lambda a, b: K.get((a, b), f.graph.zero) - second[a][b]),
+        "residual": array((n,), lambda a: residual.get((a,), f.graph.zero) - f.reactions[a]),
+        "closure.residual": Formulas((shape[0],), dict(f.elements("closure.residual"))),
+        "closure.jacobian": Formulas(shape, dict(G)),
+        "closure.jacobian_rate": Formulas(shape, dict(zip(G, rate, strict=True))),
+        "closure.jacobian_second": Formulas(shape, dict(zip(G, bent, strict=True))),
+    }
 
 
 def _rows(formulas: Formulas, n: int, zero: Expr) -> list[Expr]:
@@ -90,7 +117,7 @@ def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[s
     ``outputs``: expressions in coordinates, velocities, inputs, parameters and t; ``inputs``: default all. Raises
     InvalidDocument: bad expressions (``/outputs/i``), unknown inputs, forces without derivative, singular metric.
     """
-    require_open(model)
+    require_open(model.closures, "use the formulas 'perturbation', which have multipliers, or linearisations (numbers)")
     require_smooth(model)
     chosen = inputs_of(model) if inputs is None else tuple(inputs)
     require_inputs(model, chosen)

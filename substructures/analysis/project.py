@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
-from substructures.analysis.constrained import RANK, Constrained, Factor
+from substructures.analysis.constrained import Constrained, Factor
+from substructures.solve import RANK
 from substructures.states import Array
 
 #: residuals that count as none [m, 1]

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.constrained import RANK, SINGULAR, Constrained, Singular
+from substructures.analysis.constrained import SINGULAR, Constrained, Singular
 from substructures.analysis.project import CLOSED, project
+from substructures.solve import RANK
 from substructures.states import Array
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice

@@ -34,7 +34,8 @@ class RootLocusRequest(Document):
 
 @dataclass(frozen=True)
 class RootLocus:
-    """Branches: ``eigenvalues`` (N, 2n) [1/s], ``q`` (N, n) and ``stability`` verdicts at ``values`` (N,).
+    """Branches: ``eigenvalues`` (N, 2r) [1/s] for r degrees of freedom (n of a tree without closures), ``q`` (N, n) and
+    ``stability`` verdicts at ``values`` (N,).
 
     ``status`` ``failed``: the equilibrium was lost, ``message`` says where; the arrays end before.
     """
@@ -47,7 +48,7 @@ class RootLocus:
     message: str = ""
 
     def summary(self) -> dict[str, Any]:
-        """As plain data and arrays; eigenvalues as pairs, (N, 2n, 2)."""
+        """As plain data and arrays; eigenvalues as pairs, (N, 2r, 2)."""
         pairs = np.stack([self.eigenvalues.real, self.eigenvalues.imag], axis=-1)
         return {**vars(self), "eigenvalues": pairs, "stability": list(self.stability)}
 
@@ -65,7 +66,7 @@ def root_locus(model: Model, request: Mapping[str, Any]) -> RootLocus:
     status, message = "finished", ""
     for value in read.values:
         found = _nearest(model, read, value, q)
-        if found is None:
+        if found is None or (rows and len(found[1]) != len(rows[-1][1])):
             status = "failed"
             message = f"there is no equilibrium near the last one at {read.parameter} = {value:g}: take smaller steps"
             break
@@ -75,7 +76,7 @@ def root_locus(model: Model, request: Mapping[str, Any]) -> RootLocus:
     return RootLocus(
         np.array(read.values[:count]),
         np.array([row[0] for row in rows]).reshape(count, n),
-        np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, 2 * n),
+        np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, len(rows[0][1]) if rows else 2 * n),
         tuple(row[2] for row in rows),
         status,
         message,

@@ -17,11 +17,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.analysis.first_integrals import FirstIntegrals, first_integrals, require_cyclic
+from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.formulas import Entries, Factors, ModelFormulas
+from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, Symbol, array, program
-from substructures.model import Model
+from substructures.model import Model, require_open
 
 
 @dataclass(frozen=True)
@@ -39,13 +40,26 @@ class Reduced:
 def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
     """The model without the given cyclic coordinates (default: all), inputs at 0.
 
-    Raises InvalidDocument for a coordinate that is not cyclic (see first_integrals), or for none.
+    Raises InvalidDocument for a coordinate that is not cyclic (see first_integrals), or for none, and for closures.
     """
+    require_open(model.closures, "use first integrals, and simulations")
     found: FirstIntegrals = first_integrals(model)
     names = list(found.cyclic if coordinates is None else dict.fromkeys(coordinates))
     cyclic = require_cyclic(model, found, names)
     inputs = [s.name for s in model.program.symbols if s.kind == "input"]
     return _Reduction(ModelFormulas(model, inputs), cyclic).reduced()
+
+
+def require_cyclic(model: Model, found: FirstIntegrals, names: Sequence[str]) -> list[int]:
+    """Indices of cyclic coordinates. Raises InvalidDocument for others, and for none."""
+    if not names:
+        raise InvalidDocument.at("/coordinates", "no-cyclic-coordinate", "the model has no cyclic coordinate")
+    for i, name in enumerate(names):
+        if name not in found.cyclic:
+            known = ", ".join(found.cyclic) or "none"
+            message = f"'{str(name)[:80]}' is not a cyclic coordinate; cyclic are: {known}"
+            raise InvalidDocument.at(f"/coordinates/{i}", "not-cyclic", message)
+    return [model.coordinates.index(name) for name in names]
 
 
 class _Reduction:

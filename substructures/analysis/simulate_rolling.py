@@ -17,7 +17,6 @@ from substructures.analysis.quasi_velocities import QuasiVelocities, velocity_eq
 from substructures.analysis.requests import RollingRequest
 from substructures.analysis.steppers import scipy_stepper
 from substructures.analysis.trajectory import Check, Crossing, Trajectory, crossings
-from substructures.analysis.velocity_constraints import Closed
 from substructures.compile import compile_program
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret, interpret_in_blocks
@@ -81,7 +80,6 @@ def simulate_rolling(
     InvalidDocument (also for closures of the model that are not among the constraints), MissingValue and TooLarge.
     """
     asked = RollingRequest.read(request)
-    _require_closed(model, asked)
     along = read_along(model, asked, asked.span, NEEDS)
     place = dict(zip(model.coordinates, along.q.tolist(), strict=True))
     rolling = _Rolling(velocity_equations(model, asked, place), along, asked.form, folder)
@@ -93,15 +91,6 @@ def simulate_rolling(
     else:
         motion = _moved(rolling, asked, y, progress, folder)
     return _judged(rolling, asked, motion)
-
-
-def _require_closed(model: Model, request: RollingRequest) -> None:
-    """Every closure of the model is among the constraints; else it would be open."""
-    given = {c.name for c in request.constraints if isinstance(c, Closed)}
-    for rows in model.closures:
-        if rows.name not in given:
-            message = f"the closure '{rows.name}' is not among them: add {{'name': '{rows.name}', 'type': 'closure'}}"
-            raise InvalidDocument.at("/constraints", "open-closure", message)
 
 
 def _moved(rolling: _Rolling, asked: RollingRequest, y: Array, progress: Report | None, folder: Path | None) -> Motion:

@@ -28,6 +28,7 @@ from pydantic import Field
 from substructures.analysis.formulation import Formulation
 from substructures.definition import Model as Document
 from substructures.definition import Name, Number, read_model
+from substructures.errors import InvalidDocument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.frames import axis_rotation
@@ -108,7 +109,8 @@ class VelocityRows:
 
 
 def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
-    """The rows of all constraints. Raises InvalidDocument."""
+    """The rows of all constraints. Raises InvalidDocument, also for a closure of the model that is not among them."""
+    _require_closed(f, constraints)
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
     kinematics = f.kinematics() if framed else {}
@@ -150,6 +152,15 @@ class _Frame:
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
         self.Omega = [vector("Omega", a) for a in range(f.n)]
+
+
+def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
+    """Every closure of the model is among the constraints; else it would be open."""
+    given = {c.name for c in constraints if isinstance(c, Closed)}
+    for rows in f.model.closures:
+        if rows.name not in given:
+            message = f"the closure '{rows.name}' is not among them: add {{'name': '{rows.name}', 'type': 'closure'}}"
+            raise InvalidDocument.at("/constraints", "open-closure", message)
 
 
 def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:

@@ -9,9 +9,6 @@ from closed_trees import at, closed_entry, four_bar, slider_crank
 from random_trees import Plain
 
 from substructures import InvalidDocument
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.linearise import linearise
 from substructures.analysis.simulate import simulate
 from substructures.analysis.simulate_closed import simulate_closed
 from substructures.analysis.simulate_tree import simulate_tree
@@ -78,9 +75,6 @@ def test_one_entry_for_all_models() -> None:
     for call in (
         lambda: simulate(model, blade | {"span": [0, 1]}),
         lambda: simulate_tree(model, {"q": [0, 0, 0], "span": [0, 1]}),
-        lambda: first_integrals(model),
-        lambda: linearise(model, {"q": [0, 0, 0]}),
-        lambda: equilibria(model),
     ):
         with pytest.raises(InvalidDocument, match="closure"):
             call()

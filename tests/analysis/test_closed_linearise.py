@@ -1,0 +1,153 @@
+"""Linearisation of closed loops: differences of the constrained motion, closed forms, other cuts, small vibrations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank, stewart, tree_model
+from random_trees import Plain
+
+from substructures import Model
+from substructures.analysis.linearise import linearise
+from substructures.analysis.linearise_closed import ClosedLinearisation
+from substructures.analysis.loops import analyse_loops
+
+G = 9.81
+DOWN = (0, -G, 0)
+PARALLELOGRAM = {"x.l0": 0.4, "x.l2": 0.4, "x.l1": 0.3, "x.l3": 0.3}
+STEP = 1e-4
+
+
+def closed(model: Model, request: Plain) -> ClosedLinearisation:
+    found = linearise(model, request)
+    assert isinstance(found, ClosedLinearisation)
+    assert found.status == "finished", found.message
+    return found
+
+
+def rates(model: Model, at: ClosedLinearisation, y: np.ndarray, speed: np.ndarray, inputs: Plain) -> np.ndarray:
+    """y'' at other y, y', q from the closures."""
+    q, qd = at.q.copy(), at.qd.copy()
+    index = [model.coordinates.index(name) for name in at.independent]
+    q[index], qd[index] = y, speed
+    found = analyse_loops(model, {"q": q, "qd": qd, "fixed": list(at.independent), "inputs": inputs})
+    assert not found.message
+    return found.qdd[index]
+
+
+def difference(f: Callable[[float], np.ndarray]) -> np.ndarray:
+    """The derivative at 0 by differences of fourth order."""
+    return np.asarray(8 * (f(STEP) - f(-STEP)) - (f(2 * STEP) - f(-2 * STEP))) / (12 * STEP)
+
+
+MECHANISMS: list[Callable[[], Model]] = [lambda: four_bar(DOWN), lambda: slider_crank(DOWN), bricard, governor, stewart]
+
+
+@pytest.mark.parametrize("make", MECHANISMS)
+def test_state_space_against_differences_of_the_motion(make: Callable[[], Model]) -> None:
+    """A and B in states of motion; what N, N' and N'' bring in, and the curvature of the closures."""
+    model = make()
+    rng = np.random.default_rng(4)
+    inputs = {f"tau.{name}": float(rng.uniform(-1, 1)) for name in model.coordinates}
+    q, qd = rng.uniform(-0.4, 0.4, model.dof), rng.uniform(-1, 1, model.dof)
+    q = q + np.array([2, 0, 2, 0, 2]) if make is bricard else q
+    columns = [f"tau.{model.coordinates[0]}"]
+    at = closed(model, {"q": q, "qd": qd, "inputs": inputs, "of_inputs": columns})
+    index = [model.coordinates.index(name) for name in at.independent]
+    y, v, one = at.q[index], at.qd[index], np.eye(len(index))
+    by_y = [difference(lambda h, e=e: rates(model, at, y + h * e, v, inputs)) for e in one]
+    by_v = [difference(lambda h, e=e: rates(model, at, y, v + h * e, inputs)) for e in one]
+    expected = np.array([*by_y, *by_v]).T
+    r = len(index)
+    np.testing.assert_allclose(at.A[:r], np.eye(r, 2 * r, r))
+    np.testing.assert_allclose(at.A[r:], expected, rtol=0, atol=2e-6 * (1 + np.abs(expected).max()))
+    more = difference(lambda h: rates(model, at, y, v, inputs | {columns[0]: inputs[columns[0]] + h}))
+    np.testing.assert_allclose(at.B[r:, 0], more, rtol=0, atol=1e-6 * (1 + np.abs(more).max()))
+    assert np.abs(at.residual).max() < 1e-9 * (1 + np.abs(at.multipliers).max())
+    np.testing.assert_allclose(at.tangent[index], one)
+
+
+def test_outputs_of_other_coordinates() -> None:
+    """C of a dependent coordinate is its row of N, and of its velocity its rows of N' and N."""
+    model = four_bar(DOWN)
+    outputs = {"y": "2*x.rocker", "v": "x.rocker'", "u": "x.crank + tau.x.crank"}
+    at = closed(model, {"q": [0.7, 0.2, 1.2], "qd": [3, 0, 0], "outputs": outputs, "of_inputs": ["tau.x.crank"]})
+    rocker = model.coordinates.index("x.rocker")
+    np.testing.assert_allclose(at.C[0], [2 * at.tangent[rocker, 0], 0], atol=1e-14)
+    np.testing.assert_allclose(at.C[1, 1], at.tangent[rocker, 0])
+    y = model.coordinates.index(at.independent[0])
+
+    def speed(h: float) -> np.ndarray:
+        q = at.q.copy()
+        q[y] += h
+        fixed = {"q": q, "qd": at.qd, "fixed": list(at.independent)}
+        return analyse_loops(model, fixed).consistent.qd[rocker : rocker + 1]
+
+    np.testing.assert_allclose(at.C[1, :1], difference(speed), rtol=1e-7)
+    np.testing.assert_allclose(at.Dy[:, 0], [0, 0, 1])
+
+
+def test_a_hanging_parallelogram() -> None:
+    """The coupler does not turn: w^2 = g/l ((m1 + m3)/2 + m2) / ((m1 + m3)/3 + m2)."""
+    model = four_bar(DOWN)
+    down = np.pi / 2
+    at = closed(model, {"q": [-down, down, -down], "parameters": PARALLELOGRAM})
+    cranks, coupler = 0.5 + 1, 1.4
+    exact = np.sqrt(G / 0.3 * (cranks / 2 + coupler) / (cranks / 3 + coupler))
+    assert [mode.frequency for mode in at.modes] == pytest.approx([exact], rel=1e-12)
+    np.testing.assert_allclose(at.modes[0].shape / at.modes[0].shape[0], [1, -1, 1], atol=1e-12)
+    assert at.stability is not None
+    assert at.stability.verdict == "stable"
+    assert "Dirichlet" in at.stability.reason
+
+
+def test_a_third_crank_closes_it_once_more() -> None:
+    """A redundant closure (which holds for these lengths only) adds its crank, and nothing else."""
+    rod = {"parent": "base", "mass": 1, "com": [0.15, 0, 0], "inertia": {"yy": "0.3^2/12", "zz": "0.3^2/12"}}
+    bodies: list[Plain] = [
+        rod | {"name": f"c{k}", "joint": {"type": "revolute", "coordinate": f"c{k}", "d": f"{k}/5"}} for k in range(3)
+    ]
+    joint = {"type": "revolute", "coordinate": "table", "d": 0.3}
+    bodies.append({"name": "table", "parent": "c0", "mass": 2, "com": [0.2, 0, 0], "joint": joint})
+    ports = [{"name": f"e{k}", "body": f"c{k}", "position": [0.3, 0, 0]} for k in (1, 2)]
+    ports += [{"name": f"t{k}", "body": "table", "position": [f"{k}/5", 0, 0]} for k in (1, 2)]
+    pins = [{"name": f"pin{k}", "type": "pin", "from": f"x.t{k}", "to": f"x.e{k}"} for k in (1, 2)]
+    document = {"gravity": [0, -G, 0], "instances": [{"name": "x", "substructure": "p"}], "closures": pins}
+    model = tree_model(document, {"p": {"name": "p", "bodies": bodies, "ports": ports}})
+    down = np.pi / 2
+    at = closed(model, {"q": {"x.c0": -down, "x.c1": -down, "x.c2": -down, "x.table": down}})
+    assert len(at.independent) == 1
+    assert at.modes[0].frequency == pytest.approx(np.sqrt(G / 0.3 * (3 / 2 + 2) / (3 / 3 + 2)), rel=1e-12)
+
+
+def test_a_bob_on_a_rod() -> None:
+    """w^2 = g/L comes from the curvature of the closure alone: x, z have no restoring force of their own."""
+    slides = [
+        {"name": name, "parent": parent, "joint": {"type": "prismatic", "coordinate": name}}
+        for name, parent in (("x", "base"), ("z", "x"))
+    ]
+    slides[0]["joint"] |= {"placement": {"position": [0, 0, 0]}, "axis": [1, 0, 0]}
+    slides[1] |= {"mass": 3}
+    slides[1]["joint"] |= {"placement": {"position": [0, 0, 0]}, "axis": [0, 0, 1]}
+    rod = {"name": "rod", "type": "rod", "from": "p.z", "to": "world", "length": 0.7}
+    document = {"gravity": [0, 0, -G], "instances": [{"name": "p", "substructure": "b"}], "closures": [rod]}
+    model = tree_model(document, {"b": {"name": "b", "bodies": slides}})
+    at = closed(model, {"q": [0, -0.7]})
+    assert at.modes[0].frequency == pytest.approx(np.sqrt(G / 0.7), rel=1e-12)
+    assert at.constraints == ("rod.length",)
+    np.testing.assert_allclose(np.abs(at.multipliers), [3 * G])
+    upright = closed(model, {"q": [0, 0.7]})
+    assert upright.stability is not None
+    assert upright.stability.verdict == "unstable"
+
+
+def test_a_double_pendulum_whose_tip_is_bound() -> None:
+    """By a rod across: the tip cannot move sideways, the two turn against each other; w^2 = g/l (m1 + 2 m2)/m1."""
+    rod = {"name": "rod", "type": "rod", "from": "x.bob", "to": "world", "length": 5}
+    rod["placement"] = {"position": [5, 0, -2]}
+    model = closed_entry("double-pendulum", [rod], (0, 0, -G))
+    at = closed(model, {"q": [0, 0]})
+    assert at.modes[0].frequency == pytest.approx(np.sqrt(3 * G), rel=1e-12)
+    np.testing.assert_allclose(at.modes[0].shape[1] / at.modes[0].shape[0], -2)

@@ -1,0 +1,140 @@
+"""Forward dynamics of trees with closures: the constrained accelerations in numbers, and what refuses closures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart
+from random_trees import Plain
+
+from substructures import InvalidDocument, Model, TreeSpec, catalogue, derive
+from substructures.analysis.adjoint import adjoint_equations
+from substructures.analysis.base_parameters import base_parameters
+from substructures.analysis.control import Cost
+from substructures.analysis.curvature import curvature
+from substructures.analysis.loops import analyse_loops
+from substructures.analysis.parameter_sensitivity import sensitivities, variational
+from substructures.analysis.perturbation import state_space
+from substructures.analysis.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.routh import routh
+from substructures.definition import Definition
+from substructures.derived import derived, kept
+from substructures.evaluation import evaluate
+from substructures.regressor import regressor
+
+FD = "forward_dynamics"
+DOWN = (0, -9.81, 0)
+
+
+def accelerations(model: Model, q: Any, qd: Any, **more: Any) -> Plain:
+    return evaluate(model, {"quantities": [FD], "q": q, "qd": qd, **more})
+
+
+@pytest.mark.parametrize("make", [lambda: four_bar(DOWN), lambda: slider_crank(DOWN), bricard, governor, stewart])
+def test_accelerations_are_those_of_the_loops(make: Callable[[], Model]) -> None:
+    """One by one by the factors of [g G^T; G 0], and many at a time; redundant closures included."""
+    model = make()
+    rng = np.random.default_rng(3)
+    inputs = {f"tau.{model.coordinates[0]}": 0.7}
+    states, expected = [], []
+    while len(states) < 3:
+        request = {"q": rng.uniform(-0.4, 0.4, model.dof), "qd": rng.uniform(-1, 1, model.dof), "inputs": inputs}
+        found = analyse_loops(model, request)
+        if not found.message:
+            states.append(found.consistent)
+            expected.append(found.qdd)
+    q, qd = (np.array([getattr(s, name) for s in states]) for name in ("q", "qd"))
+    answer = accelerations(model, q, qd, inputs=inputs)
+    assert answer["failures"] == []
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(answer[FD], expected, rtol=0, atol=1e-8 * scale)
+    one = accelerations(model, q[1], qd[1], inputs=inputs)[FD]
+    np.testing.assert_allclose(one, expected[1], rtol=0, atol=1e-8 * scale)
+
+
+def test_open_and_singular_states_have_no_accelerations() -> None:
+    """Open positions, open velocities, and a branching point: two links that are folded; other states keep theirs."""
+    model = four_bar(DOWN)
+    good = analyse_loops(model, {"q": [0.7, 0.2, 1.2], "qd": [1, 0, 0]}).consistent
+    rest = np.zeros(3)
+    answer = accelerations(model, np.array([good.q, good.q + 0.1, good.q]), np.array([good.qd, rest, good.qd + 0.1]))
+    assert np.isfinite(answer[FD][0]).all()
+    assert np.isnan(answer[FD][1:]).all()
+    assert [f["state"] for f in answer["failures"]] == [1, 2]
+    assert "loop states" in answer["failures"][0]["message"]
+    lengths = {"x.l0": 0.4, "x.l1": 0.1, "x.l2": 0.4, "x.l3": 0.1}
+    folded = accelerations(model, rest, rest, parameters=lengths)
+    assert np.isnan(folded[FD]).all()
+
+
+def test_one_position_for_many_velocities_and_inputs() -> None:
+    model = four_bar(DOWN)
+    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2], "qd": [1, 0, 0]}).consistent
+    speeds, torque = np.array([0.0, 1.0, 3.0]), {"tau.x.crank": [0.0, 1.0, 2.0]}
+    many = accelerations(model, state.q, speeds[:, None] * state.qd, inputs=torque)[FD]
+    for k, speed in enumerate(speeds):
+        one = accelerations(model, state.q, speed * state.qd, inputs={"tau.x.crank": torque["tau.x.crank"][k]})[FD]
+        np.testing.assert_allclose(many[k], one, rtol=1e-12)
+
+
+def test_a_redundant_closure_does_not_lock_what_is_nearly_closed() -> None:
+    """1e-8 beside a closed position of Bricard's linkage five rows are independent: nothing could move."""
+    model = bricard()
+    state = analyse_loops(model, {"q": [2, 0.1, 2, 0.1, 2]}).consistent
+    beside = state.q + 1e-8 * np.array([1, 2, -1, 0, 0])
+    answer = accelerations(model, np.array([state.q, beside]), np.zeros(5))
+    assert np.abs(answer[FD][0]).max() > 0.1
+    assert np.isnan(answer[FD][1]).all()
+
+
+def test_numbers_do_not_make_formulas() -> None:
+    """What accelerations are computed from is not kept as their formula."""
+    model = four_bar()
+    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2]}).consistent
+    accelerations(model, state.q, state.qd)
+    with pytest.raises(InvalidDocument, match="'pin'"):
+        kept(model, FD)
+
+
+def refused() -> list[tuple[str, Callable[[Model], Any]]]:
+    span: Plain = {"q": [0.7, 0.2, 1.2], "span": [0, 1]}
+    return [
+        ("evaluate it", lambda m: derived(m, FD)),
+        ("linearisations", lambda m: derived(m, f"{FD}_derivative")),
+        ("independent coordinates", curvature),
+        ("state space", lambda m: adjoint_equations(m, ["tau.x.crank"], Cost(running="tau.x.crank^2"))),
+        ("perturbation", state_space),
+        ("first integrals", routh),
+        ("simulations", lambda m: variational(m, [])),
+        ("simulations", lambda m: sensitivities(m, span, [])),
+        ("'type': 'closure'", lambda m: quasi_velocity_equations(m, {"constraints": []})),
+    ]
+
+
+@pytest.mark.parametrize(("advice", "call"), refused())
+def test_closures_are_refused_by_name_and_with_advice(advice: str, call: Callable[[Model], Any]) -> None:
+    with pytest.raises(InvalidDocument, match="'pin'") as caught:
+        call(four_bar())
+    assert advice in caught.value.faults[0].message
+    assert caught.value.faults[0].code in ("has-closures", "open-closure")
+
+
+def test_base_parameters_of_a_closed_tree_are_refused() -> None:
+    """The reactions of its closures are not known."""
+    pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
+    document = {"name": "t", "instances": [{"name": "x", "substructure": "four-bar"}], "closures": [pin]}
+    parts = {"x": derive(Definition.read(catalogue.load("four-bar")))}
+    with pytest.raises(InvalidDocument, match=r"'pin'.*regressor"):
+        base_parameters(regressor(TreeSpec.read(document), parts))
+
+
+def test_a_dead_centre_at_rest() -> None:
+    """Crank and rod in line, the crank drives: regular; the piston cannot drive there, but is not asked to."""
+    model = slider_crank(DOWN)
+    state = analyse_loops(model, {"q": at(model, crank=0.0, rod=0.0, piston=0.2), "fixed": ["x.crank"]})
+    assert not state.message
+    answer = accelerations(model, state.consistent.q, state.consistent.qd)
+    np.testing.assert_allclose(answer[FD], state.qdd, atol=1e-8)

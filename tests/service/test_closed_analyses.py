@@ -1,0 +1,169 @@
+"""Analyses of trees with closures over HTTP, as jobs, and by the command line; what is refused, with which advice."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from service.cli import main
+from service.jobs.kinds import run
+from substructures.documents import read_json, write_json
+
+from .jobs_library import MemoryLibrary
+
+G = 9.81
+DOWN = np.pi / 2
+#: a hanging parallelogram: two cranks and a table of length 1, masses 1, 1, 2
+PART: dict[str, Any] = {
+    "name": "swing",
+    "parameters": {"c": {"value": 0, "unit": "N*m*s"}},
+    "bodies": [
+        {"name": "left", "parent": "base", "mass": 1, "com": [1, 0, 0],
+         "joint": {"type": "revolute", "coordinate": "left", "damping": "c"}},
+        {"name": "right", "parent": "base", "mass": 1, "com": [1, 0, 0],
+         "joint": {"type": "revolute", "coordinate": "right", "d": 1}},
+        {"name": "table", "parent": "left", "mass": 2, "com": [0.5, 0, 0],
+         "joint": {"type": "revolute", "coordinate": "table", "d": 1}},
+    ],
+    "ports": [
+        {"name": "edge", "body": "table", "position": [1, 0, 0]},
+        {"name": "end", "body": "right", "position": [1, 0, 0]},
+    ],
+}  # fmt: skip
+TREE: dict[str, Any] = {
+    "name": "swing",
+    "gravity": [0, -G, 0],
+    "instances": [{"name": "s", "definition": PART}],
+    "closures": [{"name": "pin", "type": "pin", "from": "s.edge", "to": "s.end"}],
+}
+HANGING = [-DOWN, -DOWN, DOWN]
+
+
+@pytest.fixture
+def swing(client: TestClient) -> TestClient:
+    made = client.post("/v1/trees", json=TREE)
+    assert made.status_code == 201, made.text
+    return client
+
+
+def ask(client: TestClient, what: str, **request: Any) -> Any:
+    answer = client.post(f"/v1/trees/swing/{what}", json=request)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_equilibria_vibrations_and_root_loci(swing: TestClient) -> None:
+    """w^2 = g/l, whatever the masses at distance l."""
+    found = ask(swing, "linearisations", q=HANGING)
+    assert (found["status"], found["is_equilibrium"], len(found["A"])) == ("finished", True, 2)
+    assert found["modes"][0]["frequency"] == pytest.approx(np.sqrt(G), rel=1e-12)
+    assert len(found["modes"][0]["shape"]) == 3
+    assert found["stability"]["verdict"] == "stable"
+    assert set(found["independent"]) < {"s.left", "s.right", "s.table"}
+    assert found["constraints"] == [f"pin.{row}" for row in ("x", "y", "z", "rx", "ry")]
+    verdicts = [e["at"]["stability"]["verdict"] for e in ask(swing, "equilibria", count=12)["found"]]
+    assert {"stable", "unstable"} <= set(verdicts)
+    locus = ask(swing, "root-loci", parameter="s.c", values=[0, 4, 8], q=HANGING)
+    assert np.shape(locus["eigenvalues"]) == (3, 2, 2)
+    np.testing.assert_allclose([z[0][0] for z in locus["eigenvalues"]], [0, -0.5, -1], atol=1e-9)
+    drawn = swing.post(
+        "/v1/trees/swing/root-loci",
+        json={"parameter": "s.c", "values": [0, 4], "q": HANGING},
+        headers={"Accept": "image/svg+xml"},
+    )
+    assert drawn.status_code == 200
+
+
+def test_accelerations_of_a_closed_tree(swing: TestClient) -> None:
+    """a = g sin(angle from below) for all; open states are failures with advice."""
+    turned = [-DOWN + 0.3, -DOWN + 0.3, DOWN - 0.3]
+    answer = ask(swing, "evaluations", quantities=["forward_dynamics"], q=[turned, [0.1, 0.2, 0.3]])
+    np.testing.assert_allclose(answer["forward_dynamics"][0], -G * np.sin(0.3) * np.array([1, 1, -1]), rtol=1e-12)
+    assert answer["forward_dynamics"][1] is None
+    assert "loop states" in answer["failures"][0]["message"]
+    made = swing.post("/v1/trees/swing/kernels", json={"quantities": ["forward_dynamics"]})
+    assert made.status_code in (200, 201), made.text
+    assert "closure.jacobian" in made.json()["kernels"][0]["outputs"]
+    again = ask(swing, "evaluations", quantities=["forward_dynamics"], q=turned)
+    np.testing.assert_allclose(again["forward_dynamics"], answer["forward_dynamics"][0], rtol=1e-12)
+
+
+def test_formulas_of_a_closed_tree(swing: TestClient) -> None:
+    found = swing.get("/v1/trees/swing/perturbation").json()
+    assert found["multipliers"] == [f"lambda.pin.{row}" for row in ("x", "y", "z", "rx", "ry")]
+    assert "closure.jacobian" in found["outputs"]
+    (energy,) = swing.get("/v1/trees/swing/first_integrals").json()["integrals"]
+    assert energy["rule"] == "falling"
+    assert energy["reason"].endswith("the closures 'pin' do no work")
+
+
+REFUSED = [
+    ("forward_dynamics", {}, "evaluate it"),
+    ("forward_dynamics_derivative", {}, "linearisations"),
+    ("state_space", {}, "perturbation"),
+    ("curvature", {}, "independent coordinates"),
+    ("adjoint", {"running": "tau.s.left^2", "controls": "tau.s.left"}, "simulations"),
+    ("routhian", {}, "first integrals"),
+    ("base_parameters", {}, "regressor"),
+]
+
+
+@pytest.mark.parametrize(("quantity", "options", "advice"), REFUSED)
+def test_formulas_that_closures_would_falsify(
+    swing: TestClient, quantity: str, options: dict[str, str], advice: str
+) -> None:
+    answer = swing.get(f"/v1/trees/swing/{quantity}", params=options)
+    assert answer.status_code == 422, answer.text
+    (error,) = answer.json()["errors"]
+    assert error["code"] == "has-closures"
+    assert "'pin'" in error["message"]
+    assert advice in error["message"]
+
+
+DRIVEN: dict[str, Any] = {"controls": ["tau.s.left"], "horizon": 1, "intervals": 2, "q": HANGING}
+NUMBERS: list[tuple[str, dict[str, Any], str]] = [
+    ("sensitivities", {"q": HANGING, "span": [0, 1], "by": ["s.c"]}, "has-closures"),
+    ("curvatures", {"q": HANGING}, "has-closures"),
+    ("identifications", {"q": [HANGING], "qd": [HANGING], "qdd": [HANGING], "tau": [HANGING]}, "has-closures"),
+    ("cost-gradients", DRIVEN, "has-closures"),
+    ("optimal-controls", DRIVEN, "has-closures"),
+    ("velocity-equations", {"constraints": []}, "open-closure"),
+    ("linearisations", {"q": [HANGING, HANGING]}, "one-state"),
+    ("evaluations", {"quantities": ["forward_dynamics_derivative"], "q": HANGING, "along": {}}, "has-closures"),
+]
+
+
+@pytest.mark.parametrize(("what", "request_", "code"), NUMBERS)
+def test_numbers_that_closures_would_falsify(swing: TestClient, what: str, request_: dict[str, Any], code: str) -> None:
+    answer = swing.post(f"/v1/trees/swing/{what}", json=request_)
+    assert answer.status_code == 422, answer.text
+    assert [error["code"] for error in answer.json()["errors"]] == [code]
+
+
+def test_the_same_as_a_job() -> None:
+    library = MemoryLibrary([PART], [TREE | {"instances": [{"name": "s", "substructure": "swing"}]}])
+    items = [
+        {"tree": "swing", "analysis": "linearisations", "request": {"q": HANGING}},
+        {"tree": "swing", "analysis": "equilibria", "request": {"count": 4}},
+    ]
+    items = [read_json(write_json(item)) for item in library.items("analyse", {"items": items})]
+    first, second = (run("analyse", item, library.blobs, lambda _: None) for item in items)
+    assert first.problem is None
+    found = json.loads(first.files["result"])
+    assert found["modes"][0]["frequency"] == pytest.approx(np.sqrt(G), rel=1e-12)
+    assert json.loads(second.files["result"])["found"]
+
+
+def test_the_same_by_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "swing.json").write_text(json.dumps(TREE))
+    (tmp_path / "q.json").write_text(json.dumps({"q": HANGING}))
+    assert main(["analyse", str(tmp_path / "swing.json"), "linearisations", str(tmp_path / "q.json")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["modes"][0]["frequency"] == pytest.approx(np.sqrt(G), rel=1e-12)
+    assert main(["analyse", str(tmp_path / "swing.json"), "curvature"]) == 1
+    assert "'pin'" in capsys.readouterr().err
