@@ -13,8 +13,8 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.model import Model
 from substructures.states import Array
 
-#: of a sum, relative to its value
-ROUNDING = 1e-14
+#: of a sum, relative to its value; a state on closures is known to such a part, too
+ROUNDING = 3e-14
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
@@ -84,7 +84,8 @@ def energy_balance(t: Array, columns: Mapping[str, Array], conservative: bool, l
     reason = "T + V is constant: the forces have a potential, constraints do no work"
     if not conservative:
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
-    return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit)
+    noise = ROUNDING * float(np.abs(T + V).max(initial=0))
+    return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
 
 
 def spread(values: Array) -> Array:
