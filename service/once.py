@@ -10,23 +10,27 @@
 
 Work that takes longer than its limit (``sync_seconds``, or less by ``Prefer: wait=N``) becomes a job, as does work that
 is asked for with ``Prefer: respond-async``: the answer is 202. A thread cannot be stopped, so what was begun in time
-goes on to its end, which the limits on sizes bound; its result is dropped, and nothing is stored twice.
+goes on to its end, which the limits on sizes bound; its result is dropped, and nothing is stored twice. For this the
+endpoint is :func:`timed`: the event loop watches the thread that works, and lets another one answer in its place.
 """
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import re
 import secrets
-from collections.abc import Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from contextvars import copy_context
 from datetime import timedelta
-from functools import cached_property
+from functools import cached_property, wraps
+from threading import Lock
 from time import perf_counter
-from typing import Annotated, TypeVar
+from typing import Annotated, Any
 
 import orjson
 from fastapi import Depends, Header, Request, Response
+from fastapi.concurrency import run_in_threadpool
 
 from service import keys
 from service.answers import Answer, Stream
@@ -38,9 +42,11 @@ from service.requests import RawBody, SpooledBody, store_of
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
-S = TypeVar("S")
-T = TypeVar("T")
 ATTEMPTS = 8
+
+
+class _GivenUp(Exception):
+    """The work took too long, and another thread has answered."""
 
 
 class Once:
@@ -51,7 +57,12 @@ class Once:
         self.store, self.key, self._request, self._body = store, key, request, body
         self.principal: str = request.state.principal
         self._owner = secrets.token_hex(8)
-        self._started = perf_counter()
+        wait = self._prefers("wait=([0-9]{1,6})")
+        limit = store.settings.limits.sync_seconds
+        self._seconds = min(limit, float(wait[1])) if wait else limit
+        self._due = perf_counter() + self._seconds
+        self._watch = Lock()
+        self._instead: Callable[[], Response] | None = None  # while there is work that can be given up
 
     @cached_property
     def _fingerprint(self) -> str:
@@ -64,92 +75,111 @@ class Once:
         return found.hexdigest()
 
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
-        """Prepare without writing, then commit in one transaction.
+        """Prepare without writing, then commit in one transaction. The endpoint has to be :func:`timed`.
 
         ``deferred`` prepares the job that does the same. Raises Refused 409, 422 or, without one, 503 (took too long).
         """
-        return self.submit(lambda: self._in_time(prepare, deferred))
+        kept = self._claim() if self.key else None
+        return _replayed(kept) if kept is not None else self._do(prepare, deferred, keeps=True)
 
     def submit(self, prepare: Callable[[], Commit]) -> Response:
         """As :meth:`run`, without a limit of time."""
         kept = self._claim() if self.key else None
-        if kept is not None:
-            return _replayed(kept)
+        return _replayed(kept) if kept is not None else self._finish(prepare, keeps=True)
+
+    def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
+        """Work that stores nothing: the same request under the same key computes the same answer again.
+
+        The endpoint has to be :func:`timed`; the time limit of a stream is that of its beginning.
+        """
+        known = self._claim() if self.key else None
+        if known is not None and known.body is not None:  # it became a job
+            return _replayed(known)
+        return self._do(work, deferred, keeps=known is None)
+
+    async def within_time(self, endpoint: Callable[[], Response]) -> Response:
+        """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
+        future = self.store.threads.submit(copy_context().run, endpoint)
+        answer = asyncio.wrap_future(future)
+        await asyncio.wait({answer}, timeout=max(0, self._due - perf_counter()))
+        if answer.done():
+            return answer.result()
+        if future.cancel():  # all threads have other work: too late for this one
+            return await run_in_threadpool(endpoint)
+        instead = self._give_up()
+        if instead is None:  # the work is done or not begun, and the rest is short
+            return await answer
+        answer.add_done_callback(lambda abandoned: abandoned.exception())
+        return await run_in_threadpool(instead)
+
+    def _do(
+        self, work: Callable[[], Commit | Answer | Stream], deferred: Callable[[], Commit] | None, keeps: bool
+    ) -> Response:
+        def late() -> Commit:
+            if deferred is not None:
+                return deferred()
+            detail = f"this takes longer than {self._seconds:g} s, the limit of a request; nothing was stored"
+            raise Refused(503, "took-too-long", detail, limit=self._seconds)
+
+        def watched() -> Commit | Answer | Stream:
+            if perf_counter() >= self._due or (deferred is not None and self._prefers("respond-async")):
+                return late()
+            with self._watch:
+                self._instead = lambda: self._finish(late, keeps)
+            try:
+                return work()
+            finally:
+                if self._give_up() is None:
+                    raise _GivenUp
+
+        return self._finish(watched, keeps)
+
+    def _give_up(self) -> Callable[[], Response] | None:
+        """End the work in progress, or drop what it will give: what is to be done in its place; None without any."""
+        with self._watch:
+            instead, self._instead = self._instead, None
+        return instead
+
+    def _finish(self, prepare: Callable[[], Commit | Answer | Stream], keeps: bool) -> Response:
+        """Commit what was prepared, and keep the answer under the key in the same transaction."""
         try:
-            return self._act(prepare).response()
+            for _ in range(ATTEMPTS):
+                found = prepare()
+                try:
+                    return self._stored(found, keeps).response()
+                except StaleError:
+                    continue
+            detail = "others keep changing this resource; try again"
+            raise Refused(409, "conflict", detail, headers={"Retry-After": "1"})
+        except _GivenUp:  # somebody else has answered
+            raise
         except BaseException:
             self._release()
             raise
 
-    def _act(self, prepare: Callable[[], Commit]) -> Answer:
-        for _ in range(ATTEMPTS):
-            commit = prepare()
-            try:
+    def _stored(self, found: Commit | Answer | Stream, keeps: bool) -> Answer | Stream:
+        if isinstance(found, Answer | Stream):
+            if keeps and self.key:
                 with self.store.database.write() as connection:
-                    answer = commit(connection)
-                    self._keep(connection, answer, answer.body)
-                return self._told(answer)
-            except StaleError:
-                continue
-        raise Refused(409, "conflict", "others keep changing this resource; try again", headers={"Retry-After": "1"})
-
-    def _in_time(self, work: Callable[[], S], deferred: Callable[[], T] | None) -> S | T:
-        """What the work gives, or what ``deferred`` gives where the work has no time (left)."""
-        seconds = self.store.settings.limits.sync_seconds
-        if deferred is not None:
-            if self._prefers("respond-async"):
-                return deferred()
-            wait = self._prefers("wait=([0-9]{1,6})")
-            seconds = min(seconds, float(wait[1])) if wait else seconds
-        future = self.store.threads.submit(copy_context().run, work)
-        try:
-            return future.result(self._started + seconds - perf_counter())
-        except TimeoutError:
-            future.cancel()
-        if deferred is not None:
-            return deferred()
-        detail = f"this takes longer than {seconds:g} s, the limit of a request; nothing was stored"
-        raise Refused(503, "took-too-long", detail, limit=seconds)
+                    self._keep(connection, found, None)
+            return found
+        with self.store.database.write() as connection:
+            answer = found(connection)
+            if keeps:
+                self._keep(connection, answer, answer.body)
+        if answer.status == 202:  # a job does not wait until somebody looks for one
+            self.store.wake.set()
+        return answer
 
     def _prefers(self, preference: str) -> re.Match[str] | None:
         """The preference (RFC 7240) if it is asked for."""
         given = ",".join(self._request.headers.getlist("prefer")).split(",")
         return next(filter(None, (re.fullmatch(preference, each.strip().lower()) for each in given)), None)
 
-    def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
-        """Work that stores nothing: the same request under the same key computes the same answer again.
-
-        The time limit of a stream is that of its beginning.
-        """
-        known = self._claim() if self.key else None
-        if known is not None and known.body is not None:  # it became a job
-            return _replayed(known)
-        try:
-            found = self._in_time(work, deferred)
-            if isinstance(found, Answer | Stream):
-                if known is None and self.key:
-                    with self.store.database.write() as connection:
-                        self._keep(connection, found, None)
-                return found.response()
-            with self.store.database.write() as connection:
-                answer = found(connection)
-                if known is None:
-                    self._keep(connection, answer, answer.body)
-        except BaseException:
-            self._release()
-            raise
-        return self._told(answer).response()
-
     def require(self, scope: str) -> None:
         """Raise Refused 403 unless whoever asks has this scope too."""
         with self.store.database.read() as connection:
             keys.authorise(connection, self._request.headers.get("authorization"), scope)
-
-    def _told(self, answer: Answer) -> Answer:
-        """The answer; a job does not wait until somebody looks for one."""
-        if answer.status == 202:
-            self.store.wake.set()
-        return answer
 
     def _claim(self) -> idempotency.Entry | None:
         limits = self.store.settings.limits
@@ -201,3 +231,13 @@ async def once_spooled(request: Request, body: SpooledBody, idempotency_key: Ide
 
 OnceOf = Annotated[Once, Depends(once)]
 OnceSpooled = Annotated[Once, Depends(once_spooled)]
+
+
+def timed(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response]]:
+    """An endpoint whose work, done by its parameter ``once``, is given up when it takes too long."""
+
+    @wraps(endpoint)
+    async def watched(*, once: Once, **arguments: Any) -> Response:
+        return await once.within_time(lambda: endpoint(once=once, **arguments))
+
+    return watched

@@ -106,6 +106,7 @@ def _server(store: Store) -> uvicorn.Server:
             log_config=None,
             access_log=False,  # service.middleware writes a line with the request id
             server_header=False,
+            loop="asyncio",  # for large answers quicker than uvloop
             lifespan="off",
             ws="none",
             timeout_graceful_shutdown=15,

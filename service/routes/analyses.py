@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, Request, Response
 
@@ -10,7 +10,7 @@ from service.analyses.numbers import ANALYSES, Analysis
 from service.analyses.results import JSON, MEDIA_TYPES
 from service.negotiation import MEDIA_TYPES as PRINTED
 from service.negotiation import choose_media_type
-from service.once import OnceOf
+from service.once import OnceOf, timed
 from service.operations.analyses import analyse, velocity_equations
 from service.requests import JsonBody, StoreOf, needs
 from service.routes.bodies import binary, body_of, printed
@@ -25,7 +25,8 @@ READ = [needs("read")]
 FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
 
 
-def _endpoint(name: str, analysis: Analysis) -> Callable[..., Response]:
+def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
+    @timed
     def run(ref: str, request: Request, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
@@ -59,6 +60,7 @@ for _name, _analysis in ANALYSES.items():
     openapi_extra=body_of("VelocityConstraints"),
     responses={**printed(PRINTED), **ACCEPTED},
 )
+@timed
 def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, style: StyleOf) -> Response:
     """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
 

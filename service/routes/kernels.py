@@ -7,7 +7,7 @@ from time import perf_counter
 from fastapi import APIRouter, Response
 
 from service.answers import Answer, json_answer
-from service.once import OnceOf
+from service.once import OnceOf, timed
 from service.operations import trees
 from service.operations.sources import sources_of
 from service.requests import JsonBody, StoreOf, needs
@@ -27,6 +27,7 @@ router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
     dependencies=[needs("read")],
     openapi_extra=body_of("KernelsRequest"),
 )
+@timed
 def compile_kernels(ref: str, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Compile a tree for evaluations of these quantities together. 201 when something was compiled, else 200.
 

@@ -11,7 +11,7 @@ from service.answers import JSON, Answer, Stream, etag
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrow import MEDIA_TYPE as ARROW
 from service.negotiation import MEDIA_TYPES
-from service.once import Commit, OnceSpooled
+from service.once import Commit, OnceSpooled, timed
 from service.operations import analyses, models, trees, uploads
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
@@ -31,6 +31,7 @@ RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}, **ACCEPTED}
 
 
 @router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
+@timed
 def evaluate(ref: str, request: Request, body: SpooledBody, store: StoreOf, once: OnceSpooled) -> Response:
     """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
 

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag, json_answer
 from service.database import Connection
-from service.once import OnceOf
+from service.once import OnceOf, timed
 from service.operations import catalogue
 from service.paging import limited, link_header, next_link
 from service.problems import unprocessable
@@ -34,6 +34,7 @@ def names_of(connection: Connection, version: Version) -> list[str]:
 @router.post(
     "", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION, responses=ACCEPTED
 )
+@timed
 def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     definition = Definition.read(body)
@@ -105,4 +106,4 @@ def yank(ref: str, body: OptionalJsonBody, once: OnceOf) -> Response:
         version = catalogue.yank(connection, ref, wanted.reason)
         return json_answer(dump(version_view(version, names_of(connection, version))))
 
-    return once.run(lambda: commit)
+    return once.submit(lambda: commit)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 
 from service.answers import Answer, json_answer
 from service.database import Connection
-from service.once import Commit, Once, OnceOf
+from service.once import Commit, Once, OnceOf, timed
 from service.operations import trees
 from service.operations.job_results import BASE, IS_EXACT
 from service.paging import limited, link_header, next_link, read_token, write_token
@@ -60,6 +60,7 @@ def changed(once: Once, change: Callable[[], trees.Change]) -> Response:
     openapi_extra=body_of("TreeSpec"),
     responses=ACCEPTED,
 )
+@timed
 def create(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     return once.run(revision(lambda: trees.prepare(store, body)), deferred(once, "assemble", body))
@@ -105,6 +106,7 @@ def is_pinned(ref: str) -> bool:
     openapi_extra=body_of("Instance"),
     responses=ACCEPTED,
 )
+@timed
 def add_coupling(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
     """Couple one more instance onto the tree: a new revision."""
     return changed(once, lambda: trees.coupling(store, ref, body, if_match))
@@ -113,6 +115,7 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, if_matc
 @router.delete(
     "/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE, responses=ACCEPTED
 )
+@timed
 def remove_coupling(ref: str, instance: str, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
     return changed(once, lambda: trees.removal(store, ref, instance, if_match))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from threading import Event
 from typing import Any
 
 import pytest
@@ -9,8 +10,10 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.keys import create
+from service.operations import trees
 from service.settings import Settings
-from service.store import Store
+from service.store import THREADS, Store
+from substructures import InvalidDocument
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
 from .fake_engine import FakeEngine, finished, running
@@ -26,6 +29,12 @@ def deferred(client: TestClient, path: str, body: Any, headers: dict[str, str], 
     job = finished(client, answer.headers["location"].rpartition("/")[2], seconds)
     assert job["progress"]["total"] == 1
     return client.get(job["result"]).json()["items"][0]
+
+
+def set_limit(store: Store, seconds: float) -> None:
+    """Let requests compute so long."""
+    limits = store.settings.limits.model_copy(update={"sync_seconds": seconds})
+    store.settings = store.settings.model_copy(update={"limits": limits})
 
 
 @pytest.mark.parametrize("headers", [ASYNC, {"Prefer": "wait=0"}, {"Prefer": "wait=10, Respond-Async"}])
@@ -46,8 +55,7 @@ def test_everything_that_computes(filled: TestClient, store: Store, headers: dic
 
 
 def test_too_long_requests_become_jobs(filled: TestClient, store: Store, rows: Any) -> None:
-    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
-    store.settings = store.settings.model_copy(update={"limits": limits})
+    set_limit(store, 1e-6)
     before = rows()
     with running(store, FakeEngine(is_open=False)) as engine:
         first = filled.post("/v1/trees/cell/couplings", json=HAND, headers={"Idempotency-Key": "1"})
@@ -61,6 +69,44 @@ def test_too_long_requests_become_jobs(filled: TestClient, store: Store, rows: A
         assert numbers[1].content == numbers[0].content
     assert rows()["trees"] == before["trees"] + 1
     assert rows()["jobs"] == 2
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_work_that_is_given_up_acts_once(
+    filled: TestClient, store: Store, rows: Any, monkeypatch: pytest.MonkeyPatch, fails: bool
+) -> None:
+    """The thread goes on after the answer, and neither stores its result nor gives the key up."""
+    set_limit(store, 0.2)
+    before, prepare, answered, ended = rows(), trees.prepare, Event(), Event()
+
+    def slow(*arguments: Any) -> Any:
+        answered.wait(10)
+        ended.set()
+        if fails:
+            raise InvalidDocument.at("", "late", "too late to be told")
+        return prepare(*arguments)
+
+    monkeypatch.setattr(trees, "prepare", slow)
+    tree = {"name": "other", "instances": [{"name": "a", "substructure": "slider"}]}
+    with running(store, FakeEngine()):
+        first = filled.post("/v1/trees", json=tree, headers={"Idempotency-Key": "1"})
+        answered.set()
+        assert (first.status_code, ended.wait(10)) == (202, True)
+        again = filled.post("/v1/trees", json=tree, headers={"Idempotency-Key": "1"})
+        assert (again.status_code, again.content) == (202, first.content)
+        finished(filled, first.json()["id"])
+    assert (rows()["trees"], rows()["jobs"]) == (before["trees"] + 1, before["jobs"] + 1)
+
+
+def test_requests_that_no_thread_is_free_for(filled: TestClient, store: Store) -> None:
+    set_limit(store, 0.2)
+    gate = Event()
+    others = [store.threads.submit(gate.wait, 10) for _ in range(THREADS)]
+    assert filled.post("/v1/trees/cell/evaluations", json=EVALUATION).status_code == 202
+    assert filled.post("/v1/trees/cell@1/kernels", json={"quantities": ["metric"]}).status_code == 503
+    gate.set()
+    assert all(other.result() for other in others)
+    assert filled.post("/v1/trees/cell/evaluations", json=EVALUATION).status_code == 200
 
 
 def test_faults_have_the_pointers_of_the_request(filled: TestClient, rows: Any) -> None:
