@@ -21,6 +21,7 @@ import numpy as np
 
 from benchmarks.report import keep, options
 from benchmarks.transfer import exchange
+from service.arrays import read_npz, view_npz, write_npz
 from service.client import Client
 from service.kernels import Kernels
 from substructures import Definition, TreeSpec, catalogue, couple, derive
@@ -115,15 +116,12 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         return engine.compiled(program, names)[0].evaluate(values, threads=1)
 
     def npz_in_process() -> None:
-        """The work of a request without HTTP: npz read, states evaluated, npz written, npz read."""
-        sent, answer = io.BytesIO(), io.BytesIO()
-        np.savez(sent, q=q)
-        sent.seek(0)
-        found = evaluate(model, {"quantities": quantities, "q": np.load(sent)["q"]}, engine=one_thread)
-        np.savez(answer, **{name: found[name] for name in quantities})
-        answer.seek(0)
-        read = np.load(answer)
-        _ = [read[name] for name in quantities]
+        """The work of a request without HTTP: npz written and read, states evaluated, npz written and read."""
+        sent = b"".join(write_npz({"q": q}).pieces)
+        given = {"quantities": quantities, **read_npz(io.BytesIO(sent), len(sent))}
+        found = evaluate(model, given, engine=one_thread)
+        answer = b"".join(write_npz({name: found[name] for name in quantities}).pieces)
+        view_npz(np.frombuffer(answer, np.uint8))
 
     ways: dict[str, Callable[[], Any]] = {
         "in process, one thread": lambda: evaluate(model, request, engine=one_thread),
@@ -157,7 +155,7 @@ def main() -> None:
         client.request("POST", "/v1/trees/cell0@1/evaluations", state)
         sleep(2)  # until the kernel has been compiled
         figures["http_one_state_ms"] = milliseconds(
-            lambda: client.request("POST", "/v1/trees/cell0@1/evaluations", state), 200
+            lambda: client.request("POST", "/v1/trees/cell0@1/evaluations", state), 1000
         )
         print(f"POST evaluations, one state of a 6 dof arm, M and Q: {figures['http_one_state_ms']:.1f} ms")
         batch(client, figures)
