@@ -77,6 +77,10 @@ class Kernels:
             for names in ASKED:
                 self._ready(part.program, names, 1)
 
+    def has(self, program: Program, names: Sequence[str]) -> bool:
+        """Whether the kernel for these outputs is in memory."""
+        return self._kernels.get((program.digest, tuple(names))) is not None
+
     def warm(self, parts: Iterable[Part]) -> bool:
         """Whether all that coupling asks of parts is compiled."""
         return all(self._kernels.get((part.program.digest, names)) for part in parts for names in ASKED)

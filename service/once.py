@@ -11,7 +11,8 @@
 Work that takes longer than its limit (``sync_seconds``, or less by ``Prefer: wait=N``) becomes a job, as does work that
 is asked for with ``Prefer: respond-async``: the answer is 202. A thread cannot be stopped, so what was begun in time
 goes on to its end, which the limits on sizes bound; its result is dropped, and nothing is stored twice. For this the
-endpoint is :func:`timed`: the event loop watches the thread that works, and lets another one answer in its place.
+endpoint is ``timed`` (:mod:`service.acting`): the event loop watches the thread that works, and lets another one answer
+in its place.
 """
 
 from __future__ import annotations
@@ -20,16 +21,15 @@ import asyncio
 import hashlib
 import re
 import secrets
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Callable, Iterable
 from contextvars import copy_context
 from datetime import timedelta
-from functools import cached_property, wraps
+from functools import cached_property
 from threading import Lock
 from time import perf_counter
-from typing import Annotated, Any
 
 import orjson
-from fastapi import Depends, Header, Request, Response
+from fastapi import Request, Response
 from fastapi.concurrency import run_in_threadpool
 
 from service import keys
@@ -38,7 +38,6 @@ from service.database import Connection
 from service.operations.trees import StaleError
 from service.problems import Refused
 from service.queries import idempotency
-from service.requests import RawBody, SpooledBody, store_of
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
@@ -74,8 +73,13 @@ class Once:
             found.update(piece)
         return found.hexdigest()
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether the request asks for nothing of all this: neither for an answer that is kept nor for a job."""
+        return not self.key and "prefer" not in self._request.headers
+
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
-        """Prepare without writing, then commit in one transaction. The endpoint has to be :func:`timed`.
+        """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
 
         ``deferred`` prepares the job that does the same. Raises Refused 409, 422 or, without one, 503 (took too long).
         """
@@ -90,7 +94,7 @@ class Once:
     def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
         """Work that stores nothing: the same request under the same key computes the same answer again.
 
-        The endpoint has to be :func:`timed`; the time limit of a stream is that of its beginning.
+        The endpoint has to be ``timed``; the time limit of a stream is that of its beginning.
         """
         known = self._claim() if self.key else None
         if known is not None and known.body is not None:  # it became a job
@@ -128,9 +132,12 @@ class Once:
                 self._instead = lambda: self._finish(late, keeps)
             try:
                 return work()
+            except TimeoutError:  # it has looked at the clock itself
+                pass
             finally:
                 if self._give_up() is None:
                     raise _GivenUp
+            return late()
 
         return self._finish(watched, keeps)
 
@@ -214,30 +221,3 @@ class Once:
 def _replayed(entry: idempotency.Entry) -> Response:
     headers = {**orjson.loads(entry.headers or "{}"), "Idempotency-Replayed": "true"}
     return Response(entry.body, entry.status or 200, headers)
-
-
-IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
-
-
-async def once(request: Request, raw: RawBody, idempotency_key: IdempotencyKey = None) -> Once:
-    """The Once of a request."""
-    return Once(request, lambda: (raw,), store_of(request), idempotency_key)
-
-
-async def once_spooled(request: Request, body: SpooledBody, idempotency_key: IdempotencyKey = None) -> Once:
-    """The Once of a request with a body of any size."""
-    return Once(request, body.pieces, store_of(request), idempotency_key)
-
-
-OnceOf = Annotated[Once, Depends(once)]
-OnceSpooled = Annotated[Once, Depends(once_spooled)]
-
-
-def timed(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response]]:
-    """An endpoint whose work, done by its parameter ``once``, is given up when it takes too long."""
-
-    @wraps(endpoint)
-    async def watched(*, once: Once, **arguments: Any) -> Response:
-        return await once.within_time(lambda: endpoint(once=once, **arguments))
-
-    return watched

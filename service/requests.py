@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable
-from contextlib import closing
+from contextlib import asynccontextmanager, closing
 from typing import Annotated, Any
 
 from fastapi import Depends, Request, Response
@@ -61,6 +61,7 @@ async def raw_body(request: Request) -> bytes:
     return b"".join([chunk async for chunk in _limited(request, limit)])
 
 
+@asynccontextmanager
 async def spooled_body(request: Request) -> AsyncIterator[Spool]:
     """The request body of any kind; the limit is that of its media type. 413 as soon as the body exceeds it."""
     limits = store_of(request).settings.limits
@@ -90,7 +91,6 @@ def _too_long(limit: int) -> Refused:
 
 
 RawBody = Annotated[bytes, Depends(raw_body)]
-SpooledBody = Annotated[Spool, Depends(spooled_body)]
 
 
 def media_type(request: Request) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event
+from typing import Any
 
 from service.cache import Cache
 from service.database import Connection, Database
@@ -38,6 +39,7 @@ class Store:
         self._derived: Cache[Program] = Cache(settings.cache_nodes // 4, len)
         self.regressors: Cache[RegressorModel] = Cache(settings.cache_nodes // 8, lambda found: len(found.program))
         self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 8, NumericTree.weight)
+        self.at_hand: Cache[Any] = Cache(settings.cache_nodes // 8, lambda found: found.weight())  # of its operation
         self.pictures: Cache[str] = Cache(PICTURES, len)
         self.kernels = Kernels(settings.kernel_folder)
         self.authorisations = Authorisations(settings.key_seconds)

@@ -6,11 +6,11 @@ from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, Request, Response
 
+from service.acting import OnceOf, timed
 from service.analyses.numbers import ANALYSES, Analysis
 from service.analyses.results import JSON, MEDIA_TYPES
 from service.negotiation import MEDIA_TYPES as PRINTED
 from service.negotiation import choose_media_type
-from service.once import OnceOf, timed
 from service.operations.analyses import analyse, velocity_equations
 from service.requests import JsonBody, StoreOf, needs
 from service.routes.bodies import binary, body_of, printed

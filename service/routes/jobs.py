@@ -6,11 +6,11 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.acting import OnceOf
 from service.answers import Answer, json_answer
 from service.database import Connection
 from service.job_schemas import CancelRequest, ItemPage, ItemState, JobPage, JobState, JobView
 from service.job_views import BINARY, item_view, job_view, media_type
-from service.once import OnceOf
 from service.operations import jobs
 from service.paging import limited, link_header, next_link, read_token, write_token
 from service.queries import jobs as rows

@@ -6,8 +6,8 @@ from time import perf_counter
 
 from fastapi import APIRouter, Response
 
+from service.acting import OnceOf, timed
 from service.answers import Answer, json_answer
-from service.once import OnceOf, timed
 from service.operations import trees
 from service.operations.sources import sources_of
 from service.requests import JsonBody, StoreOf, needs

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.acting import OnceOf, timed
 from service.answers import Answer, etag, json_answer
 from service.database import Connection
-from service.once import OnceOf, timed
 from service.operations import catalogue
 from service.paging import limited, link_header, next_link
 from service.problems import unprocessable

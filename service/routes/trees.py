@@ -7,9 +7,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
+from service.acting import OnceOf, timed
 from service.answers import Answer, json_answer
 from service.database import Connection
-from service.once import Commit, Once, OnceOf, timed
+from service.once import Commit, Once
 from service.operations import trees
 from service.operations.job_results import BASE, IS_EXACT
 from service.paging import limited, link_header, next_link, read_token, write_token

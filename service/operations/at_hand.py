@@ -1,0 +1,68 @@
+"""Evaluations that are at hand: one state of a pinned tree, by kernels in memory, on the event loop itself.
+
+They take less time than a change of threads. Everything else, also what is asked for the first time, goes the long way,
+which leaves behind here what the next request of the same kind needs. Pinned trees never change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from service.answers import JSON, Answer, Stream
+from service.operations.exchange import Evaluation
+from service.spool import Spool
+from service.store import Store
+from substructures.documents import read_json
+from substructures.evaluation import Sources, cost, steps
+from substructures.expr.program import Program
+from substructures.states import longest
+
+BODY = 4096  # bytes of the request
+OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds
+
+
+@dataclass(frozen=True, slots=True)
+class AtHand:
+    """An evaluation with the programs it takes by source, and their outputs."""
+
+    evaluation: Evaluation
+    programs: Mapping[str, tuple[Program, list[str]]]
+
+    def is_ready(self, store: Store) -> bool:
+        """Whether all kernels are in memory."""
+        return all(store.kernels.has(program, names) for program, names in self.programs.values())
+
+    def weight(self) -> int:
+        """Operations."""
+        return sum(len(program) for program, _ in self.programs.values())
+
+
+def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
+    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`Evaluation.answer`."""
+    if body.tell() > BODY:
+        return None
+    request = read_json(body.reader().read())
+    found: AtHand | None = store.at_hand.get(_key(ref, request))
+    if found is None or longest(request) > 1 or not found.is_ready(store):
+        return None
+    return found.evaluation.answer([request], JSON)
+
+
+def remember(store: Store, ref: str, request: Any, evaluation: Evaluation) -> None:
+    """Keep what answers the same quantities of a pinned tree for another state, if that is short work."""
+    sources, names = evaluation.sources, request["quantities"]
+    operations, numbers = cost(sources, names)
+    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures:
+        return
+    programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
+    at_hand = Sources(sources.model, lambda _, source: programs[source][0])  # nothing is derived anew
+    found = AtHand(replace(evaluation, sources=at_hand), programs)
+    if found.is_ready(store):
+        store.at_hand.put(_key(ref, request), found)
+
+
+def _key(ref: str, request: Any) -> tuple[str, ...]:
+    names = request.get("quantities") if isinstance(request, Mapping) else None
+    return (ref, *map(str, names)) if isinstance(names, list) else (ref,)

@@ -1,0 +1,99 @@
+"""One state of a pinned tree by kernels in memory: answered without a change of threads, and the same."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.operations import at_hand
+from service.store import Store
+
+QUANTITIES = ["metric", "forces", "forward_dynamics"]
+STATE: dict[str, Any] = {"quantities": QUANTITIES, "q": [0.1], "qd": [0.2]}
+URL = "/v1/trees/cell@1/evaluations"
+
+
+@pytest.fixture
+def warm(filled: TestClient) -> TestClient:
+    """The tree ``cell`` with kernels."""
+    assert filled.post("/v1/trees/cell@1/kernels", json={"quantities": QUANTITIES}).status_code == 201
+    return filled
+
+
+@pytest.fixture
+def threads(store: Store, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """The works that threads were given."""
+    given: list[object] = []
+    submit = store.threads.submit
+
+    def spied(*arguments: Any) -> Any:
+        given.append(arguments)
+        return submit(*arguments)
+
+    monkeypatch.setattr(store.threads, "submit", spied)
+    return given
+
+
+def test_the_second_request_needs_no_thread(warm: TestClient, threads: list[object]) -> None:
+    first = warm.post(URL, json=STATE)
+    assert (first.status_code, len(threads)) == (200, 1)
+    second = warm.post(URL, json=STATE)
+    assert (second.status_code, second.content, second.headers["content-type"]) == (
+        200,
+        first.content,
+        first.headers["content-type"],
+    )
+    other = warm.post(URL, json={**STATE, "q": {"arm.q": 0.7}, "parameters": {"arm.m": 3}, "inputs": {"tau.arm.q": 1}})
+    assert (other.status_code, len(threads)) == (200, 1)
+    assert other.json()["forces"] != first.json()["forces"]
+
+
+@pytest.mark.parametrize(
+    ("url", "body", "headers"),
+    [
+        ("/v1/trees/cell/evaluations", {}, {}),
+        (URL, {}, {"Idempotency-Key": "1"}),
+        (URL, {}, {"Prefer": "wait=5"}),
+        (URL, {}, {"Accept": "application/x-npz"}),
+        (URL, {"q": [[0.1], [0.2]], "qd": [[0], [0]]}, {}),
+        (URL, {"quantities": ["metric"]}, {}),
+        (URL, {"t": [0] * at_hand.BODY}, {}),
+    ],
+)
+def test_all_others_do(
+    warm: TestClient, threads: list[object], url: str, body: dict[str, Any], headers: dict[str, str]
+) -> None:
+    warm.post(URL, json=STATE)
+    answer = warm.post(url, json=STATE | body, headers=headers)
+    assert (answer.status_code, len(threads)) == (200, 2), answer.text
+
+
+@pytest.mark.parametrize(
+    "fault", [{"q": [0.1, 0.2]}, {"qdd": ["x"]}, {"unknown": 1}, {"parameters": {"no": 1}}, {"q": 1}]
+)
+def test_faults_are_the_same(warm: TestClient, threads: list[object], fault: dict[str, Any]) -> None:
+    slow = warm.post(URL, json=STATE | fault)
+    assert slow.status_code == 422
+    warm.post(URL, json=STATE)
+    quick = warm.post(URL, json=STATE | fault)
+    assert (quick.status_code, quick.json()["errors"]) == (422, slow.json()["errors"])
+    assert len(threads) == 2
+    assert warm.post(URL, content=b"{", headers={"Content-Type": "application/json"}).status_code == 422
+
+
+def test_long_work_is_never_at_hand(warm: TestClient, threads: list[object], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(at_hand, "NUMBERS", 2)
+    for _ in range(2):
+        assert warm.post(URL, json=STATE).status_code == 200
+    assert len(threads) == 2
+
+
+def test_kernels_that_were_dropped_from_memory(
+    warm: TestClient, store: Store, threads: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = warm.post(URL, json=STATE)
+    monkeypatch.setattr(store.kernels, "has", lambda *_: False)
+    assert warm.post(URL, json=STATE).content == first.content
+    assert len(threads) == 2
