@@ -88,15 +88,21 @@ def overhead(figures: dict[str, float], count: int) -> None:
 
 
 def two_workers(figures: dict[str, float], count: int, rounds: int) -> None:
-    """Items of 6 + 6 degrees of freedom."""
-    ratios = []
-    for k in range(rounds):
-        items = [tree(k * count + i, "puma560", "ur5") for i in range(count)]
-        first = [tree(-1 - i, "puma560", "ur5") for i in range(8)]
-        with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
-            ratios.append(warmed(one, 1, items, first) / warmed(two, 2, items, first))
-    figures["jobs_two_workers"] = median(ratios)
-    print(f"two workers: {figures['jobs_two_workers']:.2f} times one ({count} couplings of 6 + 6 dof)")
+    """Items of 6 + 6 degrees of freedom; beside it two processes that couple them and share nothing but the machine."""
+    ratios, apart = [], []
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        for k in range(rounds):
+            items = [tree(k * count + i, "puma560", "ur5") for i in range(count)]
+            first = [tree(-1 - i, "puma560", "ur5") for i in range(8)]
+            with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
+                ratios.append(warmed(one, 1, items, first) / warmed(two, 2, items, first))
+            half = items[: count // 2]
+            list(pool.map(directly, (first, first)))  # imports
+            alone = pool.submit(directly, half).result()
+            apart.append(2 * alone / max(pool.map(directly, (half, half))))
+    figures["jobs_two_workers"], figures["two_processes"] = median(ratios), median(apart)
+    print(f"two workers: {figures['jobs_two_workers']:.2f} times one ({count} couplings of 6 + 6 dof); ", end="")
+    print(f"two processes that share nothing: {figures['two_processes']:.2f}")
 
 
 def while_queued(figures: dict[str, float], count: int, reads: int) -> None:

@@ -139,7 +139,8 @@ class MachineKernel(Kernel):
         if (name, packed) not in self._layouts:
             made = (layout.packed if packed else layout.dense)(self.outputs[name], self._place, self.width)
             words = [word for table in (made.groups, made.singles) for word in (address(table), len(table))]
-            self._layouts[name, packed] = made, tuple(words)
+            # the first one of several threads' stays: others may be using its tables
+            self._layouts.setdefault((name, packed), (made, tuple(words)))
         where, tables = self._layouts[name, packed]
         if where.sparse and not request.clean:
             array.fill(0)
