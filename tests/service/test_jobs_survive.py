@@ -25,7 +25,7 @@ SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
 #: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
 WORKER_LIFE = 3.5
 PARTS = ("puma560", "parallel-gripper", "cart-pendulum", "simple-pendulum")
-pytestmark = pytest.mark.deep
+pytestmark = [pytest.mark.deep, pytest.mark.xdist_group("siege")]
 
 
 def tree(i: int) -> dict[str, Any]:
