@@ -2,15 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from datetime import timedelta
 from typing import Any
 
+import pytest
+
+from service.app import open_store
 from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
 from service.jobs.engine import Outcome
 from service.operations.job_rounds import Ended, Played, Round, play
 from service.queries import jobs as queries
 from service.queries.jobs import NewItem
+from service.settings import Settings
 from service.store import Store
+
+from .databases import fresh
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def opened(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
+    with (
+        fresh(request.param, tmp_path_factory.mktemp("queue")) as address,
+        open_store(Settings(database=address, catalogue=False)) as store,
+    ):
+        yield store
+
+
+@pytest.fixture
+def store(opened: Store) -> Iterator[Store]:
+    """A store without jobs."""
+    yield opened
+    clear(opened)
 
 
 def clear(store: Store) -> None:

@@ -2,38 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 import sqlalchemy as sa
 
-from service.app import open_store
 from service.job_tables import job_items
 from service.jobs.engine import Outcome
 from service.operations.job_rounds import Ended
 from service.queries import queue
 from service.queries.attempts import Attempt
-from service.settings import Settings
 from service.store import Store
 
-from .databases import fresh
-from .queue_rounds import DONE, LEASE, OVER, add, clear, job_of, round_of, states
+from .queue_rounds import DONE, LEASE, OVER, add, job_of, opened, round_of, states, store
 
-
-@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
-def opened(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
-    with (
-        fresh(request.param, tmp_path_factory.mktemp("queue")) as address,
-        open_store(Settings(database=address, catalogue=False)) as store,
-    ):
-        yield store
-
-
-@pytest.fixture
-def store(opened: Store) -> Iterator[Store]:
-    """A store without jobs."""
-    yield opened
-    clear(opened)
+__all__ = ["opened", "store"]  # fixtures
 
 
 def test_late_attempts_change_nothing(store: Store) -> None:

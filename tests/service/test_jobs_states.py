@@ -2,42 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from datetime import timedelta
 
 import orjson
 import pytest
 import sqlalchemy as sa
 
-from service.app import open_store
 from service.database import Connection
 from service.job_tables import ITEM_STATES, JOB_STATES, jobs, result_files, results
 from service.operations.job_rounds import Ended
 from service.queries import jobs as queries
 from service.queries.common import now
 from service.queries.job_events import events_after
-from service.settings import Settings
 from service.store import Store
 from service.tables import metadata
 
-from .databases import fresh
-from .queue_rounds import DONE, OVER, add, clear, job_of, round_of, states
+from .queue_rounds import DONE, OVER, add, job_of, opened, round_of, states, store
 
-
-@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
-def opened(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
-    with (
-        fresh(request.param, tmp_path_factory.mktemp("queue")) as address,
-        open_store(Settings(database=address, catalogue=False)) as store,
-    ):
-        yield store
-
-
-@pytest.fixture
-def store(opened: Store) -> Iterator[Store]:
-    """A store without jobs."""
-    yield opened
-    clear(opened)
+__all__ = ["opened", "store"]  # fixtures
 
 
 CHANGES = {
