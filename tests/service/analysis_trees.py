@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import pytest
 from fastapi.testclient import TestClient
 
+from service.app import open_store
+from service.settings import Settings
 from service.store import Store
 from substructures import catalogue
 from substructures.documents import write_json
@@ -90,3 +95,15 @@ def rest(client: TestClient) -> list[float]:
     """The stable equilibrium of the clock."""
     found = ask(client, "clock/equilibria", count=8)["found"]
     return next(e["q"] for e in found if e["at"]["stability"]["verdict"] == "stable")
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
+    folder: Path = tmp_path_factory.mktemp("analyses")
+    with open_store(Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False)) as store:
+        yield store
+
+
+@pytest.fixture(scope="module")
+def client(store: Store) -> TestClient:
+    return client_with_trees(store)

@@ -3,30 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.app import open_store
-from service.settings import Settings
-from service.store import Store
+from .analysis_trees import TREES, G, ask, client, rest, store
 
-from .analysis_trees import TREES, G, ask, client_with_trees, rest
-
-
-@pytest.fixture(scope="module")
-def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
-    folder: Path = tmp_path_factory.mktemp("analyses")
-    with open_store(Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False)) as store:
-        yield store
-
-
-@pytest.fixture(scope="module")
-def client(store: Store) -> TestClient:
-    return client_with_trees(store)
+__all__ = ["client", "store"]  # fixtures
 
 
 def test_a_pendulum_swings_with_its_period(client: TestClient) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -20,21 +19,11 @@ from service.settings import Limits, Settings
 from service.store import Store
 from substructures.expr.program import Program
 
-from .analysis_trees import TREES, ask, client_with_trees, submit
+from .analysis_trees import TREES, ask, client, store, submit
 from .conftest import make_client
 from .fake_engine import FakeEngine, finished, running
 
-
-@pytest.fixture(scope="module")
-def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
-    folder: Path = tmp_path_factory.mktemp("analyses")
-    with open_store(Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False)) as store:
-        yield store
-
-
-@pytest.fixture(scope="module")
-def client(store: Store) -> TestClient:
-    return client_with_trees(store)
+__all__ = ["client", "store"]  # fixtures
 
 
 @pytest.mark.parametrize("media", ["application/x-npz", "text/csv", "image/svg+xml", arrow.MEDIA_TYPE])
