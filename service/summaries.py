@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from service.packed import pack
 from substructures.documents import read_json, write_json
 from substructures.model import Model
 from substructures.part import Part
@@ -21,7 +22,7 @@ def tree_summary(spec: TreeSpec, model: Model) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class PartContent:
-    """What is stored of a part.
+    """What is stored of a part: its packed program with so many nodes, and more.
 
     ``row``: columns of the table; ``formulas``: of every addressable formula position, quantity, body, coordinate,
     shape, symmetry, operations, output and index.
@@ -80,7 +81,7 @@ def part_content(part: Part) -> PartContent:
         for k, f in enumerate(part.formulas())
     ]
     tags = tuple(dict.fromkeys(definition.tags))
-    return PartContent(part.program.to_bytes(), len(part.program), tags, row, formulas)
+    return PartContent(pack(part.program), len(part.program), tags, row, formulas)
 
 
 def _plain(text: str) -> str:

@@ -33,7 +33,8 @@ from service.store import Store
 from substructures.documents import read_json
 
 POLL = 0.5  # seconds between looks at the queue when nothing wakes us
-GATHER = 0.05  # seconds for which ends are gathered while there is work to go on with
+GATHER = 0.5  # seconds for which ends are gathered while there is work to go on with
+SOON = 0.05  # the same for the last ends of a job
 AHEAD = 200  # items claimed ahead at most
 NEWS = 0.05  # seconds to wait for news of what runs
 BLOBS = 64 * 2**20  # bytes of definitions and programs kept at hand
@@ -124,7 +125,12 @@ class Supervisor:
         self._store.wake.clear()
         if self._is_due("poll", POLL) or is_woken or (free > 0 and (self._ended or free > before)):
             return True
-        return bool(self._ended) and monotonic() - self._played > GATHER
+        return bool(self._ended) and monotonic() - self._played > (SOON if self._is_last_of_job() else GATHER)
+
+    def _is_last_of_job(self) -> bool:
+        """Whether of some job all that is known here has ended, so that somebody may be waiting for it."""
+        going = {attempt.job for attempt, _ in self._running.values()} | {attempt.job for attempt in self._backlog}
+        return any(each.attempt.job not in going for each in self._ended.values())
 
     def _feed(self, engine: Engine) -> None:
         while self._backlog and engine.free > 0:

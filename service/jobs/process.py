@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import signal
 import subprocess
@@ -44,7 +45,7 @@ class Process:
     """A runner. Nothing here blocks: descriptors are to be watched by the owner."""
 
     def __init__(self) -> None:
-        self.reports, inherited = os.pipe()
+        self.reports, inherited = _pipe()
         command = [sys.executable, "-P", "-m", "service.jobs.runner", str(inherited), str(os.getpid())]
         try:
             self._child = subprocess.Popen(
@@ -213,6 +214,15 @@ class Process:
         for stream in (self._input, self._output):
             stream.close()
         os.close(self.reports)
+
+
+def _pipe() -> tuple[int, int]:
+    """A pipe with room for the report of most items, so that nobody waits for us to read it."""
+    ends = os.pipe()
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):  # the user has many pipes
+            fcntl.fcntl(ends[0], fcntl.F_SETPIPE_SZ, CHUNK)
+    return ends
 
 
 def _problem(work: Work, code: str, limit: str) -> Report:

@@ -4,7 +4,8 @@
 
     u32 length of the head | head: JSON with "contents": [[name, size], ...] | the contents, one after the other
 
-Lengths are big endian. Items and summaries travel as contents in canonical JSON, because their numbers are exact.
+Both sides have to speak the same protocol, whose number is in every head. Lengths are big endian. Items and summaries
+travel as contents in canonical JSON, because their numbers are exact.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 
 _LENGTH = struct.Struct(">I")
+PROTOCOL = 2  # 1: programs were not packed
 MAX_HEAD = 2**24
 MAX_CONTENTS = 2**31
 ITEM, SUMMARY, PROBLEM, FILE = "item", "summary", "problem", "file:"
@@ -40,7 +42,7 @@ class Frame:
     def to_bytes(self) -> bytes:
         """The frame as it is sent."""
         listed = [[name, len(data)] for name, data in self.contents.items()]
-        head = orjson.dumps({**self.head, "contents": listed})
+        head = orjson.dumps({**self.head, "protocol": PROTOCOL, "contents": listed})
         return b"".join((_LENGTH.pack(len(head)), head, *self.contents.values()))
 
 
@@ -80,9 +82,12 @@ class Reader:
 def _head(data: bytes) -> tuple[dict[str, Any], dict[str, int]]:
     try:
         head = orjson.loads(data)
+        protocol = head.pop("protocol", 1)
         sizes = {str(name): int(size) for name, size in head.pop("contents")}
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise WireError(f"a head that cannot be read: {error}") from None
+    if protocol != PROTOCOL:
+        raise WireError(f"protocol {protocol} instead of {PROTOCOL}: the service and its workers differ in version")
     if min(sizes.values(), default=0) < 0 or sum(sizes.values()) > MAX_CONTENTS:
         raise WireError("contents of impossible size")
     return head, sizes

@@ -14,7 +14,6 @@ from service.queries.attempts import Attempt
 from service.summaries import PartContent
 from service.views import tree_path, version_path
 from substructures.documents import read_json, write_json
-from substructures.tree import TreeSpec
 
 #: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned
 BASE, IS_EXACT = "base", "is_exact"
@@ -39,10 +38,12 @@ def _result(connection: Connection, attempt: Attempt, outcome: Outcome) -> resul
 
 
 def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
-    spec, files = TreeSpec.read(read_json(outcome.files["spec"])), outcome.files
-    inline = [PartContent.of_files(files, f"{i.name}.") for i in spec.instances if i.definition is not None]
-    figures, parts = (outcome.summary["nodes"], outcome.summary["dof"]), outcome.summary["parts"]
-    coupled = trees.Coupled(spec, files["program"], *figures, files["summary"], parts, inline)
+    files, told = outcome.files, outcome.summary
+    inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
+    figures = told["program"], told["nodes"], told["dof"]
+    coupled = trees.Coupled(
+        told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
+    )
     tree, _ = trees.store(connection, coupled, item.get(BASE), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 

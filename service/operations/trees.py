@@ -10,9 +10,11 @@ from typing import Any
 from service.answers import etag
 from service.database import Connection
 from service.operations import catalogue
+from service.packed import pack
 from service.problems import Refused, not_found
 from service.queries import catalogue as versions
 from service.queries import content, trees
+from service.queries.common import now
 from service.references import Reference, parse_reference
 from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
@@ -40,13 +42,16 @@ class Revision:
 
 @dataclass(frozen=True, slots=True)
 class Coupled:
-    """What is stored of a coupled tree: canonical program, its operations, degrees of freedom, the summary as JSON.
+    """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
+    freedom, the summary as JSON.
 
     ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
     """
 
-    spec: TreeSpec
+    name: str
+    spec: bytes
     program: bytes
+    program_digest: str
     nodes: int
     dof: int
     summary: bytes
@@ -175,8 +180,9 @@ def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool
     spec, model = revision.spec, revision.model
     inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
     digests = {name: part.definition.digest for name, part in revision.parts.items()}
-    program = model.program.to_bytes()
-    coupled = Coupled(spec, program, len(model.program), model.dof, tree_summary(spec, model), digests, inline)
+    program, summary = model.program, tree_summary(spec, model)
+    figures = program.digest, len(program), model.dof
+    coupled = Coupled(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
     return store(connection, coupled, revision.base.revision if revision.base else None, revision.is_exact)
 
 
@@ -187,34 +193,21 @@ def store(
 
     Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned.
     """
-    spec = coupled.spec
-    latest = trees.lock_name(connection, spec.name)
+    name, digest = coupled.name, "sha256:" + hashlib.sha256(coupled.spec).hexdigest()
+    latest = trees.lock_name(connection, name)
     if base is None and latest:
-        current = trees.resolve(connection, Reference(spec.name))
-        if current is not None and current.digest == spec.digest:
+        current = trees.resolve(connection, Reference(name))
+        if current is not None and current.digest == digest:
             return current, False
     if base is not None and not is_exact and latest != base:
-        raise StaleError(f"'{spec.name}' was changed meanwhile")
-    _write(connection, coupled, latest + 1, base)
-    return find(connection, f"{spec.name}@{latest + 1}"), True
-
-
-def _write(connection: Connection, coupled: Coupled, number: int, base: int | None) -> None:
+        raise StaleError(f"'{name}' was changed meanwhile")
     for part in coupled.inline:
         catalogue.store_part(connection, part)
-    spec, digest = coupled.spec, "sha256:" + hashlib.sha256(coupled.program).hexdigest()
-    content.put_program(connection, digest, coupled.program, coupled.nodes)
-    row = {
-        "name": spec.name,
-        "revision": number,
-        "digest": spec.digest,
-        "spec": spec.canonical().decode(),
-        "program": digest,
-        "dof": coupled.dof,
-        "summary": coupled.summary.decode(),
-        "based_on": base,
-    }
-    trees.add_revision(connection, row, coupled.parts)
+    content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
+    texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
+    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base)
+    trees.add_revision(connection, tree, coupled.parts)
+    return tree, True
 
 
 def find(connection: Connection, text: str) -> trees.Tree:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from typing import Any
 
 from sqlalchemy import Connection, Table
@@ -22,7 +23,7 @@ def insert_missing(connection: Connection, table: Table, rows: Sequence[Mapping[
     """Insert the rows whose key is not there yet; return how many were new."""
     if not rows:
         return 0
-    statement = _INSERT[connection.dialect.name](table).on_conflict_do_nothing()
+    statement = _insert(connection.dialect.name, table)
     counted = {"preserve_rowcount": True}  # otherwise PostgreSQL's driver does not say
     return sum(connection.execute(statement, row, execution_options=counted).rowcount for row in rows)
 
@@ -30,7 +31,13 @@ def insert_missing(connection: Connection, table: Table, rows: Sequence[Mapping[
 def put_all(connection: Connection, table: Table, rows: Sequence[Mapping[str, Any]]) -> None:
     """Insert the rows whose key is not there yet, many at a time."""
     if rows:
-        connection.execute(_INSERT[connection.dialect.name](table).on_conflict_do_nothing(), list(rows))
+        connection.execute(_insert(connection.dialect.name, table), list(rows))
+
+
+@cache
+def _insert(dialect: str, table: Table) -> Any:
+    """Built once: to build a statement takes longer than to execute it."""
+    return _INSERT[dialect](table).on_conflict_do_nothing()
 
 
 def is_outage(error: Exception) -> bool:

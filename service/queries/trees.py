@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
 
-from service.queries.common import insert_missing, now
+from service.queries.common import insert_missing
 from service.references import Reference
 from service.tables import tree_names, tree_parts, trees
 
@@ -31,19 +31,17 @@ class Tree:
 def lock_name(connection: Connection, name: str) -> int:
     """The latest revision number of a name, 0 when there is none; locks it until the transaction ends."""
     insert_missing(connection, tree_names, [{"name": name, "latest": 0}])
-    query = select(tree_names.c.latest).where(tree_names.c.name == name).with_for_update()
-    return connection.execute(query).scalar_one()
+    return connection.execute(_LOCKED, {"name": name}).scalar_one()
 
 
-def add_revision(connection: Connection, row: Mapping[str, Any], parts: Mapping[str, str]) -> None:
+def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
     """Store a new latest revision and which part every instance is; the name is locked."""
-    connection.execute(insert(trees).values(**row, created=now()))
-    latest = update(tree_names).where(tree_names.c.name == row["name"]).values(latest=row["revision"])
-    connection.execute(latest)
-    name = {"name": row["name"], "revision": row["revision"]}
-    values = [{**name, "instance": instance, "part": digest} for instance, digest in parts.items()]
+    connection.execute(_NEW, asdict(tree))
+    connection.execute(_NEW_LATEST, {"of_name": tree.name, "number": tree.revision})
+    key = {"name": tree.name, "revision": tree.revision}
+    values = [{**key, "instance": instance, "part": digest} for instance, digest in parts.items()]
     if values:
-        connection.execute(insert(tree_parts), values)
+        connection.execute(_NEW_PART, values)
 
 
 def resolve(connection: Connection, ref: Reference) -> Tree | None:
@@ -75,8 +73,11 @@ def _is_latest() -> Any:
     return and_(tree_names.c.name == trees.c.name, tree_names.c.latest == trees.c.revision)
 
 
-# Built once: every request resolves a reference, and to build a statement takes longer than to execute it.
+# Built once: to build a statement takes longer than to execute it.
 _NAMED = _all().where(trees.c.name == bindparam("name"))
 _BY_DIGEST = _NAMED.where(trees.c.digest == bindparam("digest")).order_by(trees.c.revision).limit(1)
 _BY_NUMBER = _NAMED.where(trees.c.revision == bindparam("number"))
 _LATEST = _NAMED.join(tree_names, _is_latest())
+_LOCKED = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name")).with_for_update()
+_NEW, _NEW_PART = insert(trees), insert(tree_parts)
+_NEW_LATEST = update(tree_names).where(tree_names.c.name == bindparam("of_name")).values(latest=bindparam("number"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from service.jobs.kinds import KINDS, expand, run
+from service.packed import unpack
 from service.settings import Limits
 from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
@@ -29,13 +30,14 @@ def test_assemble_gives_what_coupling_gives(library: MemoryLibrary) -> None:
     spec = TreeSpec.read(read_json(outcome.files["spec"]))
     model = couple(spec, dict.fromkeys(("arm", "hand"), library.parts["pendulum"]))
     assert outcome.problem is None
-    assert outcome.files["program"] == model.program.to_bytes()
+    program = unpack(outcome.files["program"])
+    assert program == model.program.to_bytes()
     assert outcome.summary["program"] == model.program.digest
     assert outcome.summary["digest"] == spec.digest
     digest = library.parts["pendulum"].definition.digest
     assert {i.substructure for i in spec.instances} == {f"pendulum@{digest}"}
     assert outcome.summary["parts"] == {"arm": digest, "hand": digest}
-    stored = Model.load(read_json(outcome.files["summary"]), outcome.files["program"])
+    stored = Model.load(read_json(outcome.files["summary"]), program)
     assert stored.coordinates == model.coordinates
 
 
@@ -45,7 +47,7 @@ def test_assemble_brings_inline_definitions_along(library: MemoryLibrary) -> Non
     part = derive(TreeSpec.read(read_json(outcome.files["spec"])).instances[1].definition or pytest.fail("inline"))
     content = PartContent.of_files(outcome.files, "x.")
     assert content.row["definition"].encode() == part.definition.canonical()
-    assert content.program == part.program.to_bytes()
+    assert unpack(content.program) == part.program.to_bytes()
     assert outcome.summary["parts"]["x"] == part.definition.digest
 
 

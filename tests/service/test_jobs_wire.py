@@ -42,7 +42,7 @@ def test_blobs_are_sent_once() -> None:
         b"\xff\xff\xff\xff",
         b"\x00\x00\x00\x02[]",
         b"\x00\x00\x00\x02{}",
-        b'\x00\x00\x00\x18{"contents": [["a", -1]]}',
+        b'\x00\x00\x00\x28{"protocol": 2, "contents": [["a", -1]]}',
         b"\x00\x00\x00\x03nul",
     ],
 )
@@ -51,3 +51,9 @@ def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
         list(Reader().feed(data + b" " * 100))
     with pytest.raises(WireError):
         read_report(Frame({"id": "x"}))
+
+
+def test_the_other_version_of_a_cluster_is_named() -> None:
+    data = work_frame(Work("a", "verify", {}, {}, BUDGET)).to_bytes().replace(b'"protocol":2', b'"protocol":9')
+    with pytest.raises(WireError, match="protocol 9 instead of 2: the service and its workers differ in version"):
+        list(Reader().feed(data))

@@ -9,6 +9,7 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library, StoredVersion
+from service.packed import pack
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
 from substructures.definition import Definition
@@ -87,15 +88,14 @@ def _pin(instance: Instance, version: StoredVersion | None) -> Instance:
 
 
 def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
-    """Files ``program``, ``spec``, ``summary``; of every inline definition ``<instance>.program``, ``.content``.
-
-    Raises InvalidDocument, TooLarge.
+    """Files ``program`` (packed), ``spec``, ``summary``; of every inline definition ``<instance>.program``,
+    ``.content``. Raises InvalidDocument, TooLarge.
     """
     spec, parts = tree_parts(item, blobs)
     progress(0.1)
     model = couple(spec, parts, item["nodes"])
     progress(0.9)
-    files = {"program": model.program.to_bytes(), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
+    files = {"program": pack(model.program), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
     for instance in spec.instances:
         if instance.definition is not None:
             content = part_content(parts[instance.name]).files()
