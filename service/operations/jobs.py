@@ -121,9 +121,8 @@ def _new_item(kind: str, item: Mapping[str, Any], blobs: Sequence[str]) -> NewIt
     return NewItem(key, content.decode(), write_json(list(blobs)).decode())
 
 
-def submit(connection: Connection, submission: Submission, principal: str, limits: Limits) -> Job:
-    """Queue a job. Raises Refused 503 when the queue is full."""
-    new = len(submission.items)
+def require_room(connection: Connection, new: int, principal: str, limits: Limits) -> None:
+    """Raise Refused 503 when so many more items do not fit into the queue."""
     for whose, waiting, limit in (
         ("the queue", jobs.waiting(connection), limits.job_queue),
         ("your part of the queue", jobs.waiting(connection, principal), limits.job_queue_per_key),
@@ -131,6 +130,11 @@ def submit(connection: Connection, submission: Submission, principal: str, limit
         if waiting + new > limit:
             detail = f"{whose} is full: {waiting:,} items wait, the limit is {limit:,}; nothing was queued"
             raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
+
+
+def submit(connection: Connection, submission: Submission, principal: str, limits: Limits) -> Job:
+    """Queue a job. Raises Refused 503 when the queue is full."""
+    require_room(connection, len(submission.items), principal, limits)
     identifier = jobs.add_job(connection, submission.kind, principal, submission.items)
     uploads.refer(connection, identifier, submission.uploads)
     return find(connection, identifier)

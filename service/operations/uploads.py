@@ -39,17 +39,19 @@ class _Chunk:
     single: bool
 
 
-def prepare(store: Store, tree: Tree, sources: Sources, requests: Iterable[Request], form: str) -> jobs.Submission:
+def prepare(
+    store: Store, tree: Tree, sources: Sources, requests: Iterable[Request], form: str, principal: str
+) -> jobs.Submission:
     """Store the states of requests (one, or one for each record batch) and resolve the items that evaluate them.
 
     ``form``: npz or arrow, the format of the results. Raises InvalidDocument with the place of the array among all
-    states, MissingValue, TooLarge.
+    states, MissingValue, TooLarge, and Refused 503 as soon as there are more items than the queue has room for.
     """
     limits, written = store.settings.limits, dict[str, bytes]()
     items: list[dict[str, Any]] = []
     digests: list[str] = []
     common = {"tree": f"{tree.name}@{tree.revision}", "format": form, "nodes": limits.job_nodes}
-    for chunk in _chunks(sources, requests, limits):
+    for chunk in _chunks(sources, requests, limits):  # the first is stored at once, which shows whether there is room
         item = {**common, "request": chunk.constants}
         if not chunk.single:
             item["range"] = [chunk.start, chunk.stop]
@@ -59,14 +61,15 @@ def prepare(store: Store, tree: Tree, sources: Sources, requests: Iterable[Reque
             item["states"] = digests[-1]
             written[digests[-1]] = content
         items.append(item)
-        if sum(map(len, written.values())) > TOGETHER:
-            _write(store, written)
-    _write(store, written)
+        if len(items) == 1 or sum(map(len, written.values())) > TOGETHER:
+            _write(store, written, len(items), principal)
+    _write(store, written, len(items), principal)
     return jobs.prepare_items(store, "evaluate", items, digests)
 
 
-def _write(store: Store, contents: dict[str, bytes]) -> None:
+def _write(store: Store, contents: dict[str, bytes], items: int, principal: str) -> None:
     with store.database.write() as connection:
+        jobs.require_room(connection, items, principal, store.settings.limits)
         put_uploads(connection, contents)
     contents.clear()
 

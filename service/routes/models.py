@@ -80,7 +80,8 @@ def _evaluate(ref: str, sent: str, wanted: str, once: OnceSpooled) -> Response:
         if sent == JSON:
             (given,) = requests
             return deferred(once, "evaluate", {"tree": ref, "request": given, "format": form}, "/request")()
-        return committed(store, uploads.prepare(store, tree, evaluation.sources, requests, form), once.principal)
+        submission = uploads.prepare(store, tree, evaluation.sources, requests, form, once.principal)
+        return committed(store, submission, once.principal)
 
     return once.compute(work, later)
 

@@ -197,6 +197,16 @@ def test_limits(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
         assert count(store, jobs) == [0]
 
 
+def test_a_full_queue_is_noticed_before_states_are_stored(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    limits = Limits(job_states=10, job_queue=1)
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
+    assert upload(make_client(store), npz(quantities=NAMES, q=Q[:5])).status_code == 202
+    answer = upload(make_client(store), whole())
+    assert (answer.status_code, answer.json()["code"]) == (503, "queue-full")
+    assert answer.headers["Retry-After"]
+    assert count(store, uploads, jobs) == [1, 1]
+
+
 def test_arrays_that_take_too_long_become_jobs(
     client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
