@@ -27,6 +27,7 @@ from substructures.tree import TreeSpec
 
 THREADS = 16
 PICTURES = 16 * 2**20  # characters
+BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
 
 
 class Store:
@@ -41,6 +42,7 @@ class Store:
         self.numeric_trees: Cache[NumericTree] = Cache(settings.cache_nodes // 8, NumericTree.weight)
         self.at_hand: Cache[Any] = Cache(settings.cache_nodes // 8, lambda found: found.weight())  # of its operation
         self.pictures: Cache[str] = Cache(PICTURES, len)
+        self._blobs: Cache[bytes] = Cache(BLOBS, len)
         self.kernels = Kernels(settings.kernel_folder)
         self.authorisations = Authorisations(settings.key_seconds)
         self.threads = ThreadPoolExecutor(THREADS, thread_name_prefix="request")  # requests that may be given up
@@ -62,6 +64,17 @@ class Store:
             part = Part.load(definition, stored.program, read_json(stored.certificate))
             self._parts.put(digest, part)
         return part
+
+    def blob(self, digest: str) -> bytes:
+        """The definition, the program or the uploaded states with this digest. Raises LookupError."""
+        blob = self._blobs.get(digest)
+        if blob is None:
+            with self.database.read() as connection:
+                blob = content.get_blob(connection, digest)
+            if blob is None:
+                raise LookupError(f"{digest} is not in the store")
+            self._blobs.put(digest, blob)
+        return blob
 
     def remember_part(self, part: Part) -> None:
         """Keep a part that was just derived."""

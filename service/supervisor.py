@@ -15,29 +15,24 @@ from __future__ import annotations
 import logging
 import secrets
 import threading
-from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
-from statistics import median
 from time import monotonic
 
-from service.cache import Cache
+from service.backlog import GATHER, Backlog
 from service.jobs.engine import Budget, Engine, Outcome, Report, Work
-from service.operations.job_rounds import Ended, Round, play, put_back_all
+from service.operations.job_rounds import Ended, Round, lock_owned, play, put_back_all
 from service.operations.retention import sweep
-from service.queries import content, jobs, queue
+from service.queries import jobs, queue
 from service.queries.attempts import Attempt
 from service.refusals import Refused, problem
 from service.store import Store
 from substructures.documents import read_json
 
 POLL = 0.5  # seconds between looks at the queue when nothing wakes us
-GATHER = 0.5  # seconds for which ends are gathered while there is work to go on with
-SOON = 0.05  # the same for the last ends of a job
-AHEAD = 200  # items claimed ahead at most
+SOON = 0.05  # seconds for which the last ends of a job are gathered
 NEWS = 0.05  # seconds to wait for news of what runs
-BLOBS = 64 * 2**20  # bytes of definitions and programs kept at hand
 SWEEP = 60.0  # seconds between looks for jobs and uploads to be removed
 _log = logging.getLogger(__name__)
 
@@ -53,11 +48,9 @@ class Supervisor:
         self._lease = timedelta(seconds=self._limits.lease_seconds)
         self._running: dict[str, tuple[Attempt, float]] = {}  # by id, with the time of the start
         self._ended: dict[str, Ended] = {}
-        self._backlog: deque[Attempt] = deque()  # claimed, so that short items need not wait for a round each
+        self._backlog = Backlog()
         self._fractions: dict[str, float] = {}
-        self._durations: deque[float] = deque(maxlen=32)  # of late, s
         self._played = 0.0
-        self._blobs: Cache[bytes] = Cache(BLOBS, len)
         self._due: dict[str, float] = {}
         self._take_over_at_once = store.database.is_sqlite  # whoever had items died: only one server can live
         self._stop = threading.Event()
@@ -105,13 +98,15 @@ class Supervisor:
 
     def _step(self, engine: Engine) -> None:
         free = engine.free
-        is_idle = not (self._running or self._ended or self._backlog)
+        is_idle = not (self._running or self._ended or self._backlog.attempts)
         if is_idle and free:
             self._store.wake.wait(POLL)
         for report in engine.reports(NEWS if self._running or not free else 0.0):
             self._hear(report)
         self._check_times(engine)
         self._feed(engine)
+        if self._backlog.attempts and self._backlog.is_stuck:
+            self._give_back()
         if self._is_round_due(engine.free, free):
             self._play(engine)
         if self._is_due("renew", self._lease.total_seconds() / 4):
@@ -129,12 +124,12 @@ class Supervisor:
 
     def _is_last_of_job(self) -> bool:
         """Whether of some job all that is known here has ended, so that somebody may be waiting for it."""
-        going = {attempt.job for attempt, _ in self._running.values()} | {attempt.job for attempt in self._backlog}
+        going = {attempt.job for attempt, _ in self._running.values()} | {a.job for a in self._backlog.attempts}
         return any(each.attempt.job not in going for each in self._ended.values())
 
     def _feed(self, engine: Engine) -> None:
-        while self._backlog and engine.free > 0:
-            self._begin(engine, self._backlog.popleft())
+        while self._backlog.attempts and engine.free > 0:
+            self._begin(engine, self._backlog.attempts.popleft())
 
     def _is_due(self, what: str, period: float) -> bool:
         is_due = monotonic() >= self._due.get(what, 0.0)
@@ -153,7 +148,7 @@ class Supervisor:
 
     def _end(self, attempt: Attempt, outcome: Outcome | None, death: str = "") -> None:
         started = self._running.pop(attempt.id, (attempt, monotonic()))[1]
-        self._durations.append(monotonic() - started)
+        self._backlog.note_end(attempt.job, monotonic() - started)
         self._fractions.pop(attempt.id, None)
         self._ended[attempt.id] = Ended(attempt, outcome, death)
 
@@ -168,9 +163,11 @@ class Supervisor:
     def _play(self, engine: Engine) -> None:
         ended = list(self._ended.values())
         take_over = self._take_over_at_once or self._is_due("lost", self._lease.total_seconds() / 4)
-        free = engine.free
-        wanted = max(0, free + self._ahead(free + len(self._running)) - len(self._backlog))
-        round_ = Round(self._owner, self._lease, ended, wanted, take_over, self._store.database.is_sqlite)
+        free, ahead = engine.free, None
+        if free or not self._backlog.is_stuck:
+            ahead = self._backlog.ahead(free + len(self._running), (a.job for a, _ in self._running.values()))
+        alone = self._store.database.is_sqlite
+        round_ = Round(self._owner, self._lease, ended, free, take_over, alone, ahead)
         with self._store.database.write() as connection:
             played = play(connection, round_)
         self._take_over_at_once, self._played = False, monotonic()
@@ -180,20 +177,21 @@ class Supervisor:
         for identifier in played.stopped:
             engine.stop(identifier)
             self._forget(identifier)
-        self._backlog.extend(played.claimed)
+        self._backlog.attempts.extend(played.claimed)
         self._feed(engine)
 
-    def _ahead(self, slots: int) -> int:
-        """How many items to claim beyond those that can start now: what ends while ends are gathered, twice over."""
-        if not self._durations:
-            return 0
-        return min(AHEAD, int(2 * GATHER * slots / max(median(self._durations), 1e-4)))
+    def _give_back(self) -> None:
+        """Others may have free places for what waits here behind long items."""
+        ids = {attempt.id for attempt in self._backlog.attempts}
+        with self._store.database.write() as connection:
+            put_back_all(connection, self._owner, ids, is_counted=False)
+        self._backlog.forget(ids)
 
     def _begin(self, engine: Engine, attempt: Attempt) -> None:
         """Start an attempt. One that cannot be started is no longer known here: the next renewal puts it back."""
         limits = self._limits
         try:
-            blobs = {digest: self._blob(digest) for digest in read_json(attempt.blobs.encode())}
+            blobs = {digest: self._store.blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
             engine.start(Work(attempt.id, attempt.kind, read_json(attempt.item.encode()), blobs, budget))
         except LookupError as error:
@@ -202,39 +200,33 @@ class Supervisor:
             _log.exception("attempt %s could not be started", attempt.id)
         else:
             self._running[attempt.id] = attempt, monotonic()
-
-    def _blob(self, digest: str) -> bytes:
-        blob = self._blobs.get(digest)
-        if blob is None:
-            with self._store.database.read() as connection:
-                blob = content.get_blob(connection, digest)
-            if blob is None:
-                raise LookupError(f"{digest} is not in the store")
-            self._blobs.put(digest, blob)
-        return blob
+            self._backlog.note_start()
 
     def _forget(self, identifier: str) -> None:
         self._running.pop(identifier, None)
         self._ended.pop(identifier, None)
         self._fractions.pop(identifier, None)
-        self._backlog = deque(attempt for attempt in self._backlog if attempt.id != identifier)
+        self._backlog.forget({identifier})
 
     def _renew(self, engine: Engine) -> None:
         """Keep the leases. What was taken over by others is stopped; what a failed round left to us is put back."""
         with self._store.database.write() as connection:
+            lock_owned(connection, self._owner)
             mine = queue.renew(connection, self._owner, self._lease)
             known = [(self._running[i][0], fraction) for i, fraction in self._fractions.items() if i in self._running]
             queue.note_fractions(connection, known)
-            known_ids = self._running.keys() | self._ended.keys() | {attempt.id for attempt in self._backlog}
-            put_back_all(connection, self._owner, mine - known_ids)
+            known_ids = self._running.keys() | self._ended.keys() | {a.id for a in self._backlog.attempts}
+            put_back_all(connection, self._owner, mine - known_ids, is_counted=True)
         for identifier in known_ids - mine:
             engine.stop(identifier)
             self._forget(identifier)
 
     def _hand_back(self) -> None:
+        """Keep what has ended, and leave the rest to others."""
         try:
             with self._store.database.write() as connection:
-                put_back_all(connection, self._owner, None)
+                play(connection, Round(self._owner, self._lease, list(self._ended.values())))
+                put_back_all(connection, self._owner, None, is_counted=False)
         except Exception:
             _log.exception("items could not be handed back; they are taken over when their lease ends")
 

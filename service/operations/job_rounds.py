@@ -6,7 +6,7 @@ The jobs concerned are locked first, always in the same order, so that several h
 from __future__ import annotations
 
 import logging
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
@@ -37,7 +37,11 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """What one owner brings and wants. ``alone``: no other owner can live, so all others' items are lost."""
+    """What one owner brings and wants.
+
+    ``alone``: no other owner can live, so all others' items are lost. ``ahead``: how many items of a job to claim
+    even where these are more than its share of the ``wanted`` ones.
+    """
 
     owner: str
     lease: timedelta
@@ -45,6 +49,7 @@ class Round:
     wanted: int = 0
     take_over: bool = False
     alone: bool = False
+    ahead: Callable[[str], int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +69,30 @@ def play(connection: Connection, round_: Round) -> Played:
     _take_over(connection, round_, touched, changes)
     if round_.ended:
         _end(connection, round_, touched, changes)
-    claimed = queue.claim(connection, round_.owner, round_.lease, round_.wanted, changes) if round_.wanted else []
+    claimed: list[Attempt] = []
+    if round_.wanted or round_.ahead is not None:
+        ahead = round_.ahead or (lambda _: 0)
+        claimed = queue.claim(connection, round_.owner, round_.lease, round_.wanted, changes, ahead)
     _close(connection, changes)
     return Played(claimed, stopped, changes.total())
 
 
-def put_back_all(connection: Connection, owner: str, ids: Collection[str] | None) -> None:
-    """Queue running items of an owner again that it does not compute: those of these attempts, or all."""
-    changes = Changes()
+def lock_owned(connection: Connection, owner: str) -> None:
+    """Lock the jobs of an owner's running items, before any of the items."""
     jobs.lock(connection, {lost.job for lost in queue.owned(connection, owner)})
+
+
+def put_back_all(connection: Connection, owner: str, ids: Collection[str] | None, *, is_counted: bool) -> None:
+    """Queue running items of an owner again that it does not compute: those of these attempts, or all.
+
+    ``is_counted``: as attempts that were lost; otherwise as if they had not been claimed.
+    """
+    changes = Changes()
+    lock_owned(connection, owner)
     for lost in queue.owned(connection, owner):
         if ids is None or lost.id in ids:
+            if not is_counted:
+                queue.uncount(connection, lost.job, lost.position)
             _again(connection, lost, lost.deaths, changes)
     _close(connection, changes)
 
@@ -126,7 +144,8 @@ def _again(connection: Connection, lost: Lost, deaths: Sequence[str], changes: C
 
 def _given_up(number: int, deaths: Sequence[str]) -> dict[str, Any]:
     seen = f"; seen: {'; '.join(dict.fromkeys(deaths))}" if deaths else ""
-    detail = f"given up after {number} attempts: {len(deaths)} workers died{seen}"
+    lost = f", and {number - len(deaths)} times the service that had it was lost" if number > len(deaths) else ""
+    detail = f"given up after {number} attempts: {len(deaths)} workers died{lost}{seen}"
     return problem(Refused(500, "worker-died", detail, attempts=number, deaths=list(deaths)))
 
 

@@ -5,7 +5,8 @@ All functions run in write transactions; rows of jobs are locked before those of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
 from datetime import timedelta
 from typing import Any
 
@@ -33,8 +34,18 @@ _FINISH = (
 JOBS = 64  # jobs that share what is free, the oldest first
 
 
-def claim(connection: Connection, owner: str, lease: timedelta, wanted: int, changes: Changes) -> list[Attempt]:
-    """Up to ``wanted`` items to be computed by the owner, shared out between jobs; those with few running go first."""
+def claim(
+    connection: Connection,
+    owner: str,
+    lease: timedelta,
+    wanted: int,
+    changes: Changes,
+    ahead: Callable[[str], int],
+) -> list[Attempt]:
+    """Up to ``wanted`` items to be computed by the owner, shared out between jobs; those with few running go first.
+
+    ``ahead``: how many to claim of a job even where that is more than its share.
+    """
     candidates = _candidates(connection)
     share = max(1, wanted // max(1, len(candidates)))
     taken: list[Attempt] = []
@@ -43,6 +54,10 @@ def claim(connection: Connection, owner: str, lease: timedelta, wanted: int, cha
             if len(taken) < wanted:
                 room = min(size, wanted - len(taken))
                 taken += _take(connection, owner, lease, (job, kind), room, changes)
+    mine = Counter(attempt.job for attempt in taken)
+    for job, kind in candidates:
+        if (room := ahead(job) - mine[job]) > 0:
+            taken += _take(connection, owner, lease, (job, kind), room, changes)
     return taken
 
 
@@ -131,6 +146,13 @@ def finish(connection: Connection, ended: Sequence[tuple[Attempt, str | None]]) 
 def put_back(connection: Connection, job: str, position: int, deaths: Sequence[str]) -> None:
     """Queue a running item again."""
     _end(connection, job, position, {"state": "queued", "deaths": orjson.dumps(list(deaths)).decode(), "fraction": 0.0})
+
+
+def uncount(connection: Connection, job: str, position: int) -> None:
+    """Take back that an attempt was made; its id, which nobody computes any more, will be given again."""
+    chosen = and_(job_items.c.job == job, job_items.c.position == position, RUNNING)
+    connection.execute(update(job_items).where(chosen).values(attempts=job_items.c.attempts - 1))
+    connection.execute(update(jobs).where(jobs.c.id == job).values(attempts=jobs.c.attempts - 1))
 
 
 def drop(connection: Connection, job: str, position: int) -> None:

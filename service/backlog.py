@@ -1,0 +1,62 @@
+"""Attempts that are claimed ahead of the engine, so that short items need not wait for a round each."""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict, deque
+from collections.abc import Callable, Iterable
+from statistics import median
+from time import monotonic
+
+from service.queries.attempts import Attempt
+
+GATHER = 0.5  # seconds for which ends are gathered while there is work to go on with
+STALE = 2.0  # seconds without an end or a start after which what is claimed ahead goes back to the queue
+AHEAD = 200  # items claimed ahead at most
+JOBS, LATEST = 64, 32  # durations are remembered of so many jobs and items
+
+
+class Backlog:
+    """Claimed attempts in the order of their claims, and how long items took of late. For one thread."""
+
+    def __init__(self) -> None:
+        self.attempts: deque[Attempt] = deque()
+        self._durations: OrderedDict[str, deque[float]] = OrderedDict()
+        self._moved = monotonic()
+
+    def note_start(self) -> None:
+        """Something moves."""
+        self._moved = monotonic()
+
+    def note_end(self, job: str, seconds: float) -> None:
+        """An item of a job took so long."""
+        self._moved = monotonic()
+        self._durations.setdefault(job, deque(maxlen=LATEST)).append(seconds)
+        self._durations.move_to_end(job)
+        if len(self._durations) > JOBS:
+            self._durations.popitem(last=False)
+
+    @property
+    def is_stuck(self) -> bool:
+        """Whether nothing has moved for too long: others may have use for what is claimed."""
+        return monotonic() - self._moved > STALE
+
+    def forget(self, identifiers: set[str]) -> None:
+        """Drop attempts."""
+        self.attempts = deque(attempt for attempt in self.attempts if attempt.id not in identifiers)
+
+    def ahead(self, slots: int, running: Iterable[str]) -> Callable[[str], int]:
+        """How many items of a job to claim beyond those that can start now.
+
+        It is what ends while ends are gathered, twice over and shared between the jobs, and one of a job of which
+        nothing runs or waits here: so every job gets its turn. ``running``: the job of every running attempt.
+        """
+        waiting = Counter(attempt.job for attempt in self.attempts)
+        here = waiting.keys() | set(running)
+        seconds = 2 * GATHER * slots / max(1, len(here))
+
+        def of(job: str) -> int:
+            durations = self._durations.get(job)
+            ends = min(AHEAD, int(seconds / max(median(durations), 1e-4))) if durations else 0
+            return max(ends, int(job not in here)) - waiting[job]
+
+        return of
