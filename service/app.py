@@ -8,9 +8,10 @@ from datetime import timedelta
 
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
+from sqlalchemy.exc import DBAPIError
 
 from service import __version__, openapi, problems
-from service.database import Database
+from service.database import Database, DatabaseError, told
 from service.metrics import Metrics
 from service.middleware import Conventions
 from service.operations.seed import import_catalogue
@@ -58,14 +59,22 @@ def open_store(settings: Settings) -> Iterator[Store]:
     database = Database(settings.database)
     store = Store(settings, database, Metrics())
     try:
+        _prepare(store)
+        yield store
+    finally:
+        store.close()
+
+
+def _prepare(store: Store) -> None:
+    settings, database = store.settings, store.database
+    try:
         if database.is_sqlite:  # this is the only server: whatever is in flight died with the last one
             with database.write() as connection:
                 idempotency.forget(connection, timedelta(hours=settings.limits.idempotency_hours), timedelta(0))
         if settings.catalogue:
             import_catalogue(store)
-        yield store
-    finally:
-        store.close()
+    except DBAPIError as error:
+        raise DatabaseError(f"cannot use the database {database.url}: {told(error)}") from None
 
 
 def create_app(store: Store) -> FastAPI:

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
+from sqlalchemy.exc import DBAPIError
 
 from service import __version__, cli_jobs, demo, keys, logs, openapi
 from service.app import bare_app
 from service.cli_analysis import add_commands
 from service.cli_progress import follow
 from service.client import Client, ProblemError
-from service.database import Database, DatabaseError
+from service.database import Database, DatabaseError, told
 from service.migrate import MigrationError
 from service.queries.keys import list_keys, revoke_key
 from service.refusals import Refused
@@ -42,6 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _complain(f"{fault.pointer or '/'}: {fault.message}")
     except (*EXPECTED, ValueError, OverflowError) as error:
         _complain(str(error))
+    except DBAPIError as error:
+        _complain(f"the database refused: {told(error)}")
     except httpx2.HTTPError as error:
         _complain(f"no answer from the server: {error}")
     except OSError as error:

@@ -6,18 +6,25 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
+from shutil import disk_usage
 from typing import Any
 
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import URL, make_url
-from sqlalchemy.exc import ArgumentError, OperationalError
+from sqlalchemy.exc import ArgumentError, DBAPIError
 
 from service.migrate import upgrade
 
 READERS = 16
 BUSY_MS = 10_000
+IDLE_MS = 10_000  # after which PostgreSQL ends a write transaction of a process that was stopped in the middle of it
+#: seconds, but for the last: both ends of a connection to PostgreSQL notice a peer that is gone after some 20 s
+TCP = {"keepalives_idle": 5, "keepalives_interval": 5, "keepalives_count": 3, "tcp_user_timeout": 20_000}
+CONNECT_SECONDS = 10
 
-__all__ = ["Connection", "Database", "DatabaseError", "claimed", "normalised"]
+ROOM = 2**20  # bytes
+
+__all__ = ["Connection", "Database", "DatabaseError", "claimed", "normalised", "told"]
 
 
 class DatabaseError(Exception):
@@ -44,8 +51,8 @@ class Database:
             opened.callback(self.reader.dispose)
             try:
                 upgrade(self.writer)
-            except OperationalError as error:
-                raise DatabaseError(f"cannot use the database {self.url}: {error.orig}") from None
+            except DBAPIError as error:
+                raise DatabaseError(f"cannot use the database {self.url}: {told(error)}") from None
             self._opened = opened.pop_all()
 
     @property
@@ -63,12 +70,19 @@ class Database:
     def write(self) -> Iterator[Connection]:
         """A transaction that commits when the block ends and leaves nothing behind when it raises."""
         with self.writer.begin() as connection:
+            if not self.is_sqlite:  # its locks must not outlast a process that stands still
+                connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {IDLE_MS}")
             yield connection
 
     def ping(self) -> None:
         """Raise when the database does not answer."""
         with self.read() as connection:
             connection.execute(text("SELECT 1"))
+
+    @property
+    def has_room(self) -> bool:
+        """Whether the disk of an SQLite file has room for more; PostgreSQL does not say."""
+        return not self.is_sqlite or disk_usage(Path(self.url.database or "").absolute().parent).free > ROOM
 
     def close(self) -> None:
         """Close all connections and give up the claim."""
@@ -79,7 +93,7 @@ def normalised(address: str) -> URL:
     """The URL of a database. Raises DatabaseError for what is not supported."""
     try:
         url = make_url(address)
-    except ArgumentError:
+    except (ArgumentError, ValueError):
         raise DatabaseError(f"'{address}' is no database URL; expected sqlite:///FILE or postgresql://...") from None
     if url.drivername in ("postgresql", "postgres"):
         return url.set(drivername="postgresql+psycopg")
@@ -93,7 +107,7 @@ def normalised(address: str) -> URL:
 def _engine(url: URL, *, writer: bool) -> Engine:
     if url.get_backend_name() != "sqlite":
         try:
-            return create_engine(url, pool_size=READERS, pool_pre_ping=True)
+            return _postgres(url)
         except ImportError:
             raise DatabaseError("PostgreSQL needs the extra: pip install 'substructures[postgres]'") from None
     engine = create_engine(
@@ -110,6 +124,27 @@ def _engine(url: URL, *, writer: bool) -> Engine:
     begin = "BEGIN IMMEDIATE" if writer else "BEGIN"
     event.listen(engine, "begin", lambda connection: connection.exec_driver_sql(begin))
     return engine
+
+
+def _postgres(url: URL) -> Engine:
+    """What the URL says itself goes before."""
+    limits = {"connect_timeout": CONNECT_SECONDS, **TCP}
+    given = {name: value for name, value in limits.items() if name not in url.query}
+    engine = create_engine(url, pool_size=READERS, pool_pre_ping=True, connect_args=given)
+    event.listen(engine, "connect", _watch_client)
+    return engine
+
+
+def _watch_client(connection: Any, _record: object) -> None:
+    """Let the server notice when we are gone: with us go the locks that others wait for."""
+    names = (name if name.startswith("tcp_") else f"tcp_{name}" for name in TCP)
+    connection.execute("; ".join(f"SET {name} = {value}" for name, value in zip(names, TCP.values(), strict=True)))
+    connection.commit()
+
+
+def told(error: DBAPIError) -> str:
+    """What the database said, in a line."""
+    return (str(error.orig).strip() or type(error.orig).__name__).splitlines()[0]
 
 
 def _snapshots(engine: Engine) -> Engine:

@@ -38,6 +38,7 @@ from service.database import Connection
 from service.operations.trees import StaleError
 from service.problems import Refused
 from service.queries import idempotency
+from service.queries.common import is_conflict
 from service.store import Store
 
 Commit = Callable[[Connection], Answer]
@@ -154,8 +155,9 @@ class Once:
                 found = prepare()
                 try:
                     return self._stored(found, keeps).response()
-                except StaleError:
-                    continue
+                except Exception as error:
+                    if not isinstance(error, StaleError) and not is_conflict(error):
+                        raise
             detail = "others keep changing this resource; try again"
             raise Refused(409, "conflict", detail, headers={"Retry-After": "1"})
         except _GivenUp:  # somebody else has answered

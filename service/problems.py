@@ -18,10 +18,11 @@ import orjson
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
-from sqlalchemy.exc import DataError, OperationalError
+from sqlalchemy.exc import DataError, DBAPIError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
+from service.queries.common import is_conflict, is_full, is_outage
 from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from service.request_id import current_request_id
 from substructures.documents import message_of, pointer_step
@@ -48,17 +49,25 @@ def as_refused(error: Exception) -> Refused:
             return Refused(error.status_code, "http-error", str(error.detail), headers=error.headers)
         case DataError():
             return unprocessable("invalid-text", "a text holds characters that the database cannot store, such as NUL")
-        case OperationalError() | PoolTimeout() if _is_unavailable(error):
+        case DBAPIError() | PoolTimeout() if _is_unavailable(error):
             _log.error("the database does not answer: %s", error)
-            detail = "the database does not answer; nothing was changed"
-            return Refused(503, "database-unavailable", detail, headers={"Retry-After": "1"})
+            return Refused(503, "database-unavailable", _why(error), headers={"Retry-After": "1"})
     _log.error("unexpected %s", type(error).__name__, exc_info=error)
     return Refused(500, "internal-error", "an error in the service; please report it with the request id")
 
 
 def _is_unavailable(error: Exception) -> bool:
     """Locked, full or not to be reached; SQLite reports wrong statements under the same exception."""
+    if isinstance(error, DBAPIError) and not is_outage(error):
+        return False
     return getattr(getattr(error, "orig", None), "sqlite_errorname", "") != "SQLITE_ERROR"
+
+
+def _why(error: Exception) -> str:
+    if is_full(error):
+        return "the disk of the database is full; nothing was changed"
+    what = "is busy with changes of others" if is_conflict(error) else "does not answer"
+    return f"the database {what}; nothing was changed"
 
 
 def _validation_fault(item: Mapping[str, Any]) -> Fault:

@@ -7,17 +7,18 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import uvicorn
 
 from service.app import create_app, open_store
 from service.engines import engine_of
+from service.jobs.engine import Engine
 from service.queries.keys import any_key
 from service.settings import Settings, SettingsError
 from service.store import Store
-from service.supervisor import supervised
+from service.supervisor import Supervisor
 
 TURN = 0.001  # seconds that a thread computes while others wait
 
@@ -112,3 +113,17 @@ def _server(store: Store) -> uvicorn.Server:
             timeout_graceful_shutdown=15,
         ),
     )
+
+
+@contextmanager
+def supervised(store: Store, engine: Callable[[], Engine] | None) -> Iterator[None]:
+    """Run the jobs of a store while the block lasts; None leaves them to another process."""
+    if engine is None:
+        yield
+        return
+    supervisor = Supervisor(store, engine)
+    supervisor.start()
+    try:
+        yield
+    finally:
+        supervisor.close()

@@ -15,8 +15,7 @@ from __future__ import annotations
 import logging
 import secrets
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import timedelta
 from time import monotonic
 
@@ -26,12 +25,14 @@ from service.operations.job_rounds import Ended, Round, lock_owned, play, put_ba
 from service.operations.retention import sweep
 from service.queries import jobs, queue
 from service.queries.attempts import Attempt
+from service.queries.common import is_conflict, is_outage
 from service.refusals import Refused, problem
 from service.store import Store
 from substructures.documents import read_json
 
 POLL = 0.5  # seconds between looks at the queue when nothing wakes us
 SOON = 0.05  # seconds for which the last ends of a job are gathered
+PATIENCE = 20.0  # seconds for the last round
 NEWS = 0.05  # seconds to wait for news of what runs
 SWEEP = 60.0  # seconds between looks for jobs and uploads to be removed
 _log = logging.getLogger(__name__)
@@ -64,7 +65,9 @@ class Supervisor:
         """Stop all attempts, queue their items again and end the thread."""
         self._stop.set()
         self._store.wake.set()
-        self._thread.join()
+        self._thread.join(PATIENCE)
+        if self._thread.is_alive():  # it ends with the process; its items are taken over when their lease ends
+            _log.error("the database has not answered for %g s; the supervisor is left behind", PATIENCE)
 
     def _run(self) -> None:
         self._await_work()
@@ -73,9 +76,8 @@ class Supervisor:
             try:
                 engine = engine or self._make_engine()
                 self._step(engine)
-            except Exception:
-                _log.exception("a round failed; it is played again")
-                self._stop.wait(POLL)
+            except Exception as error:
+                self._complain("a round failed; it is played again", error)
         if engine is not None:
             engine.close()
         self._hand_back()
@@ -92,9 +94,20 @@ class Supervisor:
                     return
                 if self._is_due("sweep", SWEEP):
                     sweep(self._store, self._stop)
-            except Exception:
-                _log.exception("the queue cannot be read; it is tried again")
+            except Exception as error:
+                self._complain("the queue cannot be read; it is tried again", error)
             self._store.wake.wait(POLL)
+
+    def _complain(self, what: str, error: Exception) -> None:
+        """Log what went wrong, and wait where that may help."""
+        if is_conflict(error):
+            _log.info("%s at once: another host was in the way", what)
+            return
+        if is_outage(error):
+            _log.error("%s: the database does not answer: %s", what, " ".join(str(error).split("\n")[:1]))
+        else:
+            _log.error("%s", what, exc_info=error)
+        self._stop.wait(POLL)
 
     def _step(self, engine: Engine) -> None:
         free = engine.free
@@ -229,17 +242,3 @@ class Supervisor:
                 put_back_all(connection, self._owner, None, is_counted=False)
         except Exception:
             _log.exception("items could not be handed back; they are taken over when their lease ends")
-
-
-@contextmanager
-def supervised(store: Store, engine: Callable[[], Engine] | None) -> Iterator[None]:
-    """Run the jobs of a store while the block lasts; None leaves them to another process."""
-    if engine is None:
-        yield
-        return
-    supervisor = Supervisor(store, engine)
-    supervisor.start()
-    try:
-        yield
-    finally:
-        supervisor.close()

@@ -117,18 +117,23 @@ def _resolved(
 
 def _new_item(kind: str, item: Mapping[str, Any], blobs: Sequence[str]) -> NewItem:
     content = write_json(item)
-    key = "sha256:" + hashlib.sha256(f"{kind}\n".encode() + content).hexdigest()
+    family = "analyse" if "analysis" in item else kind  # items of simulate and optimise say what they are
+    key = "sha256:" + hashlib.sha256(f"{family}\n".encode() + content).hexdigest()
     return NewItem(key, content.decode(), write_json(list(blobs)).decode())
 
 
 def require_room(connection: Connection, new: int, principal: str, limits: Limits) -> None:
-    """Raise Refused 503 when so many more items do not fit into the queue."""
+    """Raise Refused 503 when so many more items do not fit into the queue now, 422 when they never will."""
+    most = min(limits.job_queue, limits.job_queue_per_key)
+    if new > most:
+        detail = f"{new:,} items are more than the queue takes, {most:,}; submit several jobs"
+        raise Refused(422, "too-many-items", detail, limit=most)
     for whose, waiting, limit in (
         ("the queue", jobs.waiting(connection), limits.job_queue),
         ("your part of the queue", jobs.waiting(connection, principal), limits.job_queue_per_key),
     ):
         if waiting + new > limit:
-            detail = f"{whose} is full: {waiting:,} items wait, the limit is {limit:,}; nothing was queued"
+            detail = f"{whose} is full: {waiting:,} items wait, {new:,} more exceed {limit:,}; nothing was queued"
             raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Table
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DBAPIError, OperationalError
 
 _INSERT: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 
@@ -42,4 +42,16 @@ def _insert(dialect: str, table: Table) -> Any:
 
 def is_outage(error: Exception) -> bool:
     """Whether it is the database that failed (locked, full, gone), so that the same may work later."""
-    return isinstance(error, OperationalError)
+    return isinstance(error, OperationalError) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+
+
+def is_conflict(error: Exception) -> bool:
+    """Whether a transaction was given up for the sake of another (deadlock, serialisation), so that it should be
+    tried again."""
+    return isinstance(error, DBAPIError) and getattr(error.orig, "sqlstate", "") in ("40P01", "40001")
+
+
+def is_full(error: Exception) -> bool:
+    """Whether the disk of the database has no room."""
+    seen = getattr(error, "orig", None)
+    return getattr(seen, "sqlite_errorname", "") == "SQLITE_FULL" or getattr(seen, "sqlstate", "") == "53100"

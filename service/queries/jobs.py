@@ -13,6 +13,7 @@ from sqlalchemy import Connection, and_, bindparam, case, delete, exists, func, 
 
 from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
 from service.queries.common import now
+from service.queries.job_events import add_event
 from service.queries.states import OPEN, QUEUED, RUNNING
 
 
@@ -82,7 +83,10 @@ def add_job(connection: Connection, kind: str, principal: str, items: Sequence[N
         for k, item in enumerate(items)
     ]
     connection.execute(insert(job_items), rows)
-    count(connection, {identifier: (succeed_known(connection, identifier), 0)})
+    known = succeed_known(connection, identifier)
+    if known:
+        count(connection, {identifier: (len(known), 0)})
+        add_event(connection, identifier, "items", {"succeeded": known})
     settle(connection, [identifier])
     return identifier
 
@@ -94,11 +98,11 @@ def _share_results(connection: Connection, exclusive: bool = False) -> None:
         connection.exec_driver_sql(f"SELECT {kind}(7305512)")
 
 
-def succeed_known(connection: Connection, job: str) -> int:
-    """Queued items of a locked job whose result is there succeed: how many."""
+def succeed_known(connection: Connection, job: str) -> list[int]:
+    """Queued items of a locked job whose result is there succeed: their positions."""
     chosen = and_(job_items.c.job == job, QUEUED, job_items.c.key.in_(select(results.c.key)))
     done = update(job_items).where(chosen).values(state="succeeded", fraction=1.0, finished=now())
-    return connection.execute(done).rowcount
+    return sorted(connection.execute(done.returning(job_items.c.position)).scalars())
 
 
 def succeed_equal(connection: Connection, ids: Collection[str], keys: Sequence[str]) -> dict[str, list[int]]:
@@ -220,7 +224,10 @@ def cancel(connection: Connection, identifier: str) -> None:
     if connection.execute(select(jobs.c.id).where(open_job)).first() is None:
         return
     queued = and_(job_items.c.job == identifier, QUEUED)
-    connection.execute(update(job_items).where(queued).values(state="cancelled", finished=now()))
+    dropped = update(job_items).where(queued).values(state="cancelled", finished=now())
+    positions = sorted(connection.execute(dropped.returning(job_items.c.position)).scalars())
+    if positions:
+        add_event(connection, identifier, "items", {"cancelled": positions})
     runs = connection.execute(select(exists().where(job_items.c.job == identifier, RUNNING))).scalar_one()
     values = {"state": "cancelling"} if runs else {"state": "cancelled", "finished": now()}
     connection.execute(update(jobs).where(open_job).values(values))

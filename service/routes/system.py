@@ -7,6 +7,7 @@ from fastapi import APIRouter, Response
 from service.answers import Answer, json_answer
 from service.metrics import CONTENT_TYPE
 from service.queries.jobs import counts
+from service.refusals import Refused
 from service.requests import StoreOf, needs
 from service.schemas import Health, LimitsView
 from service.views import dump
@@ -27,8 +28,10 @@ async def livez() -> Response:
 
 @router.get("/readyz", response_model=Health)
 def readyz(store: StoreOf) -> Response:
-    """The database answers; the catalogue was imported before the server began to listen."""
+    """The database answers and has room; the catalogue was imported before the server began to listen."""
     store.database.ping()
+    if not store.database.has_room:
+        raise Refused(503, "database-unavailable", "the disk of the database is full", headers={"Retry-After": "30"})
     return OK.response()
 
 

@@ -121,7 +121,15 @@ def test_one_server_a_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "address", ["mysql://x/y", "nonsense", "sqlite://", "sqlite:////nowhere/at/all.db", "postgresql://x@127.0.0.1:9/x"]
+    "address",
+    [
+        "mysql://x/y",
+        "nonsense",
+        "sqlite://",
+        "sqlite:////nowhere/at/all.db",
+        "postgresql://x@127.0.0.1:9/x",
+        "postgresql://x:port/y",
+    ],
 )
 def test_wrong_addresses(address: str) -> None:
     for exclusive in (True, False):

@@ -49,6 +49,25 @@ def test_events_resume(filled: TestClient, store: Store, monkeypatch: pytest.Mon
     assert filled.get("/v1/jobs/none/events").status_code == 404
 
 
+def test_events_add_up(filled: TestClient, store: Store) -> None:
+    """Also of items that are known at submission, and of those that are cancelled before they start."""
+
+    def changed(job: str, state: str) -> list[int]:
+        return sorted(position for _, _, data in read(filled, job) for position in data.get(state, ()))
+
+    with running(store, FakeEngine()):
+        finished(filled, submitted(filled, export("cell", "metric", "gravity")))
+    known = submitted(filled, export("cell", "gravity", "forces", "metric"))
+    filled.post(f"/v1/jobs/{known}/cancel")
+    assert (changed(known, "succeeded"), changed(known, "cancelled")) == ([0, 2], [1])
+    with running(store, FakeEngine(slots=1, is_open=False)):
+        job = submitted(filled, export("cell", "forces", "bias", "coriolis"))
+        eventually(filled, job, lambda view: view["state"] == "running")
+        filled.post(f"/v1/jobs/{job}/cancel")
+        finished(filled, job)
+    assert changed(job, "cancelled") == [0, 1, 2]
+
+
 def test_events_as_they_happen(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(job_streams, "HEARTBEAT", 0.05)
     monkeypatch.setattr(job_streams, "POLL", 0.01)

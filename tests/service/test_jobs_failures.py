@@ -112,6 +112,10 @@ def test_full_queue(filled: TestClient, store: Store, rows: Any, name: str) -> N
     answer = filled.post("/v1/jobs", json=export("cell", "forces", "coriolis"))
     assert (answer.status_code, answer.json()["code"]) == (503, "queue-full")
     assert int(answer.headers["retry-after"]) > 0
+    assert "2 items wait, 2 more exceed 3" in answer.json()["detail"]
+    never = filled.post("/v1/jobs", json=export("cell", "metric", "forces", "coriolis", "bias"))
+    assert (never.status_code, never.json()["code"]) == (422, "too-many-items")
+    assert "4 items are more than the queue takes, 3" in never.json()["detail"]
     assert rows() == before
 
 

@@ -189,7 +189,7 @@ def test_faults_of_later_batches_have_the_place_in_the_stream(client: TestClient
 def test_limits(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     for limits, status in (
         (Limits(job_states=10, job_items=2), 422),
-        (Limits(job_states=10, job_queue=2), 503),
+        (Limits(job_states=10, job_queue=2), 422),
         (Limits(binary_bytes=100), 413),
     ):
         monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
