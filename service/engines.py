@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from importlib import import_module
+from urllib.parse import urlsplit
 
 from service.jobs.engine import Engine
 from service.jobs.local import LocalEngine
@@ -23,10 +24,24 @@ def engine_of(settings: Settings) -> Callable[[], Engine] | None:
 
 
 def _dask(address: str) -> Callable[[], Engine]:
-    if not address:
-        raise SettingsError("the engine dask needs the address of its scheduler: --engine-address tcp://...")
+    if not _is_address(address):
+        given = f", not {address!r}" if address else ""
+        raise SettingsError(
+            "the engine dask needs the address of its scheduler: --engine-address tcp://host:port or tls://host:port"
+            + given
+        )
     try:
         module = import_module("service.jobs.dask")  # an extra; it takes long to load
     except ImportError:
         raise SettingsError("the engine dask needs the extra: pip install 'substructures[dask]'") from None
     return lambda: module.DaskEngine(address)
+
+
+def _is_address(text: str) -> bool:
+    try:
+        parts = urlsplit(text)
+        expected = f"{parts.scheme}://{parts.netloc}"
+        is_plain = text == expected and "@" not in text and not any(letter.isspace() for letter in text)
+        return is_plain and parts.scheme in ("tcp", "tls") and bool(parts.hostname) and bool(parts.port)
+    except ValueError:
+        return False

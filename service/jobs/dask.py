@@ -1,9 +1,11 @@
 """The engine of a Dask cluster: every task of Dask runs the same killable runner on the machine of its worker.
 
-Dask cannot stop a task that runs, and its scheduler forgets everything when it restarts. So a task looks after itself:
-it kills its runner as soon as the worker no longer wants its result (cancelled, client or scheduler gone). What is lost
-with a scheduler is submitted again to the next one; only when none can be reached for ``SILENCE`` are attempts reported
-dead. Works and reports travel as frames (:mod:`service.jobs.wire`); of this package Dask pickles one function's name.
+The scheduler forgets everything when it restarts. What is lost with it is submitted again to the next one; only when
+none can be reached for ``SILENCE`` are attempts reported dead. Works and reports travel as frames, see
+:mod:`service.jobs.wire`.
+
+Works are pinned to the workers that were found to have our version. Dask keeps a task whose workers have all gone for
+ever; such works are submitted again to those that are there.
 
 A cluster runs whatever it is sent: its ports have to be reachable by trusted machines only, or be guarded by TLS.
 """
@@ -12,64 +14,33 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import logging
 import secrets
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from concurrent.futures import CancelledError
 from queue import Empty, SimpleQueue
 from time import monotonic
-from typing import Any
+from typing import Any, NamedTuple
 
-from distributed import Client, KilledWorker, Status, get_worker
+from distributed import Client
 
+from service.jobs.dask_cluster import CONNECT, Notices, Workers, described
+from service.jobs.dask_task import TOPIC, compute
 from service.jobs.engine import Report, Work
-from service.jobs.local import LocalEngine
-from service.jobs.wire import Reader, WireError, read_report, read_work, report_frame, work_frame
+from service.jobs.wire import Reader, WireError, read_report, work_frame
 
-TOPIC = "substructures-progress"
-POLL = 0.1  # seconds between looks of a task at whether it is still wanted
 WATCH = 0.5  # seconds between looks at the cluster
 SILENCE = 60.0  # seconds without a scheduler or workers after which attempts are given up
-CONNECT = 10.0
+LONGEST_PAUSE = 30.0  # seconds between attempts to connect
+FINDING = 3.0  # seconds in which the workers of a cluster are found before they are missed
 AHEAD = 2  # works for every thread of the cluster, so that none waits for us
-_log = logging.getLogger(__name__)
-_local = threading.local()
 
 
-def compute(frame: bytes) -> bytes:
-    """The task: compute a work on the worker, and answer with the frame of its last report (nothing when unwanted)."""
-    worker = get_worker()
-    key = worker.get_current_task()
-    (first,) = Reader().feed(frame)
-    work = read_work(first, {})
-    engine = _engine()
-    while not engine.free:
-        engine.reports(POLL)
-        if not _is_wanted(worker, key):
-            return b""
-    engine.start(work)
-    while True:
-        for report in engine.reports(POLL):
-            if report.is_final:
-                return report_frame(report).to_bytes()
-            worker.log_event(TOPIC, {"id": work.id, "fraction": report.fraction})
-        if not _is_wanted(worker, key):
-            engine.stop(work.id)
-            return b""
+class _Task(NamedTuple):
+    """What follows a work, and the workers that may compute it."""
 
-
-def _engine() -> LocalEngine:
-    """The runner of this thread of the worker; it ends with the thread."""
-    if not hasattr(_local, "engine"):
-        _local.engine = LocalEngine(1)
-    engine: LocalEngine = _local.engine
-    return engine
-
-
-def _is_wanted(worker: Any, key: Any) -> bool:
-    task = worker.state.tasks.get(key)
-    return worker.status in (Status.running, Status.paused) and task is not None and task.state == "executing"
+    follower: asyncio.Task[None]
+    workers: frozenset[str]
 
 
 class DaskEngine:
@@ -77,16 +48,17 @@ class DaskEngine:
 
     def __init__(self, address: str) -> None:
         self.address = address
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # traces of every lost connection; we say it once
         self._open: set[str] = set()  # used by the caller's thread only
         self._wanted: dict[str, Work] = {}
         self._news: SimpleQueue[Report | None] = SimpleQueue()
         self._slots = 0
-        self._tasks: dict[str, asyncio.Task[None]] = {}
-        self._client: Client | None = None
+        self._tasks: dict[str, _Task] = {}
+        self._workers: Workers | None = None
+        self._notices = Notices(address)
         self._heard = monotonic()
         self._loop = asyncio.new_event_loop()
-        self._closing = asyncio.Event()
+        self._closing = threading.Event()
+        self._serving: asyncio.Task[None] | None = None
         self._thread = threading.Thread(target=self._run, name="dask", daemon=True)
         self._thread.start()
 
@@ -126,62 +98,80 @@ class DaskEngine:
         """Cancel all tasks and disconnect."""
         self._wanted.clear()
         self._open.clear()
-        self._loop.call_soon_threadsafe(self._closing.set)
+        self._closing.set()
+        with contextlib.suppress(RuntimeError):  # closed before
+            self._loop.call_soon_threadsafe(self._interrupt)
         self._thread.join()
+
+    def _interrupt(self) -> None:
+        if self._serving is not None:
+            self._serving.cancel()
 
     def _run(self) -> None:
         with contextlib.closing(self._loop):
-            self._loop.run_until_complete(self._serve())
+            self._serving = self._loop.create_task(self._serve())
+            self._loop.run_until_complete(self._serving)
+            self._loop.run_until_complete(_end_all(asyncio.all_tasks(self._loop)))
 
     async def _serve(self) -> None:
-        """Keep a connection to the scheduler until closed."""
+        """Keep a connection to the scheduler until closed, whatever its address answers."""
+        pause = WATCH
         while not self._closing.is_set():
-            try:
-                async with asyncio.timeout(2 * CONNECT):
-                    client = await Client(self.address, asynchronous=True, timeout=CONNECT, set_as_default=False)
-            except (OSError, TimeoutError) as error:
-                _log.warning("no scheduler at %s: %s", self.address, error)
+            began = monotonic()
+            with contextlib.suppress(asyncio.CancelledError):  # by us, when closing
+                await self._connect()
                 self._give_up("the scheduler cannot be reached")
-                await self._pause()
-                continue
-            try:
-                await self._use(client)
-            finally:
-                await self._leave(client)
+                lasted = monotonic() - began > LONGEST_PAUSE
+                pause = WATCH if lasted else min(2 * pause, LONGEST_PAUSE)
+                await asyncio.sleep(0 if self._closing.is_set() else pause)
 
-    async def _pause(self) -> None:
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._closing.wait(), WATCH)
+    async def _connect(self) -> None:
+        """Compute while there is a connection; say why there is none."""
+        client = None
+        try:
+            client = Client(self.address, asynchronous=True, timeout=CONNECT, set_as_default=False)
+            async with asyncio.timeout(2 * CONNECT):
+                await client
+            self._notices.connected()
+            await self._use(client)
+        except (Exception, asyncio.CancelledError) as error:  # anything when no scheduler listens there
+            if not self._closing.is_set():
+                (self._notices.lost if self._workers else self._notices.unreachable)(described(error))
+        finally:
+            await self._leave(client)
 
     async def _use(self, client: Client) -> None:
-        """Follow the wanted works until the connection is lost."""
+        """Follow the wanted works until the connection is lost. The library makes another one, without our tasks."""
         client.subscribe_topic(TOPIC, self._progress)
-        self._client = client
-        self._reconcile()
-        while client.status == "running" and not self._closing.is_set():
-            try:
-                async with asyncio.timeout(CONNECT):
-                    slots = sum((await client.nthreads()).values())
-            except (OSError, TimeoutError):
-                return
-            if slots != self._slots:
-                self._slots = slots
-                self._news.put(None)
-            if slots:
-                self._heard = monotonic()
-            self._give_up("the cluster has no workers")
-            await self._pause()
+        connection, began = client.scheduler_comm, monotonic()
+        self._workers = Workers(client)
+        while client.status == "running" and client.scheduler_comm is connection:
+            self._set_slots(await self._workers.look())
+            if self._slots or monotonic() - max(self._heard, began) > FINDING:
+                self._notices.workers(self._slots > 0)
+            self._give_up("the cluster has no workers of this version")
+            self._reconcile()
+            await asyncio.sleep(WATCH)
+        raise ConnectionError("the connection was closed")
 
-    async def _leave(self, client: Client) -> None:
-        self._client, self._slots = None, 0
-        tasks = list(self._tasks.values())
+    def _set_slots(self, slots: int) -> None:
+        if slots != self._slots:
+            self._slots = slots
+            self._news.put(None)
+        if slots:
+            self._heard = monotonic()
+
+    async def _leave(self, client: Client | None) -> None:
+        if self._workers is not None:
+            self._workers.close()
+        self._workers, self._slots = None, 0
+        followers = [task.follower for task in self._tasks.values()]
         self._tasks.clear()
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        with contextlib.suppress(OSError, TimeoutError):
-            async with asyncio.timeout(CONNECT):
-                await client.close()
+        await _end_all(followers)
+        if client is not None:
+            with contextlib.suppress(Exception):
+                async with asyncio.timeout(CONNECT):
+                    await client.close()
 
     def _progress(self, event: tuple[float, Mapping[str, Any]]) -> None:
         _, message = event
@@ -202,33 +192,54 @@ class DaskEngine:
             self._news.put(report)
 
     def _reconcile(self) -> None:
-        """A task of ours for every wanted work, and for no other."""
-        if self._client is None:
+        """A task of ours for every wanted work, and for no other; none whose workers have all gone."""
+        if self._workers is None:
             return
-        wanted = dict(self._wanted)
-        for attempt in self._tasks.keys() - wanted.keys():
-            self._tasks.pop(attempt).cancel()
+        wanted, fitting = dict(self._wanted), frozenset(self._workers.fitting)
+        for attempt, task in list(self._tasks.items()):
+            if attempt not in wanted or task.workers.isdisjoint(fitting):
+                self._tasks.pop(attempt).follower.cancel()
+        if not fitting:
+            return
         for attempt in wanted.keys() - self._tasks.keys():
-            self._tasks[attempt] = self._loop.create_task(self._follow(self._client, wanted[attempt]))
+            follower = self._loop.create_task(self._follow(self._workers, wanted[attempt], fitting))
+            self._tasks[attempt] = _Task(follower, fitting)
 
-    async def _follow(self, client: Client, work: Work) -> None:
+    async def _follow(self, workers: Workers, work: Work, fitting: frozenset[str]) -> None:
         """Submit a work and wait for its report; without a connection it is left to the next one."""
+        client, key = workers.client, f"substructures-{work.id}-{secrets.token_hex(8)}"
         frame = work_frame(work).to_bytes()
-        future = client.submit(compute, frame, key=f"substructures-{work.id}-{secrets.token_hex(8)}", pure=False)
+        future = client.submit(compute, frame, key=key, pure=False, workers=sorted(fitting), allow_other_workers=False)
         try:
-            self._end(_report(work.id, await future))
+            data = await future
         except (CancelledError, OSError) as error:
             if client.status == "running":
                 self._end(Report(work.id, death=f"the cluster gave the task up: {error}"))
-        except (KilledWorker, WireError, ImportError) as error:
-            self._end(Report(work.id, death=f"the task failed: {error}"))
+        except (WireError, ImportError):
+            workers.doubt()  # a worker of another version: the next look submits the work again
+        except Exception as error:
+            self._end(Report(work.id, death=f"the task failed: {described(error)}"))
+        else:
+            self._end(_report(work.id, data))
         finally:
             future.release()
-            if self._tasks.get(work.id) is asyncio.current_task():
+            task = self._tasks.get(work.id)
+            if task is not None and task.follower is asyncio.current_task():
                 del self._tasks[work.id]
 
 
 def _report(attempt: str, data: bytes) -> Report:
-    frames: Iterator[Any] = Reader().feed(data)
-    frame = next(frames, None)
-    return Report(attempt, death="the worker gave the task up") if frame is None else read_report(frame)
+    try:
+        frames: Iterator[Any] = Reader().feed(data)
+        frame = next(frames, None)
+        return Report(attempt, death="the worker gave the task up") if frame is None else read_report(frame)
+    except WireError as error:
+        return Report(attempt, death=f"the worker's answer cannot be read: {error}")
+
+
+async def _end_all(tasks: Collection[asyncio.Task[Any]]) -> None:
+    """Cancel tasks, and wait for their ends; not for ever."""
+    for task in tasks:
+        task.cancel()
+    if tasks:
+        await asyncio.wait(tasks, timeout=CONNECT)

@@ -39,8 +39,8 @@ class Cluster:
     def start_scheduler(self) -> None:
         self.scheduler = self._start("dask_scheduler", "--port", str(self.port), "--no-show")
 
-    def add_workers(self, count: int) -> None:
-        options = ("--nthreads", "1", "--no-nanny", "--memory-limit", "0", "--death-timeout", "60")
+    def add_workers(self, count: int, *more: str) -> None:
+        options = ("--nthreads", "1", "--no-nanny", "--memory-limit", "0", "--death-timeout", "60", *more)
         self.workers += [self._start("dask_worker", self.address, *options) for _ in range(count)]
 
     def _start(self, command: str, *arguments: str) -> subprocess.Popen[bytes]:
