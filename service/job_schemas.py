@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.shapes import Links, Shape, Time
 
+JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
@@ -19,7 +20,7 @@ class JobRequest(Shape):
         extra="forbid", json_schema_extra={"oneOf": [{"required": ["items"]}, {"required": ["template"]}]}
     )
 
-    kind: str = Field(description="assemble, evaluate, export, derive, verify, simulate, optimise, analyse")
+    kind: JobKind
     items: list[dict[str, Any]] | None = Field(None, description="what an item is depends on the kind")
     template: dict[str, Any] | None = Field(None, description="an item that is copied for every combination of choices")
     choices: dict[str, list[Any]] | None = Field(None, description="values by place in the template")
@@ -44,7 +45,7 @@ class JobView(Shape):
     """A job. It fails when all of its items fail; otherwise the result says which of them did."""
 
     id: str
-    kind: str
+    kind: JobKind
     state: JobState
     progress: JobProgress
     attempts: int = Field(description="attempts on all items")
