@@ -46,14 +46,12 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
     target = _file(address, "use pg_restore for PostgreSQL")
     if target.exists() and not overwrite:
         raise DatabaseError(f"{target} exists; restore to another file, or say --overwrite")
-    if not _is_sqlite(source):
-        raise DatabaseError(f"{source} is no backup")
+    _check_backup(source)  # before the store is claimed: the file of the claim stays
     with closing(claimed(normalised(address))):
         part = target.with_name(target.name + ".part")
         part.unlink(missing_ok=True)
         try:
             with closing(_reader(source)) as connection, closing(sqlite3.connect(part)) as copy:
-                _check(connection, source)
                 connection.backup(copy)
             _sync(part)
             for leftover in ("-wal", "-shm"):  # of the store that is replaced
@@ -64,6 +62,16 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
         finally:
             part.unlink(missing_ok=True)
     Database(address).close()  # an older version is migrated now rather than when the server starts
+
+
+def _check_backup(source: Path) -> None:
+    if not _is_sqlite(source):
+        raise DatabaseError(f"{source} is no backup")
+    try:
+        with closing(_reader(source)) as connection:
+            _check(connection, source)
+    except sqlite3.Error as error:
+        raise DatabaseError(f"{source} is no usable backup: {error}") from None
 
 
 def _file(address: str, otherwise: str) -> Path:

@@ -10,7 +10,7 @@ from http.client import HTTPResponse
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
-from urllib.parse import urlencode
+from urllib.parse import quote, urlencode
 
 import httpx2
 
@@ -24,9 +24,23 @@ class ProblemError(Exception):
 
     def __init__(self, status: int, problem: dict[str, Any]) -> None:
         self.status, self.problem = status, problem
-        lines = [f"{status}: {problem.get('detail', 'no details')}"]
-        lines += [f"  {e['pointer'] or '/'}: {e['message']}" for e in problem.get("errors", ())]
-        super().__init__("\n".join(lines))
+        super().__init__(f"{status}: {_told(problem)}")
+
+
+def _told(problem: Mapping[str, Any]) -> str:
+    """The detail of a problem and its faults, each once: a detail often says the same as the faults."""
+    detail, errors = str(problem.get("detail", "no details")), problem.get("errors", ())
+    faults = [f"{e['pointer'] or '/'}: {e['message']}" for e in errors]
+    if not faults or detail not in (errors[0]["message"], "; ".join(faults[:3])):
+        return "\n  ".join([detail, *faults])
+    return "\n  ".join([f"{len(faults)} faults", *faults]) if faults[1:] else faults[0]
+
+
+def step(given: str) -> str:
+    """A name or an id as one step of a path. Raises ValueError for what can be none."""
+    if not given.strip("."):
+        raise ValueError(f"a name or an id is needed, found '{given}'")
+    return quote(given, safe="@:")
 
 
 class Caller:

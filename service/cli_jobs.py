@@ -8,20 +8,41 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from math import nan
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from service import arrow
 from service.arrays import read_npz
 from service.backup import backup, restore
+from service.caller import step
 from service.cli_progress import counted, follow
 from service.client import Client
 from service.job_caller import FORMATS, PATIENCE
 from service.settings import from_environment
 from substructures.documents import read_json, read_yaml
+from substructures.errors import Fault, InvalidDocument
 
 Add = Callable[[Any, str, Callable[[argparse.Namespace], int], str], argparse.ArgumentParser]
 SERVER = "http://127.0.0.1:8000"
+EPILOG = """\
+{"kind": "evaluate", "items": [{"tree": "swing", "request": {"quantities": ["metric"], "q": [[0, 0], [1, 0]]}}]}
+{"kind": "simulate", "template": {"tree": "swing", "request": {"q": [0, 0], "span": [0, 5], "step": 0.05}},
+ "choices": {"/request/q/0": [0.1, 0.2]}}
+
+An item is, for
+  assemble             a tree document
+  derive               a definition
+  verify               substructure (* for all)
+  evaluate             tree, request, grid or sample, format
+  simulate, optimise   tree, request or requests, format
+  analyse              tree, analysis, request or requests, format
+  export               tree, quantity, format, form, bind, options
+
+A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
+instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
+document: 'substructures openapi', or /openapi.json of a server.
+"""
 
 
 def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentParser], None]) -> None:
@@ -30,6 +51,7 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
     actions = jobs.add_subparsers(title="actions", required=True, metavar="ACTION")
     command = add(actions, "submit", _submit, "queue the job in a file")
     command.add_argument("file", type=Path, help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML')
+    command.formatter_class, command.epilog = argparse.RawDescriptionHelpFormatter, EPILOG
     _add_wait(command)
     add_server(command)
     command = add(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
@@ -44,7 +66,7 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
     command = add(actions, "list", _list, "list jobs, the newest first")
     command.add_argument("--state", help="only those in this state")
     command.add_argument("--kind", help="only those of this kind")
-    command.add_argument("--count", type=int, default=20, help="how many (20)")
+    command.add_argument("--count", type=_count, default=20, help="how many (20)")
     add_server(command)
     for name, run, text in (
         ("show", _show, "print a job as JSON"),
@@ -74,7 +96,23 @@ def _add_wait(command: argparse.ArgumentParser) -> None:
 
 def _add_patience(command: argparse.ArgumentParser) -> None:
     text = f"seconds to go on when the server cannot be reached ({PATIENCE:g})"
-    command.add_argument("--patience", type=float, default=PATIENCE, metavar="SECONDS", help=text)
+    command.add_argument("--patience", type=_patience, default=PATIENCE, metavar="SECONDS", help=text)
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or not int(text):
+        raise argparse.ArgumentTypeError(f"a whole number from 1 is needed, found '{text}'")
+    return int(text)
+
+
+def _patience(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = nan
+    if not seconds > 0:
+        raise argparse.ArgumentTypeError(f"a number of seconds above 0 is needed, found '{text}'")
+    return seconds
 
 
 def add_server(command: argparse.ArgumentParser) -> None:
@@ -84,9 +122,23 @@ def add_server(command: argparse.ArgumentParser) -> None:
 
 
 def read_document(path: Path) -> Any:
-    """A document in JSON or YAML. Raises InvalidDocument."""
-    data = path.read_bytes()
-    return read_json(data) if path.suffix == ".json" else read_yaml(data)
+    """A document in JSON or YAML. Raises InvalidDocument naming the file."""
+    with path.open("rb") as file, _named(path):
+        return _read(path, file)
+
+
+def _read(path: Path, file: IO[bytes]) -> Any:
+    return read_json(file.read()) if path.suffix == ".json" else read_yaml(file.read())
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
+    try:
+        yield
+    except InvalidDocument as error:
+        faults = [Fault(f"{path}#{f.pointer}" if f.pointer else str(path), f.code, f.message) for f in error.faults]
+        raise InvalidDocument(faults) from None
 
 
 def _client(options: argparse.Namespace) -> Client:
@@ -109,9 +161,9 @@ def _evaluate(options: argparse.Namespace) -> int:
 def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | Iterable[Mapping[str, Any]]]]:
     """What is the same for all states of a file, and the states, as ``Client.submit_states`` wants them.
 
-    Raises InvalidDocument.
+    Raises InvalidDocument naming the file.
     """
-    with path.open("rb") as file:
+    with path.open("rb") as file, _named(path):
         if path.suffix == ".npz":
             arrays = read_npz(file, sys.maxsize)
             texts = {name: x.tolist() for name, x in arrays.items() if x.dtype.kind == "U"}
@@ -120,7 +172,10 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
             reader = arrow.Reader(file, sys.maxsize)
             yield {name: json.loads(text) for name, text in reader.metadata.items()}, reader
         else:
-            yield {}, read_document(path)
+            states = _read(path, file)
+            if not isinstance(states, dict):
+                raise InvalidDocument.at("", "object-expected", "an object with 'quantities', 'q', ... is needed")
+            yield {}, states
 
 
 def _queued(client: Client, job: Mapping[str, Any], options: argparse.Namespace) -> int:
@@ -156,7 +211,7 @@ def _watch(options: argparse.Namespace) -> int:
 def _result(options: argparse.Namespace) -> int:
     with _client(options) as client:
         if options.output is not None:
-            size = client.download(f"/v1/jobs/{options.id}/archive", options.output)
+            size = client.download(f"/v1/jobs/{step(options.id)}/archive", options.output)
             print(f"{options.output}: {size:,} bytes")
             return 0
         for item in client.job_items(options.id):

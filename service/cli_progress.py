@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from itertools import islice
 from time import monotonic
 from typing import Any, TextIO
 
@@ -22,7 +23,16 @@ def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
         bar.leave()
         raise
     bar.end(end)
+    if end["progress"]["failed"]:
+        _explain(client, job)
     return 0 if end["state"] == "succeeded" and not end["progress"]["failed"] else 1
+
+
+def _explain(client: Client, job: str) -> None:
+    """Say why the first item failed that did, and where the others are told."""
+    for item in islice(client.job_items(job, state="failed"), 1):
+        sys.stderr.write(f"item {item['position']}: {item['problem']['detail']}\n")
+    sys.stderr.write(f"all items: substructures jobs result {job}\n")
 
 
 class Bar:

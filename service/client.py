@@ -12,7 +12,7 @@ from service import arrow
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrays import as_answer, flat, nested, view_npz, write_npz
 from service.bulk import read_all
-from service.caller import ProblemError
+from service.caller import ProblemError, step
 from service.job_caller import JobCaller, ServerLost, joined_parts
 
 __all__ = ["Client", "ProblemError", "ServerLost"]
@@ -30,7 +30,7 @@ class Client(JobCaller):
 
     def substructure(self, ref: str) -> dict[str, Any]:
         """A version of the catalogue."""
-        return dict(self.request("GET", f"/v1/substructures/{ref}").json())
+        return dict(self.request("GET", f"/v1/substructures/{step(ref)}").json())
 
     def create_tree(self, spec: Any) -> dict[str, Any]:
         """Couple the instances of a tree."""
@@ -38,7 +38,7 @@ class Client(JobCaller):
 
     def couple(self, tree: str, instance: Any) -> dict[str, Any]:
         """Couple one more instance onto a tree; the new revision."""
-        return self._made(f"/v1/trees/{tree}/couplings", instance)
+        return self._made(f"/v1/trees/{step(tree)}/couplings", instance)
 
     def formula(
         self,
@@ -51,7 +51,7 @@ class Client(JobCaller):
     ) -> str:
         """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..."""
         wanted = {"format": format, "form": form, "bind": bind, **options}
-        return self.request("GET", f"/v1/trees/{tree}/{quantity}", params=wanted).text
+        return self.request("GET", f"/v1/trees/{step(tree)}/{step(quantity)}", params=wanted).text
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
         """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4).
@@ -59,7 +59,7 @@ class Client(JobCaller):
         When one of the values is a numpy array, all travel as npz, and arrays come back in place of lists; so they do
         where it takes so long that it becomes a job, which is waited for.
         """
-        path = f"/v1/trees/{tree}/evaluations"
+        path = f"/v1/trees/{step(tree)}/evaluations"
         given = flat(request)
         if not any(isinstance(value, np.ndarray) for value in given.values()):
             told = self.request("POST", path, request)
@@ -92,7 +92,7 @@ class Client(JobCaller):
         Waits where it takes so long that it becomes a job.
         """
         plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in request.items()}
-        path, headers = f"/v1/trees/{tree}/{analysis}", {"Accept": media_type}
+        path, headers = f"/v1/trees/{step(tree)}/{analysis}", {"Accept": media_type}
         answer = self.request("POST", path, plain, headers=headers)
         if answer.status_code != 202:
             right = answer.headers.get("trajectory-right", "true") == "true"
@@ -111,7 +111,7 @@ class Client(JobCaller):
         """
         tables = (arrow.Table(flat(batch)) for batch in batches)
         content = arrow.write_tables(tables, constants)
-        with self._transfer(f"/v1/trees/{tree}/evaluations", content, arrow.MEDIA_TYPE) as answer:
+        with self._transfer(f"/v1/trees/{step(tree)}/evaluations", content, arrow.MEDIA_TYPE) as answer:
             if answer.status == 202:
                 yield from self.results(json.loads(answer.read())["id"])
                 return

@@ -14,7 +14,7 @@ import numpy as np
 from service import arrow
 from service.arrays import MEDIA_TYPE as NPZ
 from service.arrays import Npz, as_answer, flat, nested, view_npz, write_npz
-from service.caller import Caller, ProblemError, check
+from service.caller import Caller, ProblemError, check, step
 from service.columns import parted, request_of
 
 #: seconds between looks at a job, for one look, and without an answer
@@ -37,7 +37,7 @@ class JobCaller(Caller):
 
     def job(self, job: str) -> dict[str, Any]:
         """A job with its progress."""
-        return dict(self.request("GET", f"/v1/jobs/{job}").json())
+        return dict(self.request("GET", f"/v1/jobs/{step(job)}").json())
 
     def jobs(self, **filters: str) -> Iterator[dict[str, Any]]:
         """All jobs (of a ``state``, of a ``kind``), the newest first."""
@@ -45,11 +45,11 @@ class JobCaller(Caller):
 
     def job_items(self, job: str, **filters: str) -> Iterator[dict[str, Any]]:
         """The items of a job (in a ``state``) with their results and problems."""
-        return self._pages(f"/v1/jobs/{job}/items", filters)
+        return self._pages(f"/v1/jobs/{step(job)}/items", filters)
 
     def cancel_job(self, job: str) -> dict[str, Any]:
         """Cancel what is not finished."""
-        return dict(self.request("POST", f"/v1/jobs/{job}/cancel").json())
+        return dict(self.request("POST", f"/v1/jobs/{step(job)}/cancel").json())
 
     def submit_states(
         self, tree: str, states: Mapping[str, Any] | Iterable[Mapping[str, Any]], form: str = "npz", **constants: Any
@@ -60,7 +60,7 @@ class JobCaller(Caller):
         ``constants``: what is the same for all (``quantities``, ``parameters``, ...); ``form``: npz or arrow, of the
         results. More than 32 MiB, and batches, travel as an Arrow stream, which needs pyarrow.
         """
-        path, headers = f"/v1/trees/{tree}/evaluations", {"Prefer": "respond-async", "Accept": FORMATS[form]}
+        path, headers = f"/v1/trees/{step(tree)}/evaluations", {"Prefer": "respond-async", "Accept": FORMATS[form]}
         if isinstance(states, Mapping):
             if not any(isinstance(x, np.ndarray) for x in flat(states).values()):
                 return dict(self.request("POST", path, {**states, **constants}, headers=headers).json())
@@ -84,7 +84,7 @@ class JobCaller(Caller):
         """The parts of an evaluation that is a job, in order, each as soon as it is computed; ``range`` says of which
         states. Raises ProblemError for a part that failed or was cancelled.
         """
-        link, done = f"/v1/jobs/{job}/items?page_size=100", 0
+        link, done = f"/v1/jobs/{step(job)}/items?page_size=100", 0
         while link is not None:
             page = self.request("GET", link).json()
             ended = [item for item in page["items"] if item["finished"] is not None]
@@ -122,7 +122,7 @@ class JobCaller(Caller):
         while True:
             begun = monotonic()
             try:
-                view = dict(self.request("GET", f"/v1/jobs/{job}", timeout=min(LOOK, patience)).json())
+                view = dict(self.request("GET", f"/v1/jobs/{step(job)}", timeout=min(LOOK, patience)).json())
             except (httpx2.TransportError, ProblemError) as error:
                 if isinstance(error, ProblemError) and error.status not in GATEWAY:
                     raise
@@ -152,7 +152,7 @@ class JobCaller(Caller):
     def events(self, job: str, after: int = 0) -> Iterator[tuple[int, str, dict[str, Any]]]:
         """What happens to a job behind the event ``after`` (number, type, data), until it or the connection ends."""
         headers = {"Last-Event-ID": str(after)} if after else {}
-        with self._http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as answer:
+        with self._http.stream("GET", f"/v1/jobs/{step(job)}/events", headers=headers) as answer:
             if answer.is_error:
                 answer.read()
                 check(answer)
@@ -169,9 +169,9 @@ class JobCaller(Caller):
 def _batches(rows: Mapping[str, np.ndarray[Any, Any]], size: int) -> Iterator[dict[str, Any]]:
     """Arrays of ``size`` bytes in all, in batches."""
     count = len(next(iter(rows.values())))
-    step = max(1, count * AT_ONCE // size)
-    for start in range(0, count, step):
-        yield {name: x[start : start + step] for name, x in rows.items()}
+    rows_each = max(1, count * AT_ONCE // size)
+    for start in range(0, count, rows_each):
+        yield {name: x[start : start + rows_each] for name, x in rows.items()}
 
 
 def _require_result(item: Mapping[str, Any]) -> None:

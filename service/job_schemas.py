@@ -6,9 +6,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.job_guide import CHOICES, EXAMPLES, KINDS
 from service.shapes import Links, Shape, Time
 
+JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
+Item = dict[str, Any]
+Values = Annotated[list[Any], Field(min_length=1)]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -16,13 +20,17 @@ class JobRequest(Shape):
     """What is to be computed: a list of items, or a template with lists of choices."""
 
     model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"oneOf": [{"required": ["items"]}, {"required": ["template"]}]}
+        extra="forbid",
+        json_schema_extra={
+            "oneOf": [{"required": ["items"]}, {"required": ["template", "choices"]}],
+            "examples": list(EXAMPLES),
+        },
     )
 
-    kind: str = Field(description="assemble, evaluate, export, derive, verify, simulate, optimise, analyse")
-    items: list[dict[str, Any]] | None = Field(None, description="what an item is depends on the kind")
-    template: dict[str, Any] | None = Field(None, description="an item that is copied for every combination of choices")
-    choices: dict[str, list[Any]] | None = Field(None, description="values by place in the template")
+    kind: JobKind = Field(description=KINDS)
+    items: list[Item] = Field(default_factory=list, min_length=1, description="what an item is: see `kind`")
+    template: Item = Field(default_factory=dict, description="an item that is copied for every combination of choices")
+    choices: dict[str, Values] = Field(default_factory=dict, min_length=1, description=CHOICES)
 
 
 class CancelRequest(Shape):
@@ -44,7 +52,7 @@ class JobView(Shape):
     """A job. It fails when all of its items fail; otherwise the result says which of them did."""
 
     id: str
-    kind: str
+    kind: JobKind
     state: JobState
     progress: JobProgress
     attempts: int = Field(description="attempts on all items")

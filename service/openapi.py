@@ -22,8 +22,21 @@ TEMPLATE = "#/components/schemas/{model}"
 PROBLEM: dict[int | str, dict[str, Any]] = {
     "default": {
         "description": "Problem document",
+        "headers": {
+            "Retry-After": {
+                "description": "seconds, where the same request can succeed later (some of 409 and 503)",
+                "schema": {"type": "integer"},
+            }
+        },
         "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
     }
+}
+JOB_ADDRESS = {"description": "the job", "schema": {"type": "string", "format": "uri-reference"}}
+PREFER = {
+    "name": "Prefer",
+    "in": "header",
+    "description": "`wait=N`: at most N seconds, then it becomes a job; `respond-async`: it becomes one at once",
+    "schema": {"type": "string"},
 }
 _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
 _REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
@@ -47,7 +60,20 @@ def document(app: FastAPI) -> dict[str, Any]:
     result["components"]["schemas"] = dict(sorted(schemas.items()))
     result["components"]["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
     result["security"] = [{}, {"key": []}]
+    for methods in result["paths"].values():
+        for operation in methods.values():
+            _describe_job(operation)
     return result
+
+
+def _describe_job(operation: dict[str, Any]) -> None:
+    """The headers of an endpoint whose answer is, or can become, a job."""
+    accepted = operation["responses"].get("202")
+    if accepted is None:
+        return
+    accepted["headers"] = {"Location": JOB_ADDRESS}
+    if any(status in operation["responses"] for status in ("200", "201")):
+        operation.setdefault("parameters", []).append(PREFER)
 
 
 def text(app: FastAPI) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -12,7 +12,14 @@ from substructures.documents import message_of
 
 PREFIX = "SUBSTRUCTURES_"
 LIMIT_PREFIX = "LIMIT_"
+CLIENT = ("key",)  # variables of the commands that talk to a server; no settings of a server
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+# Bounds of limits are what a database, a kernel and a clock can still be told: 2^62, a year, a century.
+Count = Annotated[int, Field(gt=0, le=2**62)]
+Seconds = Annotated[float, Field(gt=0, le=366 * 86400)]
+Hours = Annotated[float, Field(gt=0, le=36525 * 24)]
+Days = Annotated[float, Field(gt=0, le=36525)]
 
 
 class SettingsError(Exception):
@@ -26,48 +33,48 @@ class Limits(BaseModel):
     package, so that a definition accepted by one server is accepted by all.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    json_bytes: int = Field(2 * 2**20, gt=0, description="largest JSON request body, bytes")
+    json_bytes: Count = Field(2 * 2**20, description="largest JSON request body, bytes")
     binary_bytes: int = Field(64 * 2**20, gt=0, le=2**30, description="largest npz body or Arrow record batch, bytes")
-    stream_bytes: int = Field(2**32, gt=0, description="largest Arrow request body, bytes; kept in a temporary file")
-    stream_states: int = Field(10**8, gt=0, description="most states of one Arrow request")
-    program_nodes: int = Field(100_000, gt=0, description="most operations of a derived or coupled program")
-    sync_seconds: float = Field(10.0, gt=0, description="longest time a request may compute, seconds")
-    states: int = Field(1_000_000, gt=0, description="most states of one evaluation")
-    evaluation_operations: int = Field(2 * 10**9, gt=0, description="most states times operations of one evaluation")
-    page_size: int = Field(1000, gt=0, description="most items of a page")
-    idempotency_hours: float = Field(24.0, gt=0, description="how long an Idempotency-Key is remembered, hours")
-    job_bytes: int = Field(16 * 2**20, gt=0, description="largest JSON body that submits a job, bytes")
-    job_queue: int = Field(200_000, gt=0, description="most unfinished items of all jobs")
-    job_queue_per_key: int = Field(100_000, gt=0, description="most unfinished items of the jobs of one API key")
-    job_seconds: float = Field(1800.0, gt=0, description="longest time of one attempt on an item, seconds")
-    lease_seconds: float = Field(20.0, gt=0, description="after this time the items of a dead server are taken over")
-    job_days: float = Field(30.0, gt=0, description="how long finished jobs and their results are kept, days")
-    upload_hours: float = Field(1.0, gt=0, description="how long uploaded states without a job are kept, hours")
-    job_items: int = Field(20_000, gt=0, description="most items of one job")
-    job_states: int = Field(10_000, gt=0, description="most states of one item; larger sets are split into items")
-    job_nodes: int = Field(1_000_000, gt=0, description="most operations of a program derived or coupled by a job")
-    job_cpu_seconds: float = Field(600.0, gt=0, description="CPU time of one item of a job, seconds")
-    job_memory_bytes: int = Field(2 * 2**30, gt=0, description="memory of the process that computes an item, bytes")
+    stream_bytes: Count = Field(2**32, description="largest Arrow request body, bytes; kept in a temporary file")
+    stream_states: Count = Field(10**8, description="most states of one Arrow request")
+    program_nodes: Count = Field(100_000, description="most operations of a derived or coupled program")
+    sync_seconds: Seconds = Field(10.0, description="longest time a request may compute, seconds")
+    states: Count = Field(1_000_000, description="most states of one evaluation")
+    evaluation_operations: Count = Field(2 * 10**9, description="most states times operations of one evaluation")
+    page_size: Count = Field(1000, description="most items of a page")
+    idempotency_hours: Hours = Field(24.0, description="how long an Idempotency-Key is remembered, hours")
+    job_bytes: Count = Field(16 * 2**20, description="largest JSON body that submits a job, bytes")
+    job_queue: Count = Field(200_000, description="most unfinished items of all jobs")
+    job_queue_per_key: Count = Field(100_000, description="most unfinished items of the jobs of one API key")
+    job_seconds: Seconds = Field(1800.0, description="longest time of one attempt on an item, seconds")
+    lease_seconds: Seconds = Field(20.0, description="after this time the items of a dead server are taken over")
+    job_days: Days = Field(30.0, description="how long finished jobs and their results are kept, days")
+    upload_hours: Hours = Field(1.0, description="how long uploaded states without a job are kept, hours")
+    job_items: Count = Field(20_000, description="most items of one job")
+    job_states: Count = Field(10_000, description="most states of one item; larger sets are split into items")
+    job_nodes: Count = Field(1_000_000, description="most operations of a program derived or coupled by a job")
+    job_cpu_seconds: Seconds = Field(600.0, description="CPU time of one item of a job, seconds")
+    job_memory_bytes: Count = Field(2 * 2**30, description="memory of the process that computes an item, bytes")
 
 
 class Settings(BaseModel):
     """How one server runs."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     database: str = Field("sqlite:///substructures.db", description="SQLAlchemy URL; SQLite or PostgreSQL")
     host: str = Field("127.0.0.1", description="address to listen on")
     port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
     allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
-    cache_nodes: int = Field(2_000_000, ge=0, description="operations of decoded programs kept in memory")
+    cache_nodes: int = Field(2_000_000, ge=0, le=2**62, description="operations of decoded programs kept in memory")
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
-    workers: int = Field(0, ge=0, description="processes that compute jobs; 0: one per core")
+    workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
-    key_seconds: float = Field(1.0, ge=0, description="how long a checked API key is not checked again, seconds")
+    key_seconds: float = Field(1.0, ge=0, le=86400, description="for how long a key is not checked again, seconds")
     limits: Limits = Limits()
 
     @property
@@ -87,9 +94,11 @@ class Settings(BaseModel):
 def from_environment(environment: Mapping[str, str], **overrides: object) -> Settings:
     """Settings from ``SUBSTRUCTURES_*`` variables; ``overrides`` that are not None win.
 
-    Raises SettingsError naming the variable, also for one that no setting has (a typing error would go unnoticed).
+    Variables of the client are left alone. Raises SettingsError naming the variable, also for one that no setting has
+    (a typing error would go unnoticed).
     """
     given = {name[len(PREFIX) :].lower(): text for name, text in environment.items() if name.startswith(PREFIX)}
+    given = {name: text for name, text in given.items() if name not in CLIENT}
     prefix = LIMIT_PREFIX.lower()
     values: dict[str, object] = {name: text for name, text in given.items() if not name.startswith(prefix)}
     if "allowed_hosts" in given:

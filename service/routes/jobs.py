@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.acting import OnceOf
 from service.answers import Answer, json_answer
 from service.database import Connection
-from service.job_schemas import CancelRequest, ItemPage, ItemState, JobPage, JobState, JobView
+from service.job_schemas import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView
 from service.job_views import BINARY, item_view, job_view, media_type
 from service.operations import jobs
 from service.paging import limited, link_header, next_link, read_token, write_token
@@ -23,10 +23,18 @@ from service.views import dump
 from substructures.definition import read_model
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
+MANY = 2**31  # more items than a job has, and what every database takes for a position
 READ, JOBS = [needs("read")], [needs("jobs")]
 PageSize = Annotated[int, Query(ge=1)]
 Token = Annotated[str | None, Query(max_length=2000)]
-FILE: dict[int | str, Any] = {200: {"description": "The file", "content": {BINARY: binary()}}}
+FILES = ("application/json", "application/x-npz", "application/vnd.apache.arrow.stream", BINARY)
+TEXTS = ("text/csv", "image/svg+xml", "text/plain")
+FILE: dict[int | str, Any] = {
+    200: {
+        "description": "The file, in the `media_type` that the item says",
+        "content": {media: binary() for media in FILES} | {media: {"schema": {"type": "string"}} for media in TEXTS},
+    }
+}
 
 
 @router.post("", status_code=202, response_model=JobView, dependencies=JOBS, openapi_extra=body_of("JobRequest"))
@@ -42,7 +50,7 @@ def list_jobs(
     request: Request,
     store: StoreOf,
     state: JobState | None = None,
-    kind: Annotated[str | None, Query(max_length=40)] = None,
+    kind: JobKind | None = None,
     page_size: PageSize = 50,
     page_token: Token = None,
 ) -> Response:
@@ -117,6 +125,9 @@ router.add_api_route(
 def get_file(job: str, position: int, name: str, store: StoreOf) -> Response:
     """A file of a result."""
     with store.database.read() as connection:
+        if not 0 <= position < MANY:
+            jobs.find(connection, job)
+            raise not_found(f"the job has no item {position}", "unknown-item")
         item = jobs.find_item(connection, job, position)
         content = results.get_file(connection, item.key, name) if item.summary is not None else None
     if content is None:

@@ -109,6 +109,16 @@ def test_errors_of_the_surroundings(
     assert stop.value.code == 2
 
 
+def test_the_key_of_a_client_is_no_setting(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("SUBSTRUCTURES_KEY", "sub_x")
+    address = f"sqlite:///{tmp_path / 'x.db'}"
+    assert main(["key", "list", "--database", address]) == 0
+    assert main(["backup", str(tmp_path / "y.db"), "--database", address]) == 0
+    assert not capsys.readouterr().err
+
+
 def test_keys(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     database = ["--database", f"sqlite:///{tmp_path / 'x.db'}"]
     assert (

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
+from service.operations.retention import sweep
 from service.schemas import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store import Store
@@ -201,6 +203,7 @@ def test_settings_from_the_environment() -> None:
             "SUBSTRUCTURES_PORT": "9",
             "SUBSTRUCTURES_LIMIT_STATES": "7",
             "SUBSTRUCTURES_ALLOWED_HOSTS": "a, b",
+            "SUBSTRUCTURES_KEY": "of the client",
             "HOME": "/",
         },
         host="::1",
@@ -212,6 +215,36 @@ def test_settings_from_the_environment() -> None:
         ("SUBSTRUCTURES_PORT", "x"),
         ("SUBSTRUCTURES_LIMIT_STATES", "0"),
         ("SUBSTRUCTURES_LIMIT_STATE", "1"),
+        ("SUBSTRUCTURES_KEYS", "1"),
+        ("SUBSTRUCTURES_KEY_SECONDS", "inf"),
+        ("SUBSTRUCTURES_WORKERS", "1000000"),
+        ("SUBSTRUCTURES_LIMIT_JOB_DAYS", "1e9"),
+        ("SUBSTRUCTURES_LIMIT_JOB_CPU_SECONDS", "1e300"),
+        ("SUBSTRUCTURES_LIMIT_JOB_MEMORY_BYTES", "1" + "0" * 20),
     ):
         with pytest.raises(SettingsError, match=name):
             from_environment({name: value})
+
+
+@pytest.mark.parametrize("name", Limits.model_fields)
+@pytest.mark.parametrize("value", ["inf", "nan", "1" + "0" * 20])
+def test_limits_have_bounds(name: str, value: str) -> None:
+    with pytest.raises(SettingsError, match=f"SUBSTRUCTURES_LIMIT_{name.upper()}"):
+        from_environment({f"SUBSTRUCTURES_LIMIT_{name.upper()}": value})
+
+
+def test_no_limit_breaks_a_server(tmp_path: Path) -> None:
+    largest = {
+        name: bound.le
+        for name, field in Limits.model_fields.items()
+        for bound in field.metadata
+        if hasattr(bound, "le")
+    }
+    assert largest.keys() == Limits.model_fields.keys()
+    settings = Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False, limits=Limits(**largest))
+    with open_store(settings) as store:
+        sweep(store, Event())
+        client = make_client(store)
+        assert client.get("/v1/limits").json().items() >= largest.items()
+        answer = client.post("/v1/substructures", json=PENDULUM, headers={"Idempotency-Key": "a"})
+        assert answer.status_code == 201

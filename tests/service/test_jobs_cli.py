@@ -16,6 +16,7 @@ from service import arrow
 from service.cli import main
 from service.cli_progress import Bar, text
 from service.client import Client, ProblemError
+from service.jobs.kinds import KINDS
 from service.server import background
 from service.settings import Settings
 
@@ -70,6 +71,10 @@ def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: 
     assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 1
     shown = capsys.readouterr()
     assert "1 failed" in shown.err
+    job = shown.out.strip()
+    assert "item 0: " in shown.err
+    assert "'nothing'" in shown.err
+    assert f"substructures jobs result {job}" in shown.err
     assert main(["jobs", "result", shown.out.strip(), "--server", address]) == 0
     assert "0  failed  " in capsys.readouterr().out
 
@@ -172,3 +177,71 @@ def test_bar() -> None:
         bar.end({**job, "state": "failed"})
         assert stream.getvalue().endswith("\n")
         assert "failed" in stream.getvalue()
+
+
+@pytest.mark.parametrize("identifier", ["", ".", "..", "../trees/cell", "none?x=1"])
+def test_ids_are_steps_of_a_path(address: str, identifier: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for action in ("show", "cancel", "watch", "result"):
+        assert main(["jobs", action, identifier, "--server", address]) == 1
+        shown = capsys.readouterr()
+        assert not shown.out
+        assert "an id is needed" in shown.err or "404" in shown.err
+    with Client(address) as client, pytest.raises((ProblemError, ValueError)):
+        client.formula(identifier, "metric")
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        (["watch", "x", "--patience", "nan"], "--patience"),
+        (["watch", "x", "--patience", "-1"], "--patience"),
+        (["submit", "x", "--patience", "soon"], "--patience"),
+        (["list", "--count", "-1"], "--count"),
+        (["list", "--count", "0"], "--count"),
+    ],
+)
+def test_options_are_checked(command: list[str], name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["jobs", *command])
+    assert stop.value.code == 2
+    assert f"argument {name}: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "content", "expected"),
+    [
+        (["evaluate", "cell"], "two.json", "[1,2]", "an object with 'quantities'"),
+        (["evaluate", "cell"], "bad.npz", "nothing", "not an npz file"),
+        (["submit"], "bad.json", '{"kind": ', "line 1"),
+        (["submit"], "bad.yaml", "kind: [", "line 1"),
+    ],
+)
+def test_files_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str], name: str, content: str, expected: str
+) -> None:
+    (tmp_path / name).write_text(content)
+    assert main(["jobs", *command, str(tmp_path / name), "--server", "http://127.0.0.1:9"]) == 1
+    shown = capsys.readouterr().err
+    assert str(tmp_path / name) in shown
+    assert expected in shown
+
+
+def test_faults_are_told_once(address: str) -> None:
+    with Client(address) as client:
+        with pytest.raises(ProblemError) as caught:
+            client.submit_job({"kind": "fly", "items": [{}]})
+        assert str(caught.value).count("unknown kind 'fly'") == 1
+        assert "/kind: " in str(caught.value)
+        with pytest.raises(ProblemError) as caught:
+            client.submit_job({"kind": "verify", "items": [{"a": 1, "b": 2}]})
+        assert str(caught.value).splitlines()[0] == "422: 3 faults"
+        assert str(caught.value).count("unknown field 'b'") == 1
+    assert str(ProblemError(404, {"detail": "gone", "errors": []})) == "404: gone"
+
+
+def test_help_says_what_items_are(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["jobs", "submit", "--help"])
+    shown = capsys.readouterr().out
+    assert all(kind in shown for kind in KINDS)
+    assert "/openapi.json" in shown

@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from typing import Any
+from typing import Any, get_args
 
 from fastapi.testclient import TestClient
 
+from service.job_schemas import JobKind
+from service.jobs.kinds import KINDS
 from service.store import Store
 
 from .conftest import PENDULUM, SLIDER
@@ -46,6 +48,15 @@ def test_export(filled: TestClient, store: Store) -> None:
         assert archive.testzip() is None
     assert filled.get("/v1/jobs?kind=export&state=succeeded").json()["items"][0]["id"] == job
     assert filled.get("/v1/jobs?state=failed").json()["items"] == []
+    for position in (-(10**20), -1, 2, 2**31, 10**20):
+        answer = filled.get(f"/v1/jobs/{job}/items/{position}/files/text")
+        assert (answer.status_code, answer.json()["code"]) == (404, "unknown-item")
+
+
+def test_filters_are_checked(client: TestClient) -> None:
+    assert get_args(JobKind) == KINDS
+    for filters in ("kind=bogus", "state=bogus"):
+        assert client.get(f"/v1/jobs?{filters}").status_code == 422
 
 
 def test_assembled_trees_are_those_of_requests(filled: TestClient, store: Store) -> None:
