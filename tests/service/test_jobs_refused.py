@@ -71,6 +71,32 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ),
         ("assemble", {"template": TREE, "choices": {"arm.l": list(range(101))}}, ("/choices", "too-many-items")),
         ("assemble", {"template": [], "choices": {"arm": ["x"]}}, ("/template", "object-expected")),
+        *(
+            (
+                "assemble",
+                {"template": FREE | {"instances": [{"name": "a", "parameters": given}]}, "choices": {"a.m": [1, 2]}},
+                ("/choices/a.m", "unknown-choice"),
+            )
+            for given in (None, "s", [])
+        ),
+        (
+            "evaluate",
+            {"template": EVALUATION, "choices": {"/request": [1], "/request/q": [[0]]}},
+            ("/choices/~1request~1q", "unknown-choice"),
+        ),
+        (
+            "evaluate",
+            {
+                "template": {"tree": "cell", "request": {"q": [0, 0]}},
+                "choices": {"/request/q": [[]], "/request/q/1": [0, 1]},
+            },
+            ("/choices/~1request~1q~11", "unknown-choice"),
+        ),
+        (
+            "assemble",
+            {"template": FREE, "choices": {"/instances": [[]], "a": ["slider"]}},
+            ("/choices/a", "unknown-choice"),
+        ),
         ("derive", {"items": [{"name": "x", "bodies": 3}]}, ("/bodies", "tuple-type")),
         ("export", {"items": [{"tree": "cell"}]}, ("/items/0/quantity", "missing")),
         ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/tree", "unknown-tree")),
