@@ -53,6 +53,9 @@ __all__ = [
     "renumbered",
 ]
 
+#: how orjson's message begins when memory is short, which says nothing about the document
+NO_MEMORY = "Not enough memory"
+
 
 @dataclass(frozen=True)
 class Program:
@@ -90,10 +93,12 @@ class Program:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Program:
-        """Read and validate. Raises InvalidProgram with the position of the first bad operation."""
+        """Read and validate. Raises InvalidProgram with the position of the first bad operation, and MemoryError."""
         try:
             document = orjson.loads(data)
         except (ValueError, RecursionError) as error:
+            if str(error).startswith(NO_MEMORY):
+                raise MemoryError from None
             raise InvalidProgram(f"not a JSON document: {error}") from None
         return read_program(document)
 
