@@ -171,3 +171,53 @@ def test_what_cannot_be_resolved_is_refused_with_a_pointer(
     library: MemoryLibrary, kind: str, request_: dict[str, Any], expected: tuple[str, str]
 ) -> None:
     assert expected in faults(library, kind, request_, Limits(job_items=100, job_states=100))
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        ({}, "/q"),
+        ({"q": "x"}, "/q"),
+        ({"q": []}, "/q"),
+        ({"q": {"arm.q": []}}, "/q"),
+        ({"q": [[0], [0, 1]]}, "/q"),
+        ({"q": {"leg.q": 0}}, "/q/leg.q"),
+        ({"q": [[0], [1]], "qd": [[0]] * 3}, "/qd"),
+        ({"q": [[0], [1]], "t": [0, 1, 2]}, "/t"),
+        ({"q": [0], "parameters": {"arm.nose": 1}}, "/parameters/arm.nose"),
+        ({"q": [0], "parameters": [1]}, "/parameters"),
+        ({"q": [0], "quantities": ["inverse_dynamics"]}, "/qdd"),
+        ({"q": [0], "quantities": ["forward_dynamics_derivative"]}, "/along"),
+    ],
+)
+def test_evaluations_that_cannot_be_computed_are_refused(
+    library: MemoryLibrary, given: dict[str, Any], pointer: str
+) -> None:
+    item = {"tree": "cell", "request": {"quantities": ["metric"], **given}}
+    found = faults(library, "evaluate", {"items": [item]})
+    assert f"/items/0/request{pointer}" in {place for place, _ in found}
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        ({"t": [0, 1]}, "/request/t"),
+        ({"qdd": [[0], [1]]}, "/request/qdd"),
+        ({"inputs": [1]}, "/request/inputs"),
+        ({"parameters": [1]}, "/request/parameters"),
+        ({"parameters": {"arm.m": 2}}, "/grid/arm.m"),
+        ({"inputs": {"tau.arm.q": 2}}, "/grid/tau.arm.q"),
+        ({"quantities": ["inverse_dynamics"]}, "/request/qdd"),
+    ],
+)
+def test_what_does_not_fit_a_grid_is_refused(library: MemoryLibrary, given: dict[str, Any], pointer: str) -> None:
+    request = {"quantities": ["metric"], **given}
+    item = {"tree": "cell", "request": request, "grid": {"arm.q": [0, 1, 2], "arm.m": 1, "tau.arm.q": 1}}
+    found = faults(library, "evaluate", {"items": [item]})
+    assert [place for place, _ in found] == [f"/items/0{pointer}"]
+
+
+def test_a_sample_over_a_parameter_that_is_given_is_refused(library: MemoryLibrary) -> None:
+    request = {"quantities": ["metric"], "parameters": {"arm.m": 1}}
+    item = {"tree": "cell", "request": request, "sample": {"count": 2, "ranges": {"arm.m": [1, 2]}}}
+    assert faults(library, "evaluate", {"items": [item]}) == {("/items/0/sample/ranges/arm.m", "given-twice")}
