@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from substructures.errors import InvalidDocument
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument
 from substructures.evaluation import QUANTITIES, REGRESSOR, read_quantities
 from substructures.expr.program import Program
 from substructures.model import Model
@@ -27,6 +28,23 @@ def check_states(summary: Mapping[str, Any], request: Request) -> States:
         raise InvalidDocument.at("/q", "missing", "at least one state is needed")
     _check_values(summary, request, states.count, states.qdd is not None)
     return states
+
+
+def check_analysis(summary: Mapping[str, Any], request: Request, is_motion: bool, has_all: bool) -> None:
+    """The states and parameters in a request for an analysis; ``is_motion``: it has one state, where it starts,
+    ``has_all``: all of its parameters are those of the formulas. Raises InvalidDocument.
+    """
+    if "q" in request or is_motion:
+        states = {name: request.get(name) for name in ("q", "qd", "qdd")}
+        read_states(without_formulas(summary), states, 1 if is_motion else None)
+    given, known = request.get("parameters"), summary["parameters"]
+    faults = [
+        Fault("/parameters" + pointer_step(name), "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        for name in (given if has_all and isinstance(given, Mapping) else ())
+        if name not in known
+    ]
+    if faults:
+        raise InvalidDocument(faults)
 
 
 def check_described(summary: Mapping[str, Any], request: Request, count: int) -> None:
