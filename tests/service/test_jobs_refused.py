@@ -99,7 +99,7 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ),
         ("derive", {"items": [{"name": "x", "bodies": 3}]}, ("/bodies", "tuple-type")),
         ("export", {"items": [{"tree": "cell"}]}, ("/items/0/quantity", "missing")),
-        ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/tree", "unknown-tree")),
+        ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/items/0/tree", "unknown-tree")),
         (
             "export",
             {"items": [{"tree": "cell", "quantity": "metric", "format": "x"}]},
@@ -221,3 +221,23 @@ def test_a_sample_over_a_parameter_that_is_given_is_refused(library: MemoryLibra
     request = {"quantities": ["metric"], "parameters": {"arm.m": 1}}
     item = {"tree": "cell", "request": request, "sample": {"count": 2, "ranges": {"arm.m": [1, 2]}}}
     assert faults(library, "evaluate", {"items": [item]}) == {("/items/0/sample/ranges/arm.m", "given-twice")}
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer", "code"),
+    [
+        ({"quantity": "beauty"}, "/quantity", "unknown-quantity"),
+        ({"quantity": "total"}, "/quantity", "unknown-quantity"),
+        ({"bind": "arm.m"}, "/bind", "bind"),
+        ({"bind": "arm.m:1+"}, "/bind", "bind"),
+        ({"bind": "defaults,nose:1"}, "/bind", "unknown-parameter"),
+        ({"options": {"inputs": ["tau.arm.q"]}}, "/options/inputs", "unknown-option"),
+        ({"quantity": "state_space", "options": {"nose": ["x"]}}, "/options/nose", "unknown-option"),
+        ({"format": ["npz"]}, "/format", "unknown-format"),
+    ],
+)
+def test_exports_that_cannot_be_made_are_refused(
+    library: MemoryLibrary, given: dict[str, Any], pointer: str, code: str
+) -> None:
+    item = {"tree": "cell", "quantity": "metric", "format": "text", **given}
+    assert faults(library, "export", {"items": [item]}) == {(f"/items/0{pointer}", code)}

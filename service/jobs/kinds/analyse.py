@@ -15,12 +15,12 @@ import orjson
 from service.analyses.numbers import ANALYSES, check_request
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
+from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis
 from service.settings import Limits
-from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 
 #: analyses that begin at one state, and those whose coordinates are only where something is looked for
@@ -38,7 +38,7 @@ def analysis_kind(name: str | None = None) -> Kind:
         check_fields(item, ("tree", what, *which), ("format",))
         common = {"tree": item["tree"], "analysis": name or item["analysis"], "format": item.get("format", "json")}
         _check(common)
-        summary = read_json(known_tree(item, library).summary.encode())
+        summary = summary_of(known_tree(item, library).summary)
         requests = _requests(common["analysis"], item, summary)
         return [{**common, "request": each, **_limits(limits)} for each in requests]
 

@@ -21,7 +21,7 @@ from service.arrays import as_npz, read_npz
 from service.cache import Cache
 from service.columns import request_of
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import model_of
+from service.jobs.kinds.decoded import model_of, summary_of
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
@@ -30,7 +30,7 @@ from service.jobs.kinds.trees import pinned, regressor_of
 from service.jobs.kinds.values import check_described, check_states
 from service.settings import Limits
 from substructures.compile import Kernel, compile_program
-from substructures.documents import pointer_step, read_json
+from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 from substructures.evaluation import (
     QUANTITIES,
@@ -60,7 +60,7 @@ _kernels: Cache[Kernel] = Cache(
 def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
     tree = known_tree(item, library)
-    summary = read_json(tree.summary.encode())
+    summary = summary_of(tree.summary)
     request = _request(item)
     chunk = states_per_item(request, len(summary["coordinates"]), len(summary["frames"]), limits)
     described = _described(item, tree, summary, library)
