@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 
 from service.settings import Limits
-from substructures.errors import InvalidDocument
 
-from .conftest import HAND, TREE
-from .job_outcomes import FREE, known_library
+from .conftest import HAND, PENDULUM, TREE
+from .job_outcomes import FREE, faults, known_library
 from .jobs_library import MemoryLibrary
 
 
@@ -20,11 +19,9 @@ def library() -> MemoryLibrary:
     return known_library()
 
 
-def faults(library: MemoryLibrary, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> set[Any]:
-    """Pointer and code of what is wrong with a submission."""
-    with pytest.raises(InvalidDocument) as caught:
-        library.items(kind, request, limits)
-    return {(fault.pointer, fault.code) for fault in caught.value.faults}
+def with_body(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """A definition with other fields of its first body."""
+    return {**PENDULUM, "bodies": [{**PENDULUM["bodies"][0], **fields}]}
 
 
 EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric"]}}
@@ -61,6 +58,15 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             {"items": [{**TREE, "instances": [*TREE["instances"], HAND | {"at": "arm.nose"}]}]},
             ("/instances/1/at", "unknown-port"),
         ),
+        (
+            "assemble",
+            {"items": [{**TREE, "instances": TREE["instances"] * 2}]},
+            ("/instances/1/name", "duplicate-name"),
+        ),
+        ("assemble", {"items": [{**TREE, "instances": [HAND]}]}, ("/instances/0/at", "unknown-instance")),
+        ("derive", {"items": [with_body({"mass": "nope"})]}, ("/bodies/0/mass", "unknown-name")),
+        ("derive", {"items": [with_body({"com": [0, "l*(", 0]})]}, ("/bodies/0/com/1", "bad-expression")),
+        ("derive", {"items": [with_body({"parent": "nobody"})]}, ("/bodies/0/parent", "unknown-parent")),
         ("assemble", {"template": TREE}, ("/choices", "missing")),
         ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "list-expected")),
         ("assemble", {"template": TREE, "choices": {"leg": ["x"]}}, ("/choices/leg", "unknown-choice")),
@@ -171,73 +177,3 @@ def test_what_cannot_be_resolved_is_refused_with_a_pointer(
     library: MemoryLibrary, kind: str, request_: dict[str, Any], expected: tuple[str, str]
 ) -> None:
     assert expected in faults(library, kind, request_, Limits(job_items=100, job_states=100))
-
-
-@pytest.mark.parametrize(
-    ("given", "pointer"),
-    [
-        ({}, "/q"),
-        ({"q": "x"}, "/q"),
-        ({"q": []}, "/q"),
-        ({"q": {"arm.q": []}}, "/q"),
-        ({"q": [[0], [0, 1]]}, "/q"),
-        ({"q": {"leg.q": 0}}, "/q/leg.q"),
-        ({"q": [[0], [1]], "qd": [[0]] * 3}, "/qd"),
-        ({"q": [[0], [1]], "t": [0, 1, 2]}, "/t"),
-        ({"q": [0], "parameters": {"arm.nose": 1}}, "/parameters/arm.nose"),
-        ({"q": [0], "parameters": [1]}, "/parameters"),
-        ({"q": [0], "quantities": ["inverse_dynamics"]}, "/qdd"),
-        ({"q": [0], "quantities": ["forward_dynamics_derivative"]}, "/along"),
-    ],
-)
-def test_evaluations_that_cannot_be_computed_are_refused(
-    library: MemoryLibrary, given: dict[str, Any], pointer: str
-) -> None:
-    item = {"tree": "cell", "request": {"quantities": ["metric"], **given}}
-    found = faults(library, "evaluate", {"items": [item]})
-    assert f"/items/0/request{pointer}" in {place for place, _ in found}
-
-
-@pytest.mark.parametrize(
-    ("given", "pointer"),
-    [
-        ({"t": [0, 1]}, "/request/t"),
-        ({"qdd": [[0], [1]]}, "/request/qdd"),
-        ({"inputs": [1]}, "/request/inputs"),
-        ({"parameters": [1]}, "/request/parameters"),
-        ({"parameters": {"arm.m": 2}}, "/grid/arm.m"),
-        ({"inputs": {"tau.arm.q": 2}}, "/grid/tau.arm.q"),
-        ({"quantities": ["inverse_dynamics"]}, "/request/qdd"),
-    ],
-)
-def test_what_does_not_fit_a_grid_is_refused(library: MemoryLibrary, given: dict[str, Any], pointer: str) -> None:
-    request = {"quantities": ["metric"], **given}
-    item = {"tree": "cell", "request": request, "grid": {"arm.q": [0, 1, 2], "arm.m": 1, "tau.arm.q": 1}}
-    found = faults(library, "evaluate", {"items": [item]})
-    assert [place for place, _ in found] == [f"/items/0{pointer}"]
-
-
-def test_a_sample_over_a_parameter_that_is_given_is_refused(library: MemoryLibrary) -> None:
-    request = {"quantities": ["metric"], "parameters": {"arm.m": 1}}
-    item = {"tree": "cell", "request": request, "sample": {"count": 2, "ranges": {"arm.m": [1, 2]}}}
-    assert faults(library, "evaluate", {"items": [item]}) == {("/items/0/sample/ranges/arm.m", "given-twice")}
-
-
-@pytest.mark.parametrize(
-    ("given", "pointer", "code"),
-    [
-        ({"quantity": "beauty"}, "/quantity", "unknown-quantity"),
-        ({"quantity": "total"}, "/quantity", "unknown-quantity"),
-        ({"bind": "arm.m"}, "/bind", "bind"),
-        ({"bind": "arm.m:1+"}, "/bind", "bind"),
-        ({"bind": "defaults,nose:1"}, "/bind", "unknown-parameter"),
-        ({"options": {"inputs": ["tau.arm.q"]}}, "/options/inputs", "unknown-option"),
-        ({"quantity": "state_space", "options": {"nose": ["x"]}}, "/options/nose", "unknown-option"),
-        ({"format": ["npz"]}, "/format", "unknown-format"),
-    ],
-)
-def test_exports_that_cannot_be_made_are_refused(
-    library: MemoryLibrary, given: dict[str, Any], pointer: str, code: str
-) -> None:
-    item = {"tree": "cell", "quantity": "metric", "format": "text", **given}
-    assert faults(library, "export", {"items": [item]}) == {(f"/items/0{pointer}", code)}
