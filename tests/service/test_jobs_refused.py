@@ -105,7 +105,7 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ),
         ("derive", {"items": [{"name": "x", "bodies": 3}]}, ("/bodies", "tuple-type")),
         ("export", {"items": [{"tree": "cell"}]}, ("/items/0/quantity", "missing")),
-        ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/items/0/tree", "unknown-tree")),
+        ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/tree", "unknown-tree")),
         (
             "export",
             {"items": [{"tree": "cell", "quantity": "metric", "format": "x"}]},

@@ -75,11 +75,11 @@ def test_a_sample_over_a_parameter_that_is_given_is_refused(library: MemoryLibra
         ({"bind": "defaults,nose:1"}, "/bind", "unknown-parameter"),
         ({"options": {"inputs": ["tau.arm.q"]}}, "/options/inputs", "unknown-option"),
         ({"quantity": "state_space", "options": {"nose": ["x"]}}, "/options/nose", "unknown-option"),
-        ({"format": ["npz"]}, "/format", "unknown-format"),
+        ({"format": ["npz"]}, "/items/0/format", "unknown-format"),
     ],
 )
 def test_exports_that_cannot_be_made_are_refused(
     library: MemoryLibrary, given: dict[str, Any], pointer: str, code: str
 ) -> None:
     item = {"tree": "cell", "quantity": "metric", "format": "text", **given}
-    assert faults(library, "export", {"items": [item]}) == {(f"/items/0{pointer}", code)}
+    assert faults(library, "export", {"items": [item]}) == {(pointer, code)}

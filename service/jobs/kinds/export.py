@@ -43,7 +43,7 @@ from substructures.printers.render import FORMS
 from substructures.regressor import OUTPUTS
 
 
-def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
+def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
     body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
     check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options"))
     given = {"form": FORMS[0], "bind": "", "options": {}, **item}
@@ -59,10 +59,6 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
             faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; there are {', '.join(known)}"))
     if not _is_options(given["options"]):
         faults.append(Fault("/options", "options-expected", "lists of texts by name are needed"))
-    if faults:
-        raise InvalidDocument(faults)
-    summary = summary_of(known_tree(item, library).summary)
-    faults = [*_quantity_faults(given, summary), *_bind_faults(given, summary)]
     if faults:
         raise InvalidDocument(faults)
     if body:
@@ -121,6 +117,10 @@ def _is_options(given: object) -> bool:
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    summary = summary_of(known_tree(item, library).summary)
+    faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
+    if faults:
+        raise InvalidDocument(faults)
     return pinned(item, library, item["nodes"], needs_parts(item["quantity"]))
 
 
