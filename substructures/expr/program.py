@@ -53,9 +53,6 @@ __all__ = [
     "renumbered",
 ]
 
-#: how orjson's message begins when memory is short, which says nothing about the document
-NO_MEMORY = "Not enough memory"
-
 
 @dataclass(frozen=True)
 class Program:
@@ -97,7 +94,7 @@ class Program:
         try:
             document = orjson.loads(data)
         except (ValueError, RecursionError) as error:
-            if str(error).startswith(NO_MEMORY):
+            if str(error).startswith("Not enough memory"):  # which says nothing about the document
                 raise MemoryError from None
             raise InvalidProgram(f"not a JSON document: {error}") from None
         return read_program(document)
