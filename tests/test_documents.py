@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from substructures.documents import MAX_DEPTH, MAX_DIGITS, read_json, read_yaml, write_json
+from substructures.documents import MAX_DEPTH, MAX_DIGITS, Model, read_json, read_model, read_yaml, write_json
 from substructures.errors import InvalidDocument
 
 READERS = pytest.mark.parametrize("read", [read_json, read_yaml])
@@ -189,3 +189,22 @@ def test_arbitrary_bytes_raise_nothing_else(data: bytes) -> None:
     for read in (read_json, read_yaml):
         with suppress(InvalidDocument):
             write_json(read(data))
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        ({"q": [Decimal("1.2"), None]}, 'found {"q":[1.2,null]}'),
+        ("x" * 100, 'found "' + "x" * 79 + "..."),
+        ({1: 2}, ""),
+    ],
+)
+def test_messages_show_what_was_found_as_json(value: object, shown: str) -> None:
+    class One(Model):
+        field: int
+
+    with pytest.raises(InvalidDocument) as caught:
+        read_model(One, {"field": value})
+    (fault,) = caught.value.faults
+    assert fault.message.endswith(shown)
+    assert ("found" in fault.message) == bool(shown)

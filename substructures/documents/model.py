@@ -13,6 +13,9 @@ from substructures.documents.text import escape
 from substructures.documents.to_json import write_json
 from substructures.errors import Fault, InvalidDocument
 
+#: so many characters of a value are shown in a message
+SHOWN = 80
+
 
 class Model(BaseModel):
     """Base of all document parts: frozen, unknown fields refused."""
@@ -73,12 +76,21 @@ def _tag(kind: str) -> str:
 
 def message_of(error: Mapping[str, Any]) -> str:
     """What pydantic's error says, with the name of what is missing or unknown, and otherwise with what was found."""
-    name, shown = error["loc"][-1] if error["loc"] else "", repr(error["input"])
+    name = error["loc"][-1] if error["loc"] else ""
     if error["type"] == "missing":
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
     if error["type"] == "extra_forbidden":
         return f"unknown field '{str(name)[:80]}'"
-    return str(error["msg"]) + ("" if len(shown) > 80 else f", found {shown}")
+    return str(error["msg"]) + _found(error["input"])
+
+
+def _found(given: Any) -> str:
+    """What was found, as JSON and not longer than a line; nothing where it is no plain data."""
+    try:
+        shown = write_json(given).decode()
+    except InvalidDocument:
+        return ""
+    return f", found {shown if len(shown) <= SHOWN else shown[:SHOWN] + '...'}"
 
 
 def _pointer(loc: tuple[int | str, ...], missing: bool, data: Any) -> str:

@@ -90,10 +90,12 @@ class Program:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Program:
-        """Read and validate. Raises InvalidProgram with the position of the first bad operation."""
+        """Read and validate. Raises InvalidProgram with the position of the first bad operation, and MemoryError."""
         try:
             document = orjson.loads(data)
         except (ValueError, RecursionError) as error:
+            if str(error).startswith("Not enough memory"):  # which says nothing about the document
+                raise MemoryError from None
             raise InvalidProgram(f"not a JSON document: {error}") from None
         return read_program(document)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -221,3 +223,17 @@ def test_other_bytes_are_refused(data: bytes) -> None:
 def test_the_undamaged_one_is_read() -> None:
     p = Program.from_bytes(json.dumps(BASE).encode())
     assert interpret(p, {"x": 0.5})["f"] == pytest.approx([np.sin(64.0), 0])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limit of memory is set as on Linux")
+def test_a_lack_of_memory_is_not_a_damaged_program() -> None:
+    """orjson calls it a wrong document; it happens in a process of its own, whose memory is limited."""
+    code = (
+        "import resource, pathlib\n"
+        "from substructures.expr.program import Program\n"
+        "data = b'[' + b'0,' * 1_000_000 + b'0]'\n"
+        "size = int(pathlib.Path('/proc/self/statm').read_text().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (size + 8_000_000, -1))\n"
+        "try:\n    Program.from_bytes(data)\nexcept MemoryError:\n    print('memory')\n"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "memory\n"

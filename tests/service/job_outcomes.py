@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import pytest
 
 from service.arrays import read_npz
 from service.jobs.engine import Outcome
 from service.jobs.kinds import run
 from service.settings import Limits
 from substructures.documents import read_json, write_json
+from substructures.errors import InvalidDocument
 from substructures.evaluation import evaluate
 from substructures.model import Model
 
@@ -64,3 +66,10 @@ def evaluated(library: MemoryLibrary, name: str, request: Mapping[str, Any]) -> 
 def joined(made: list[Outcome], name: str) -> Any:
     assert all(outcome.problem is None for outcome in made), made
     return np.concatenate([read_npz(io.BytesIO(outcome.files["result"]), 2**26)[name] for outcome in made])
+
+
+def faults(library: MemoryLibrary, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> set[Any]:
+    """Pointer and code of what is wrong with a submission."""
+    with pytest.raises(InvalidDocument) as caught:
+        library.items(kind, request, limits)
+    return {(fault.pointer, fault.code) for fault in caught.value.faults}

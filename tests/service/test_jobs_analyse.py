@@ -87,6 +87,15 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
         ("simulate", {"tree": "cell", "requests": []}, "/items/0/requests"),
         ("simulate", {"tree": "cell", "requests": [SWING, []]}, "/items/0/requests/1"),
         ("simulate", {"tree": "cell", "request": SWING, "format": "pdf"}, "/items/0/format"),
+        ("simulate", {"tree": "cell", "request": {**SWING, "q": [0, 0]}}, "/items/0/request/q"),
+        ("simulate", {"tree": "cell", "requests": [SWING, {**SWING, "qd": [0, 0]}]}, "/items/0/requests/1/qd"),
+        ("simulate", {"tree": "cell", "request": {"span": [0, 1]}}, "/items/0/request/q"),
+        ("simulate", {"tree": "cell", "request": {**SWING, "parameters": {"x": 1}}}, "/items/0/request/parameters/x"),
+        (
+            "analyse",
+            {"tree": "cell", "analysis": "linearisations", "request": {"q": [[0, 0]]}},
+            "/items/0/request/q",
+        ),
         ("optimise", {"tree": "cell", "request": {"horizon": -1}}, "/items/0/request/horizon"),
         ("analyse", {"tree": "cell", "analysis": "magic", "request": {}}, "/items/0/analysis"),
         ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),
@@ -109,7 +118,15 @@ def test_wrong_items(library: MemoryLibrary, kind: str, item: dict[str, Any], po
 
 
 def test_faults_that_need_the_model_are_outcomes(library: MemoryLibrary) -> None:
-    (item,) = library.items("simulate", {"items": [{"tree": "cell", "request": {**SWING, "q": [0, 0]}}]})
+    request = {**SWING, "series": {"x": "nose"}}
+    (item,) = library.items("simulate", {"items": [{"tree": "cell", "request": request}]})
     outcome = run("simulate", item, library.blobs, lambda _: None)
     assert outcome.problem is not None
-    assert outcome.problem["errors"][0]["pointer"] == "/q"
+    assert outcome.problem["errors"][0]["pointer"] == "/series/x"
+
+
+@pytest.mark.parametrize("name", ["format", "analysis"])
+def test_a_list_in_place_of_a_text_is_not_shown_as_in_python(library: MemoryLibrary, name: str) -> None:
+    item = {"tree": "cell", "analysis": "equilibria", "request": {}, name: ["npz"]}
+    with pytest.raises(InvalidDocument, match=f"the {name} is no text"):
+        library.items("analyse", {"items": [item]})

@@ -67,7 +67,7 @@ def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wrong.yaml"
-    file.write_text("kind: export\nitems:\n  - {tree: cell, quantity: nothing, format: text}\n")
+    file.write_text("kind: export\nitems:\n  - {tree: cell, quantity: metric, format: text, bind: 'arm.l:nose'}\n")
     assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 1
     shown = capsys.readouterr()
     assert "1 failed" in shown.err

@@ -65,7 +65,7 @@ def test_too_long_requests_become_jobs(filled: TestClient, store: Store, rows: A
         engine.open()
         finished(filled, first.json()["id"])
         key = {"Idempotency-Key": "2"}
-        numbers = [filled.post("/v1/trees/cell/evaluations", json=EVALUATION, headers=key) for _ in range(2)]
+        numbers = [filled.post("/v1/trees/cell@1/evaluations", json=EVALUATION, headers=key) for _ in range(2)]
         assert numbers[1].content == numbers[0].content
     assert rows()["trees"] == before["trees"] + 1
     assert rows()["jobs"] == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -130,3 +131,26 @@ def test_state_that_fails_is_listed_and_the_item_goes_on(library: MemoryLibrary)
     (outcome,) = outcomes(library, "evaluate", {"items": [{"tree": "free", "request": missing}]})
     assert outcome.problem is not None
     assert outcome.problem["code"] == "missing-value"
+
+
+def test_what_is_null_is_absent_beside_a_grid(library: MemoryLibrary) -> None:
+    request = {"quantities": ["forces"], "inputs": None, "parameters": None, "t": None}
+    made = outcomes(library, "evaluate", {"items": [{"tree": "cell", "request": request, "grid": {"arm.q": [0, 1]}}]})
+    expected = evaluated(library, "cell", {"quantities": ["forces"], "q": [[0], [1]]})
+    assert np.array_equal(joined(made, "forces"), expected["forces"])
+
+
+def test_what_is_given_for_every_state_of_a_grid_is_split_with_it(library: MemoryLibrary) -> None:
+    request = {"quantities": ["inverse_dynamics"], "qdd": [[1], [2], [3]], "parameters": {"arm.m": [1, 2, 3]}}
+    item = {"tree": "cell", "request": request, "grid": {"arm.q": [0, 1, 2]}}
+    made = outcomes(library, "evaluate", {"items": [item]}, Limits(job_states=2))
+    expected = evaluated(library, "cell", {**request, "q": [[0], [1], [2]]})
+    assert np.array_equal(joined(made, "inverse_dynamics"), expected["inverse_dynamics"])
+
+
+@pytest.mark.parametrize("row", [[0.3], {"arm.q": 0.3}])
+def test_one_row_of_coordinates_and_many_times_are_many_states(library: MemoryLibrary, row: Any) -> None:
+    request = {"quantities": ["metric"], "q": row, "t": [0, 1, 2]}
+    made = outcomes(library, "evaluate", {"items": [{"tree": "cell", "request": request}]}, Limits(job_states=2))
+    assert [outcome.summary["range"] for outcome in made] == [[0, 2], [2, 3]]
+    assert joined(made, "metric").shape == (3, 1, 1)

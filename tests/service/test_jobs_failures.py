@@ -41,15 +41,17 @@ def test_faults_name_the_items_and_queue_nothing(filled: TestClient, rows: Any) 
 
 
 def test_a_bad_item_does_not_sink_the_rest(filled: TestClient, store: Store) -> None:
+    (good,) = export("cell", "metric")["items"]
+    wrong = {**good, "bind": "arm.l:nose"}
     with running(store, FakeEngine()):
-        some = submitted(filled, export("cell", "metric", "nonsense"))
+        some = submitted(filled, {"kind": "export", "items": [good, wrong]})
         view = finished(filled, some)
         assert (view["state"], view["progress"]["failed"]) == ("succeeded", 1)
-        none = finished(filled, submitted(filled, export("cell", "nothing")))
+        none = finished(filled, submitted(filled, {"kind": "export", "items": [wrong]}))
     assert (none["state"], none["error"]["code"]) == ("failed", "all-items-failed")
     bad = filled.get(f"/v1/jobs/{some}/items?state=failed").json()["items"]
     assert [(item["position"], item["attempts"]) for item in bad] == [(1, 1)]
-    assert bad[0]["problem"]["status"] == 404
+    assert bad[0]["problem"]["status"] == 422
     assert filled.get(f"/v1/jobs/{some}/items/1/files/text").status_code == 404
 
 

@@ -109,15 +109,28 @@ def test_verify_finds_damaged_programs(library: MemoryLibrary) -> None:
 def test_export_prints_what_the_service_prints(library: MemoryLibrary) -> None:
     item = {"tree": "cell", "quantity": "metric", "format": "latex"}
     numbers = {**item, "format": "text", "form": "expanded", "bind": "defaults"}
-    unknown = {**item, "quantity": "beauty"}
-    first, second, third = outcomes(library, "export", {"items": [item, numbers, unknown]})
+    first, second = outcomes(library, "export", {"items": [item, numbers]})
     tree = library.tree("cell")
     assert tree is not None
     model = Model.load(read_json(tree.summary.encode()), library.blobs[tree.program])
     assert first.files["text"].decode() == render(model.program.select(["metric"]), "latex")
     assert "= 11/5\n" in second.files["text"].decode()  # m l^2 + m l^2 / 10
-    assert third.problem is not None
-    assert third.problem["code"] == "unknown-quantity"
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        ({"options": {"outputs": ["sin(nose)"]}}, "/options/outputs/0"),
+        ({"options": {"cyclic": ["arm.q"]}}, "/options/cyclic"),
+        ({"bind": "arm.m:nose"}, "/bind"),
+    ],
+)
+def test_faults_of_formulas_point_into_the_item(library: MemoryLibrary, given: dict[str, object], pointer: str) -> None:
+    item = {"tree": "cell", "quantity": "state_space", "format": "text", **given}
+    (outcome,) = outcomes(library, "export", {"items": [item]})
+    assert outcome.problem is not None
+    assert [fault["pointer"] for fault in outcome.problem["errors"]] == [pointer]
+    assert "/query" not in outcome.problem["detail"]
 
 
 def test_every_kind_is_tried_here() -> None:

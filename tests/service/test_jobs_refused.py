@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 
 from service.settings import Limits
-from substructures.errors import InvalidDocument
 
-from .conftest import HAND, TREE
-from .job_outcomes import FREE, known_library
+from .conftest import HAND, PENDULUM, TREE
+from .job_outcomes import FREE, faults, known_library
 from .jobs_library import MemoryLibrary
 
 
@@ -20,11 +19,9 @@ def library() -> MemoryLibrary:
     return known_library()
 
 
-def faults(library: MemoryLibrary, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> set[Any]:
-    """Pointer and code of what is wrong with a submission."""
-    with pytest.raises(InvalidDocument) as caught:
-        library.items(kind, request, limits)
-    return {(fault.pointer, fault.code) for fault in caught.value.faults}
+def with_body(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """A definition with other fields of its first body."""
+    return {**PENDULUM, "bodies": [{**PENDULUM["bodies"][0], **fields}]}
 
 
 EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric"]}}
@@ -61,6 +58,15 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             {"items": [{**TREE, "instances": [*TREE["instances"], HAND | {"at": "arm.nose"}]}]},
             ("/instances/1/at", "unknown-port"),
         ),
+        (
+            "assemble",
+            {"items": [{**TREE, "instances": TREE["instances"] * 2}]},
+            ("/instances/1/name", "duplicate-name"),
+        ),
+        ("assemble", {"items": [{**TREE, "instances": [HAND]}]}, ("/instances/0/at", "unknown-instance")),
+        ("derive", {"items": [with_body({"mass": "nope"})]}, ("/bodies/0/mass", "unknown-name")),
+        ("derive", {"items": [with_body({"com": [0, "l*(", 0]})]}, ("/bodies/0/com/1", "bad-expression")),
+        ("derive", {"items": [with_body({"parent": "nobody"})]}, ("/bodies/0/parent", "unknown-parent")),
         ("assemble", {"template": TREE}, ("/choices", "missing")),
         ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "list-expected")),
         ("assemble", {"template": TREE, "choices": {"leg": ["x"]}}, ("/choices/leg", "unknown-choice")),
@@ -71,6 +77,32 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ),
         ("assemble", {"template": TREE, "choices": {"arm.l": list(range(101))}}, ("/choices", "too-many-items")),
         ("assemble", {"template": [], "choices": {"arm": ["x"]}}, ("/template", "object-expected")),
+        *(
+            (
+                "assemble",
+                {"template": FREE | {"instances": [{"name": "a", "parameters": given}]}, "choices": {"a.m": [1, 2]}},
+                ("/choices/a.m", "unknown-choice"),
+            )
+            for given in (None, "s", [])
+        ),
+        (
+            "evaluate",
+            {"template": EVALUATION, "choices": {"/request": [1], "/request/q": [[0]]}},
+            ("/choices/~1request~1q", "unknown-choice"),
+        ),
+        (
+            "evaluate",
+            {
+                "template": {"tree": "cell", "request": {"q": [0, 0]}},
+                "choices": {"/request/q": [[]], "/request/q/1": [0, 1]},
+            },
+            ("/choices/~1request~1q~11", "unknown-choice"),
+        ),
+        (
+            "assemble",
+            {"template": FREE, "choices": {"/instances": [[]], "a": ["slider"]}},
+            ("/choices/a", "unknown-choice"),
+        ),
         ("derive", {"items": [{"name": "x", "bodies": 3}]}, ("/bodies", "tuple-type")),
         ("export", {"items": [{"tree": "cell"}]}, ("/items/0/quantity", "missing")),
         ("export", {"items": [{"tree": "no", "quantity": "metric", "format": "c"}]}, ("/tree", "unknown-tree")),

@@ -7,6 +7,7 @@ body for that endpoint; ``format`` is json (default), npz, or what else the resu
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import orjson
@@ -14,13 +15,17 @@ import orjson
 from service.analyses.numbers import ANALYSES, check_request
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
+from service.jobs.kinds.decoded import summary_of
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
+from service.jobs.kinds.values import check_analysis
 from service.settings import Limits
-from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument
 
+#: analyses that begin at one state, and those whose coordinates are only where something is looked for
+MOTIONS = ("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states")
+NEAR = ("equilibria", "root-loci")
 TOLD = ("status", "message", "is_right", "cost")
 
 
@@ -33,8 +38,8 @@ def analysis_kind(name: str | None = None) -> Kind:
         check_fields(item, ("tree", what, *which), ("format",))
         common = {"tree": item["tree"], "analysis": name or item["analysis"], "format": item.get("format", "json")}
         _check(common)
-        is_closed = "closures" in read_json(known_tree(item, library).summary.encode())
-        requests = _requests(common["analysis"], item, is_closed)
+        summary = summary_of(known_tree(item, library).summary)
+        requests = _requests(common["analysis"], item, summary)
         return [{**common, "request": each, **_limits(limits)} for each in requests]
 
     return Kind(spread, _resolve, _run)
@@ -47,16 +52,18 @@ def _limits(limits: Limits) -> Item:
 def _check(item: Item) -> None:
     name, form = item["analysis"], item["format"]
     if name not in tuple(ANALYSES):
-        message = f"unknown analysis '{str(name)[:40]}'; there are {', '.join(ANALYSES)}"
+        what = f"unknown analysis '{name[:40]}'" if isinstance(name, str) else "the analysis is no text"
+        message = f"{what}; there are {', '.join(ANALYSES)}"
         raise InvalidDocument.at("/analysis", "unknown-analysis", message)
     known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
     if form not in known:
-        message = f"unknown format '{str(form)[:40]}'; '{name}' can be {', '.join(known)}"
+        what = f"unknown format '{form[:40]}'" if isinstance(form, str) else "the format is no text"
+        message = f"{what}; '{name}' can be {', '.join(known)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
 
 
-def _requests(name: str, item: Item, is_closed: bool) -> list[Any]:
-    """The requests that an item stands for, each of the right shape."""
+def _requests(name: str, item: Item, summary: Mapping[str, Any]) -> list[Any]:
+    """The requests that an item stands for, each of the right shape and for coordinates and parameters of the tree."""
     if "requests" not in item:
         given, places = [item["request"]], ["/request"]
     elif isinstance(item["requests"], list) and item["requests"]:
@@ -65,10 +72,10 @@ def _requests(name: str, item: Item, is_closed: bool) -> list[Any]:
     else:
         raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
     for request, place in zip(given, places, strict=True):
-        try:
-            check_request(name, request, is_closed)
-        except InvalidDocument as error:
-            raise InvalidDocument(Fault(place + f.pointer, f.code, f.message) for f in error.faults) from None
+        with inside(place):
+            check_request(name, request, "closures" in summary)
+            if name not in NEAR:
+                check_analysis(summary, request, name in MOTIONS, not ANALYSES[name].needs_parts)
     return given
 
 

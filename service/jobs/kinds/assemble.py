@@ -19,6 +19,7 @@ from substructures.model import couple
 from substructures.part import Part, derive
 from substructures.tree import Instance, TreeSpec
 
+WORLD = "world"
 DEFINITIONS = 1000  # kept decoded
 _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
 
@@ -47,7 +48,11 @@ def pinned_tree(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
 
 
 def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Library) -> Iterator[Fault]:
-    """Parameters and places of hosts that the definitions do not have."""
+    """Names that occur twice, hosts that do not exist, parameters and places of hosts that the definitions lack."""
+    first: dict[str, Instance] = {}
+    for k, instance in enumerate(spec.instances):
+        if first.setdefault(instance.name, instance) is not instance:
+            yield Fault(f"/instances/{k}/name", "duplicate-name", f"duplicate instance '{instance.name}'")
     for k, instance in enumerate(spec.instances):
         definition = _definition(instance, versions, library)
         if definition is not None:
@@ -56,7 +61,9 @@ def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Libr
                     message = f"'{definition.name}' has no parameter '{name}'"
                     yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
         host, _, frame = instance.at.partition(".")
-        carrier = next((_definition(each, versions, library) for each in spec.instances if each.name == host), None)
+        if instance.at != WORLD and host not in first:
+            yield Fault(f"/instances/{k}/at", "unknown-instance", f"unknown instance '{host}'")
+        carrier = _definition(first[host], versions, library) if host in first else None
         if carrier is not None:
             frames = ["base", *(body.name for body in carrier.bodies), *(port.name for port in carrier.ports)]
             if frame not in frames:

@@ -1,14 +1,15 @@
 """Items from a template: every combination of the choices, put into copies of it.
 
 A choice is named by an RFC 6901 pointer into the template (``/request/parameters/arm.m2``), or, in a tree document, by
-an instance (what it is) or ``instance.parameter`` (what that is bound to). The last choice varies fastest.
+an instance (what it is) or ``instance.parameter`` (what that is bound to). The last choice varies fastest; a choice may
+lie in the value of one before it.
 """
 
 from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from math import prod
 from typing import Any
@@ -45,31 +46,15 @@ def _is_tree(template: Mapping[str, Any]) -> bool:
     return isinstance(template.get("name"), str) and isinstance(template.get("instances"), list)
 
 
-def _path(template: Any, key: str) -> tuple[str | int, ...]:
-    """The steps of a choice; all but the last exist, and the last one too in a list."""
-    if not key.startswith("/"):
-        return _short(template, key)
-    steps: list[str | int] = []
-    here = template
-    raw = [step.replace("~1", "/").replace("~0", "~") for step in key.split("/")[1:]]
-    for k, step in enumerate(raw):
-        is_last = k == len(raw) - 1
-        if isinstance(here, list) and step.isascii() and step.isdigit() and len(step) < 6 and int(step) < len(here):
-            steps.append(int(step))
-        elif isinstance(here, dict) and (step in here or is_last):
-            steps.append(step)
-        else:
-            raise _unknown(key, f"the template has nothing at '{key[:200]}'")
-        here = None if is_last else here[steps[-1]]
-    return tuple(steps)
-
-
-def _short(template: Any, key: str) -> tuple[str | int, ...]:
+def _path(template: Mapping[str, Any], key: str) -> list[str]:
+    """The steps of a choice from the template to the value."""
+    if key.startswith("/"):
+        return [step.replace("~1", "/").replace("~0", "~") for step in key.split("/")[1:]]
     instance, dot, parameter = key.partition(".")
-    instances = template.get("instances") if isinstance(template.get("instances"), list) else []
-    for k, each in enumerate(instances):
+    instances = template.get("instances")
+    for k, each in enumerate(instances if isinstance(instances, list) else []):
         if isinstance(each, dict) and each.get("name") == instance:
-            return ("instances", k, "parameters", parameter) if dot else ("instances", k, "substructure")
+            return ["instances", str(k), *(("parameters", parameter) if dot else ("substructure",))]
     raise _unknown(key, f"the template has no instance '{instance[:80]}'")
 
 
@@ -77,15 +62,30 @@ def _unknown(key: str, message: str) -> InvalidDocument:
     return InvalidDocument.at("/choices" + pointer_step(key), "unknown-choice", message)
 
 
-def _filled(template: Any, paths: Mapping[str, tuple[str | int, ...]], row: Mapping[str, Any]) -> Any:
+def _filled(template: Any, paths: Mapping[str, Sequence[str]], row: Mapping[str, Any]) -> Any:
     item = copy.deepcopy(template)
     for key, value in row.items():
-        here = item
         *steps, last = paths[key]
-        for step in steps:
-            here = here.setdefault(step, {}) if isinstance(here, dict) else here[step]
-        here[last] = value
+        try:
+            here = item
+            for step in steps:
+                if step == "parameters" and isinstance(here, dict):
+                    here.setdefault(step, {})  # may be left out
+                here = here[_member(here, step)]
+            here[_member(here, last, is_new=True)] = value
+        except LookupError:
+            place = "".join(map(pointer_step, paths[key]))[:200]
+            raise _unknown(key, f"the template, with the choices before this one, has no place '{place}'") from None
     return item
+
+
+def _member(here: Any, step: str, is_new: bool = False) -> str | int:
+    """The key or index that a step means; a new key may be one that is not there. Raises LookupError."""
+    if isinstance(here, list) and step.isascii() and step.isdigit() and len(step) < 6 and int(step) < len(here):
+        return int(step)
+    if isinstance(here, dict) and (is_new or step in here):
+        return step
+    raise LookupError(step)
 
 
 def _named(items: list[Any], rows: list[dict[str, Any]]) -> list[Any]:

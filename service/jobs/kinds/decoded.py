@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 from service.cache import Cache
@@ -28,9 +29,16 @@ def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
     return part
 
 
+@lru_cache(maxsize=64)
+def summary_of(text: str) -> dict[str, Any]:
+    """The stored summary of a tree as plain data, which is not to be changed."""
+    found: dict[str, Any] = read_json(text.encode())
+    return found
+
+
 def pinned_model(tree: StoredTree) -> dict[str, Any]:
     """What a model is beside its program, as plain data for an item."""
-    summary = read_json(tree.summary.encode())
+    summary = summary_of(tree.summary)
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }

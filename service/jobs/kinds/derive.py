@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+from typing import Any
+
 from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library
@@ -9,7 +13,14 @@ from service.settings import Limits
 from service.summaries import part_content
 from substructures.definition import Definition
 from substructures.documents import read_json
+from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.parse import ExpressionError, parse
 from substructures.part import derive
+from substructures.skeleton import skeleton
+
+#: fields of bodies and ports that are no expressions in parameters, or none that deriving reads
+TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits")
 
 
 def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
@@ -18,7 +29,53 @@ def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
 
 def _resolve(item: Item, _library: Library) -> tuple[Item, tuple[str, ...]]:
     definition = Definition.read(item["definition"])
-    return {**item, "definition": read_json(definition.canonical())}, ()
+    skeleton(definition)
+    plain = read_json(definition.canonical())
+    faults = [
+        fault
+        for place in ("bodies", "ports")
+        for pointer, text in _expressions(plain.get(place), f"/{place}")
+        for fault in _faults(text, pointer, definition.parameters)
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    return {**item, "definition": plain}, ()
+
+
+def _expressions(given: Any, pointer: str) -> Iterator[tuple[str, str]]:
+    """Place and text of every expression in bodies and ports."""
+    if isinstance(given, str):
+        yield pointer, given
+    elif isinstance(given, dict | list):
+        members = given.items() if isinstance(given, dict) else enumerate(given)
+        for key, value in members:
+            if key not in TEXTS:
+                yield from _expressions(value, f"{pointer}/{key}")
+
+
+def _faults(text: str, pointer: str, known: Collection[str]) -> Iterator[Fault]:
+    try:
+        unknown = sorted(_names(text).difference(known))
+    except ExpressionError as error:
+        yield Fault(pointer, "bad-expression", str(error))
+    except (ArithmeticError, ValueError, TooLarge):
+        return  # deriving tells
+    else:
+        if unknown:
+            yield Fault(pointer, "unknown-name", f"unknown name '{unknown[0][:80]}'")
+
+
+@lru_cache(maxsize=10_000)
+def _names(text: str) -> frozenset[str]:
+    """The names in an expression. Raises ExpressionError, ArithmeticError, TooLarge."""
+    graph, found = Graph(), set[str]()
+
+    def lookup(name: str) -> Expr:
+        found.add(name)
+        return graph.symbol(name)
+
+    parse(graph, text, lookup)
+    return frozenset(found)
 
 
 def _run(item: Item, _blobs: Blobs, _progress: Progress) -> Outcome:

@@ -9,7 +9,7 @@ and the one behind the last. Of states that were uploaded (:mod:`service.operati
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
@@ -21,15 +21,16 @@ from service.arrays import as_npz, read_npz
 from service.cache import Cache
 from service.columns import request_of
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import model_of
+from service.jobs.kinds.decoded import model_of, summary_of
 from service.jobs.kinds.joint_limits import joint_limits
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, known_tree
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, regressor_of
+from service.jobs.kinds.values import check_described, check_states
 from service.settings import Limits
 from substructures.compile import Kernel, compile_program
-from substructures.documents import read_json
+from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 from substructures.evaluation import (
     QUANTITIES,
@@ -59,11 +60,12 @@ _kernels: Cache[Kernel] = Cache(
 def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
     tree = known_tree(item, library)
-    summary = read_json(tree.summary.encode())
+    summary = summary_of(tree.summary)
     request = _request(item)
     chunk = states_per_item(request, len(summary["coordinates"]), len(summary["frames"]), limits)
     described = _described(item, tree, summary, library)
-    count = _count(described) if described else _listed(request)
+    with inside("/request"):
+        count = _count(summary, request, described)
     if count is not None and count > chunk * limits.job_items:
         message = f"{count:,} states; the limit is {chunk * limits.job_items:,}"
         raise InvalidDocument.at("/" + next(iter(described or ("request",))), "too-many-states", message)
@@ -71,9 +73,7 @@ def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
     if count is None:
         return [common]
     ranges = [[start, min(start + chunk, count)] for start in range(0, count, chunk)]
-    if described:
-        return [{**common, **described, "range": each} for each in ranges]
-    return [{**common, "request": _sliced(request, count, *each), "range": each} for each in ranges]
+    return [{**common, **described, "request": _sliced(request, count, *each), "range": each} for each in ranges]
 
 
 def states_per_item(request: Mapping[str, Any], dof: int, frames: int, limits: Limits) -> int:
@@ -95,10 +95,8 @@ def _request(item: Item) -> dict[str, Any]:
     if item.get("format") == "arrow" and find_spec("pyarrow") is None:
         message = "Arrow needs the extra 'arrow' on the server: pip install 'substructures[arrow]'"
         raise InvalidDocument.at("/format", "not-installed", message)
-    try:
+    with inside("/request"):
         read_quantities(request)
-    except InvalidDocument as error:
-        raise InvalidDocument(Fault("/request" + f.pointer, f.code, f.message) for f in error.faults) from None
     return request
 
 
@@ -108,38 +106,59 @@ def _described(item: Item, tree: StoredTree, summary: Mapping[str, Any], library
     known = {*coordinates, *summary["parameters"]}
     known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates}
     if "grid" in item:
-        return {"grid": read_grid(item["grid"], known)}
+        grid = read_grid(item["grid"], known)
+        _check_once(item["request"], "/grid", [name for name, _ in grid])
+        return {"grid": grid}
     if "sample" in item:
-        return {"sample": read_sample(item["sample"], known, joint_limits(tree, library))}
+        sample = read_sample(item["sample"], known, joint_limits(tree, library))
+        _check_once(item["request"], "/sample/ranges", sample["ranges"])
+        return {"sample": sample}
     return {}
 
 
-def _count(described: Item) -> int:
-    return grid_size(described["grid"]) if "grid" in described else int(described["sample"]["count"])
+def _check_once(request: Mapping[str, Any], place: str, names: Iterable[str]) -> None:
+    """Raise InvalidDocument for names that the request has as well."""
+    fields = [request.get(field) for field in ("inputs", "parameters")]
+    given = {name for field in fields if isinstance(field, Mapping) for name in field}
+    faults = [
+        Fault(place + pointer_step(name), "given-twice", f"'{name}' is given in the request as well")
+        for name in names
+        if name in given
+    ]
+    if faults:
+        raise InvalidDocument(faults)
 
 
-def _listed(request: Mapping[str, Any]) -> int | None:
-    """The number of states, None for one without a leading axis; faults are found when they are read."""
-    q = request.get("q")
-    if isinstance(q, Mapping):
-        return max((len(column) for column in q.values() if isinstance(column, list)), default=None)
-    return len(q) if isinstance(q, list) and q and isinstance(q[0], list) else None
+def _count(summary: Mapping[str, Any], request: Mapping[str, Any], described: Item) -> int | None:
+    """The number of states, None for one without a leading axis. Raises InvalidDocument."""
+    if not described:
+        states = check_states(summary, request)
+        return None if states.single else states.count
+    count = grid_size(described["grid"]) if "grid" in described else int(described["sample"]["count"])
+    check_described(summary, request, count)
+    return count
 
 
 def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> dict[str, Any]:
     """The request for some of its states: what is given for each of them is cut."""
 
-    def cut(value: Any) -> Any:
+    def cut(field: str, value: Any) -> Any:
         if isinstance(value, Mapping):
-            return {name: cut(each) for name, each in value.items()}
-        return value[start:stop] if isinstance(value, list) and len(value) == count else value
+            return {name: cut(name if field == "along" else "", each) for name, each in value.items()}
+        is_flat = isinstance(value, list) and not (value and isinstance(value[0], list))
+        belongs_to_all = field == "quantities" or (field in ("q", "qd", "qdd") and is_flat)
+        is_cut = isinstance(value, list) and len(value) == count and not belongs_to_all
+        return value[start:stop] if is_cut else value
 
-    def is_one(name: str, value: Any) -> bool:
-        """Whether a list belongs to every state."""
-        flat = isinstance(value, list) and not (value and isinstance(value[0], list))
-        return name == "quantities" or (name in ("qd", "qdd") and flat)
+    parts = {name: cut(name, value) for name, value in request.items()}
+    return {**parts, "q": _with_axis(parts["q"])} if parts.get("q") else parts
 
-    return {name: value if is_one(name, value) else cut(value) for name, value in request.items()}
+
+def _with_axis(q: Any) -> Any:
+    """One row of coordinates as a list of one row: part of many states, it must not pass for the only one."""
+    if isinstance(q, Mapping):
+        return {name: x if isinstance(x, list) else [x] for name, x in q.items()}
+    return q if isinstance(q[0], list) else [q]
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
@@ -208,8 +227,8 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
         **request,
         "q": {name: columns.get(name, zeros) for name in model.coordinates},
         "qd": {name: columns.get(f"{name}'", zeros) for name in model.coordinates},
-        "inputs": {**request.get("inputs", {}), **inputs},
-        "parameters": {**request.get("parameters", {}), **{n: x for n, x in rest.items() if n not in inputs}},
+        "inputs": {**(request.get("inputs") or {}), **inputs},
+        "parameters": {**(request.get("parameters") or {}), **{n: x for n, x in rest.items() if n not in inputs}},
     }
 
 

@@ -2,23 +2,45 @@
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind`` and ``options`` (lists of
 texts by name, for quantities such as ``state_space``) may be left out. For ``velocity-equations`` there is also
-``request``, the body of its endpoint.
+``request``, the body of its endpoint. Pointers of a problem are relative to the item.
 """
 
 from __future__ import annotations
 
-from service.analyses.formulas import QUANTITIES, WITH_DOCUMENT, made
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.source import Source
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields
+from service.jobs.kinds.decoded import summary_of
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
-from service.printing import Style, bound, check_quantity, described, made_text, model_quantity, needs_parts, text_of
+from service.printing import (
+    Style,
+    bound,
+    check_quantity,
+    described,
+    made_text,
+    model_quantity,
+    needs_parts,
+    quantities,
+    text_of,
+)
+from service.refusals import Refused
 from service.settings import Limits
-from substructures.errors import Fault, InvalidDocument
+from substructures.derived import DERIVED
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument, TooLarge, listed
 from substructures.evaluation import Sources
+from substructures.expr.graph import Graph
+from substructures.expr.parse import ExpressionError, parse
 from substructures.printers import FORMATS
 from substructures.printers.render import FORMS
+from substructures.regressor import OUTPUTS
 
 
 def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
@@ -32,23 +54,60 @@ def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
     ]
     for name, known in (("format", FORMATS), ("form", FORMS)):
         if given[name] not in tuple(known):
-            message = f"unknown {name} {str(given[name])[:40]!r}; there are {', '.join(known)}"
-            faults.append(Fault(f"/{name}", f"unknown-{name}", message))
+            text = given[name]
+            what = f"unknown {name} '{text[:40]}'" if isinstance(text, str) else f"the {name} is no text"
+            faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; there are {', '.join(known)}"))
     if not _is_options(given["options"]):
         faults.append(Fault("/options", "options-expected", "lists of texts by name are needed"))
     if faults:
         raise InvalidDocument(faults)
     if body:
-        _check_document(given["quantity"], given["request"])
+        check, _ = WITH_DOCUMENT[given["quantity"]]
+        with inside("/request"):
+            check(given["request"])
     return [{**given, "nodes": limits.job_nodes}]
 
 
-def _check_document(quantity: str, request: object) -> None:
-    check, _ = WITH_DOCUMENT[quantity]
+def _quantity_faults(item: Item, summary: Mapping[str, Any]) -> Iterator[Fault]:
+    """An unknown quantity, and options that it cannot have."""
+    quantity, options = item["quantity"], item["options"]
+    outputs = [name for name in summary["operations"] if name != "total"]
+    others = (*DERIVED, *OUTPUTS, *QUANTITIES, *WITH_DOCUMENT)
+    if quantity not in others and all(name not in outputs for name in quantities(quantity)):
+        names = dict.fromkeys([*outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT])
+        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
+        yield Fault("/quantity", "unknown-quantity", message)
+        return
+    known = tuple(OPTIONS) if quantity in QUANTITIES else ()
+    for name, texts in options.items():
+        if texts and name not in known:
+            message = f"'{quantity}' has no option '{name[:80]}'"
+            yield Fault("/options" + pointer_step(name), "unknown-option", message)
+
+
+def _bind_faults(item: Item, summary: Mapping[str, Any]) -> Iterator[Fault]:
+    """What is no ``name:value``, and unknown parameters; the regressor has more of them than the other formulas."""
+    known = summary["parameters"]
+    for given in filter(None, (each.strip() for each in item["bind"].split(","))):
+        name, colon, value = given.partition(":")
+        if given == "defaults":
+            continue
+        if not colon or not _is_expression(value):
+            yield Fault("/bind", "bind", f"'{given[:80]}' is not name:value")
+        elif name not in known and item["quantity"] not in OUTPUTS:
+            message = f"there is no parameter '{name[:80]}'; there are {listed(known)}"
+            yield Fault("/bind", "unknown-parameter", message)
+
+
+@lru_cache(maxsize=10_000)
+def _is_expression(text: str) -> bool:
+    """Whether this is a number or an expression in any names."""
+    graph = Graph()
     try:
-        check(request)
-    except InvalidDocument as error:
-        raise InvalidDocument(Fault("/request" + f.pointer, f.code, f.message) for f in error.faults) from None
+        parse(graph, text, graph.symbol)
+    except (ExpressionError, ArithmeticError, TooLarge):
+        return False
+    return True
 
 
 def _is_options(given: object) -> bool:
@@ -58,6 +117,10 @@ def _is_options(given: object) -> bool:
 
 
 def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+    summary = summary_of(known_tree(item, library).summary)
+    faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
+    if faults:
+        raise InvalidDocument(faults)
     return pinned(item, library, item["nodes"], needs_parts(item["quantity"]))
 
 
@@ -66,9 +129,25 @@ def _run(item: Item, blobs: Blobs, _progress: Progress) -> Outcome:
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
     style = Style(item["format"], item["form"], item["bind"])
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
-    text = (_stored if is_stored else _followed)(source, item, style).encode()
+    try:
+        text = (_stored if is_stored else _followed)(source, item, style).encode()
+    except InvalidDocument as error:
+        raise InvalidDocument(_moved(error.faults)) from None
+    except Refused as error:
+        raise Refused(error.status, error.code, error.detail, _moved(error.faults), **error.members) from None
     summary = {"tree": item["tree"], "quantity": quantity, "media_type": FORMATS[style.format], "bytes": len(text)}
     return Outcome(summary, {"text": text})
+
+
+def _moved(faults: Iterable[Fault]) -> list[Fault]:
+    """Faults in a query as faults in the item."""
+    return [replace(fault, pointer=_place(fault.pointer)) for fault in faults]
+
+
+def _place(pointer: str) -> str:
+    if pointer == "/query/bind":
+        return "/bind"
+    return "/options" + pointer.removeprefix("/query") if pointer.startswith("/query") else pointer
 
 
 def _stored(source: Source, item: Item, style: Style) -> str:
@@ -84,7 +163,8 @@ def _followed(source: Source, item: Item, style: Style) -> str:
     name, options = item["quantity"], {name: tuple(texts) for name, texts in item["options"].items()}
     if name in WITH_DOCUMENT:
         _, follow = WITH_DOCUMENT[name]
-        found = follow(source, item["request"])
+        with inside("/request"):
+            found = follow(source, item["request"])
     else:
         found = made(source, name, options)
     return made_text(found, source.model.parameters, style, item["nodes"])

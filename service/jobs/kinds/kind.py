@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,6 +30,15 @@ class Kind:
     spread: Callable[[Item, Limits, Library], list[Item]]
     resolve: Callable[[Item, Library], tuple[Item, tuple[str, ...]]]
     run: Callable[[Item, Blobs, Progress], Outcome]
+
+
+@contextmanager
+def inside(place: str) -> Iterator[None]:
+    """Faults that are found here have pointers relative to this place of the item."""
+    try:
+        yield
+    except InvalidDocument as error:
+        raise InvalidDocument(Fault(place + f.pointer, f.code, f.message) for f in error.faults) from None
 
 
 def check_fields(item: Item, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:

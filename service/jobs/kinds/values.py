@@ -1,0 +1,73 @@
+"""Checks of what requests give for the states of a tree, as far as names and lengths tell without its formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument
+from substructures.evaluation import QUANTITIES, REGRESSOR, read_quantities
+from substructures.expr.program import Program
+from substructures.model import Model
+from substructures.states import States, given_values, read_states
+
+Request = Mapping[str, Any]
+
+
+def without_formulas(summary: Mapping[str, Any]) -> Model:
+    """The model of a stored summary with an empty program, for checks of names and lengths."""
+    names = tuple(summary["coordinates"]), summary["joints"], tuple(summary["frames"])
+    return Model(Program((), (), {}), *names, summary["parameters"], {})
+
+
+def check_states(summary: Mapping[str, Any], request: Request) -> States:
+    """The states that are listed in a request. Raises InvalidDocument with pointers into it."""
+    states = read_states(without_formulas(summary), request, None)
+    if not states.count:
+        raise InvalidDocument.at("/q", "missing", "at least one state is needed")
+    _check_values(summary, request, states.count, states.qdd is not None)
+    return states
+
+
+def check_analysis(summary: Mapping[str, Any], request: Request, is_motion: bool, has_all: bool) -> None:
+    """The states and parameters in a request for an analysis; ``is_motion``: it has one state, where it starts,
+    ``has_all``: all of its parameters are those of the formulas. Raises InvalidDocument.
+    """
+    if "q" in request or is_motion:
+        states = {name: request.get(name) for name in ("q", "qd", "qdd")}
+        read_states(without_formulas(summary), states, 1 if is_motion else None)
+    given, known = request.get("parameters"), summary["parameters"]
+    faults = [
+        Fault("/parameters" + pointer_step(name), "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        for name in (given if has_all and isinstance(given, Mapping) else ())
+        if name not in known
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+
+
+def check_described(summary: Mapping[str, Any], request: Request, count: int) -> None:
+    """What a request gives for so many states that a grid or sample describes. Raises InvalidDocument."""
+    start = [0] * len(summary["coordinates"])
+    given = read_states(without_formulas(summary), {"q": start, "qdd": request.get("qdd")}, None).qdd
+    if given is not None and len(given) not in (1, count):
+        raise InvalidDocument.at("/qdd", "wrong-length", f"{len(given)} accelerations where there are {count} states")
+    _check_values(summary, request, count, given is not None)
+
+
+def _check_values(summary: Mapping[str, Any], request: Request, count: int, has_accelerations: bool) -> None:
+    quantities = [QUANTITIES[name] for name in read_quantities(request)]
+    needed = {field for quantity in quantities for field in quantity.requires}
+    if "qdd" in needed and not has_accelerations and summary["coordinates"]:
+        raise InvalidDocument.at("/qdd", "missing", "the quantities need accelerations 'qdd'")
+    if "along" in needed and not isinstance(request.get("along"), Mapping):
+        raise InvalidDocument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
+    if request.get("t") is not None:
+        given_values({"t": request["t"]}, "times", "", count, ("t",))
+    for field in ("inputs", "parameters"):
+        given = request.get(field)
+        known = list(given) if isinstance(given, Mapping) else []
+        if field == "parameters" and all(quantity.source != REGRESSOR for quantity in quantities):
+            known = list(summary["parameters"])  # the regressor has more of them; inputs of loads are in the formulas
+        given_values(given, field, f"/{field}", count, known)
