@@ -76,13 +76,8 @@ def test_both_ends_of_a_connection_watch_each_other(address: str) -> None:
         ]
         assert shown == ["5", "20000"]
         parameters = connection.connection.driver_connection.info.get_parameters()  # type: ignore[union-attr]
-    assert (parameters["tcp_user_timeout"], parameters["connect_timeout"]) == ("20000", "10")
-    store.close()
-    own = make_url(address).update_query_dict({"connect_timeout": "3"}).render_as_string(hide_password=False)
-    store = Database(own)
-    with store.read() as connection:
-        parameters = connection.connection.driver_connection.info.get_parameters()  # type: ignore[union-attr]
-    assert parameters["connect_timeout"] == "3"
+    assert parameters["tcp_user_timeout"] == "20000"
+    assert parameters["connect_timeout"] == "2"  # what the address says goes before
     store.close()
 
 
