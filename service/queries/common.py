@@ -46,9 +46,11 @@ def is_outage(error: Exception) -> bool:
 
 
 def is_conflict(error: Exception) -> bool:
-    """Whether a transaction was given up for the sake of another (deadlock, serialisation), so that it should be
-    tried again."""
-    return isinstance(error, DBAPIError) and getattr(error.orig, "sqlstate", "") in ("40P01", "40001")
+    """Whether a transaction was given up for the sake of another, so that it should be tried again: a deadlock, or
+    an item that another host has claimed since it was seen queued."""
+    if not isinstance(error, DBAPIError):
+        return False
+    return getattr(error.orig, "sqlstate", "") in ("40P01", "40001") or "uq_job_items_running" in str(error.orig)
 
 
 def is_full(error: Exception) -> bool:

@@ -44,33 +44,36 @@ def claim(
 ) -> list[Attempt]:
     """Up to ``wanted`` items to be computed by the owner, shared out between jobs; those with few running go first.
 
-    ``ahead``: how many to claim of a job even where that is more than its share.
+    ``ahead``: how many to claim of a job even where that is more than its share; at most half of what is left, since
+    other hosts may share the queue.
     """
     candidates = _candidates(connection)
     share = max(1, wanted // max(1, len(candidates)))
     taken: list[Attempt] = []
     for size in (share, wanted):  # a fair share for each first, then whatever there is
-        for job, kind in candidates:
+        for job, kind, _ in candidates:
             if len(taken) < wanted:
                 room = min(size, wanted - len(taken))
                 taken += _take(connection, owner, lease, (job, kind), room, changes)
     mine = Counter(attempt.job for attempt in taken)
-    for job, kind in candidates:
-        if (room := ahead(job) - mine[job]) > 0:
+    for job, kind, left in candidates:
+        if (room := min(ahead(job), (left + 1) // 2) - mine[job]) > 0:
             taken += _take(connection, owner, lease, (job, kind), room, changes)
     return taken
 
 
-def _candidates(connection: Connection) -> list[tuple[str, str]]:
+def _candidates(connection: Connection) -> list[tuple[str, str, int]]:
+    """Jobs with queued items: id, kind and how many items are not done; those with few running items first."""
     has_queued = exists().where(job_items.c.job == jobs.c.id, QUEUED)
     rows: list[Any] = []
     for state in ("running", "queued"):  # one state a query, so that an index gives the order
-        query = select(jobs.c.id, jobs.c.kind).where(jobs.c.state == state, has_queued).order_by(jobs.c.id)
+        columns = select(jobs.c.id, jobs.c.kind, jobs.c.total - jobs.c.done)
+        query = columns.where(jobs.c.state == state, has_queued).order_by(jobs.c.id)
         rows += connection.execute(query.limit(JOBS).with_for_update(skip_locked=True)).all()
     rows = sorted(rows)[:JOBS]
     running = select(job_items.c.job, func.count()).where(RUNNING).group_by(job_items.c.job)
     busy = {row[0]: row[1] for row in connection.execute(running)}
-    return sorted(((job, kind) for job, kind in rows), key=lambda each: (busy.get(each[0], 0), each[0]))
+    return sorted((tuple(row) for row in rows), key=lambda each: (busy.get(each[0], 0), each[0]))
 
 
 def _take(

@@ -46,7 +46,7 @@ def test_problems(client: TestClient) -> None:
         "unsupported-media-type",
     )
     problem(client.post("/v1/substructures", content=b"{", headers=JSON), 422, "invalid-document")
-    assert problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")["detail"].endswith("found '0'")
+    assert problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")["detail"].endswith('found "0"')
     for body, message in (({}, "'name' is needed"), ({"name": "x", "colour": 1}, "unknown field 'colour'")):
         assert message in problem(client.post("/v1/trees", json=body), 422, "invalid-document")["detail"]
 

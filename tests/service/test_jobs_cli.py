@@ -73,7 +73,7 @@ def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: 
     assert "1 failed" in shown.err
     job = shown.out.strip()
     assert "item 0: " in shown.err
-    assert "'nothing'" in shown.err
+    assert "'nose'" in shown.err
     assert f"substructures jobs result {job}" in shown.err
     assert main(["jobs", "result", shown.out.strip(), "--server", address]) == 0
     assert "0  failed  " in capsys.readouterr().out

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from fastapi.testclient import TestClient
 
+from service.jobs.engine import Outcome, Work
+from service.jobs.kinds import failed
+from service.refusals import Refused
 from service.store import Store
 
 from .fake_engine import FakeEngine, eventually, export, finished, running, submitted
@@ -12,10 +15,17 @@ from .reading import read
 EVIL = "<script>alert(1)</script>"
 
 
+class Spiteful(FakeEngine):
+    """The second item fails with a problem that would like to be executed."""
+
+    def compute(self, work: Work) -> Outcome:
+        return failed(Refused(422, "evil", EVIL)) if work.item["quantity"] == "forces" else super().compute(work)
+
+
 def test_pages_of_jobs(filled: TestClient, store: Store) -> None:
     assert "None yet" in filled.get("/jobs").text
-    with running(store, FakeEngine(slots=1, is_open=False)) as engine:
-        job = submitted(filled, export("cell", "metric", EVIL))
+    with running(store, Spiteful(slots=1, is_open=False)) as engine:
+        job = submitted(filled, export("cell", "metric", "forces"))
         eventually(filled, job, lambda view: view["state"] == "running")
         for path in ("/jobs", f"/jobs/{job}"):
             page = filled.get(path)
