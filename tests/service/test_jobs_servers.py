@@ -43,7 +43,7 @@ class Slow(FakeEngine):
     """Takes long enough for another to have its turn."""
 
     def compute(self, work: Work) -> Outcome:
-        time.sleep(0.01)
+        time.sleep(0.04)
         return super().compute(work)
 
 
