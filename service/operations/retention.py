@@ -6,7 +6,7 @@ from datetime import timedelta
 from threading import Event
 
 from service.queries.common import now
-from service.queries.jobs import remove_finished
+from service.queries.removal import remove_finished
 from service.queries.uploads import remove_unused
 from service.store import Store
 

@@ -9,9 +9,9 @@ from datetime import UTC, datetime, timedelta
 from time import time_ns
 from typing import Any
 
-from sqlalchemy import Connection, and_, bindparam, case, delete, exists, func, insert, or_, select, update
+from sqlalchemy import Connection, and_, bindparam, case, exists, func, insert, or_, select, update
 
-from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
+from service.job_tables import job_items, jobs, results
 from service.queries.common import now
 from service.queries.job_events import add_event
 from service.queries.states import OPEN, QUEUED, RUNNING
@@ -72,7 +72,7 @@ def new_id() -> str:
 
 def add_job(connection: Connection, kind: str, principal: str, items: Sequence[NewItem]) -> str:
     """Queue a job. Items whose result is known already have succeeded at once."""
-    _share_results(connection)
+    share_results(connection)
     identifier = new_id()
     counts = {"total": len(items), "done": 0, "failed": 0, "attempts": 0}
     row = {"id": identifier, "kind": kind, "principal": principal, "state": "queued", "created": now(), **counts}
@@ -91,7 +91,7 @@ def add_job(connection: Connection, kind: str, principal: str, items: Sequence[N
     return identifier
 
 
-def _share_results(connection: Connection, exclusive: bool = False) -> None:
+def share_results(connection: Connection, exclusive: bool = False) -> None:
     """Keep results from being removed while they are taken for granted; SQLite has one writer anyway."""
     if connection.dialect.name == "postgresql":
         kind = "pg_advisory_xact_lock" if exclusive else "pg_advisory_xact_lock_shared"
@@ -231,24 +231,6 @@ def cancel(connection: Connection, identifier: str) -> None:
     runs = connection.execute(select(exists().where(job_items.c.job == identifier, RUNNING))).scalar_one()
     values = {"state": "cancelling"} if runs else {"state": "cancelled", "finished": now()}
     connection.execute(update(jobs).where(open_job).values(values))
-
-
-def remove_finished(connection: Connection, before: str, most: int) -> int:
-    """Remove up to ``most`` jobs that finished before a time, with results that no other item has."""
-    _share_results(connection, exclusive=True)
-    old = select(jobs.c.id).where(jobs.c.finished < before).order_by(jobs.c.finished).limit(most)
-    ids = list(connection.execute(old).scalars())
-    if not ids:
-        return 0
-    keys = list(connection.execute(select(job_items.c.key).where(job_items.c.job.in_(ids)).distinct()).scalars())
-    for table in (job_events, job_uploads, job_items):
-        connection.execute(delete(table).where(table.c.job.in_(ids)))
-    connection.execute(delete(jobs).where(jobs.c.id.in_(ids)))
-    for table, column in ((result_files, result_files.c.key), (results, results.c.key)):
-        is_shared = exists().where(job_items.c.key == column)
-        for start in range(0, len(keys), 500):
-            connection.execute(delete(table).where(column.in_(keys[start : start + 500]), ~is_shared))
-    return len(ids)
 
 
 def _all_jobs() -> Any:

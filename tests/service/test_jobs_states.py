@@ -12,6 +12,7 @@ from service.database import Connection
 from service.job_tables import ITEM_STATES, JOB_STATES, jobs, result_files, results
 from service.operations.job_rounds import Ended
 from service.queries import jobs as queries
+from service.queries import removal
 from service.queries.common import now
 from service.queries.job_events import events_after
 from service.store import Store
@@ -123,7 +124,7 @@ def test_retention(store: Store) -> None:
     with store.database.write() as connection:
         connection.execute(jobs.update().where(jobs.c.id == old).values(finished=now(timedelta(days=-40))))
         before = now(timedelta(days=-30))
-        assert [queries.remove_finished(connection, before, 1) for _ in range(2)] == [1, 0]
+        assert [removal.remove_finished(connection, before, 1) for _ in range(2)] == [1, 0]
     with store.database.read() as connection:
         assert queries.get_job(connection, old) is None
         assert set(connection.execute(sa.select(results.c.key)).scalars()) == {"b", "c"}

@@ -1,0 +1,26 @@
+"""Removing what nobody looks at any more."""
+
+from __future__ import annotations
+
+from sqlalchemy import Connection, delete, exists, select
+
+from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
+from service.queries.jobs import share_results
+
+
+def remove_finished(connection: Connection, before: str, most: int) -> int:
+    """Remove up to ``most`` jobs that finished before a time, with results that no other item has."""
+    share_results(connection, exclusive=True)
+    old = select(jobs.c.id).where(jobs.c.finished < before).order_by(jobs.c.finished).limit(most)
+    ids = list(connection.execute(old).scalars())
+    if not ids:
+        return 0
+    keys = list(connection.execute(select(job_items.c.key).where(job_items.c.job.in_(ids)).distinct()).scalars())
+    for table in (job_events, job_uploads, job_items):
+        connection.execute(delete(table).where(table.c.job.in_(ids)))
+    connection.execute(delete(jobs).where(jobs.c.id.in_(ids)))
+    for table, column in ((result_files, result_files.c.key), (results, results.c.key)):
+        is_shared = exists().where(job_items.c.key == column)
+        for start in range(0, len(keys), 500):
+            connection.execute(delete(table).where(column.in_(keys[start : start + 500]), ~is_shared))
+    return len(ids)
