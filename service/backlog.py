@@ -9,7 +9,7 @@ from time import monotonic
 
 from service.queries.attempts import Attempt
 
-GATHER = 0.5  # seconds for which ends are gathered while there is work to go on with
+GATHER = 0.2  # seconds for which ends are gathered while there is work to go on with
 STALE = 2.0  # seconds without an end or a start after which what is claimed ahead goes back to the queue
 AHEAD = 200  # items claimed ahead at most
 JOBS, LATEST = 64, 32  # durations are remembered of so many jobs and items

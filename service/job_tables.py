@@ -75,7 +75,7 @@ job_items = Table(
     CheckConstraint("(state = 'running') = (owner IS NOT NULL)", name="ck_job_items_owner"),
     Index(None, "key"),
     Index(None, "job", "finished"),
-    _index_of("queued", "ix_job_items_queued", "job", "position"),
+    _index_of("queued", "ix_job_items_queued", "job", "attempts", "position"),
     _index_of("running", "ix_job_items_running", "job", "position"),
     _index_of("running", "uq_job_items_running", "key", unique=True),  # the same is never computed twice at a time
 )

@@ -84,7 +84,8 @@ def _take(
     is_computed = exists().where(twin.c.key == job_items.c.key, twin.c.state == RUNNING.right)
     names = ("position", "attempts", "key", "item", "blobs")
     query = select(*(job_items.c[name] for name in names)).where(job_items.c.job == identifier, QUEUED, ~is_computed)
-    rows = connection.execute(query.order_by(job_items.c.position).limit(size)).all()
+    # what was lost before goes behind the others, so that it neither holds them up nor uses its attempts up
+    rows = connection.execute(query.order_by(job_items.c.attempts, job_items.c.position).limit(size)).all()
     keys = [row.key for row in rows]
     known = set(connection.execute(select(results.c.key).where(results.c.key.in_(keys))).scalars())
     for found, positions in job_queries.succeed_equal(connection, [identifier], sorted(known)).items() if known else ():
@@ -92,7 +93,7 @@ def _take(
     first = {row.key: row for row in reversed(rows) if row.key not in known}
     attempts = [
         Attempt(identifier, row.position, row.attempts + 1, kind, row.key, row.item, row.blobs)
-        for row in sorted(first.values(), key=lambda row: row.position)
+        for row in sorted(first.values(), key=lambda row: (row.attempts, row.position))
     ]
     _start(connection, owner, lease, identifier, attempts, changes)
     return attempts

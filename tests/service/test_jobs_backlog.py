@@ -31,12 +31,12 @@ def test_short_items_are_claimed_ahead_and_long_ones_are_not() -> None:
     waiting.note_end("short", 0.05)
     waiting.note_end("long", 100.0)
     waiting.note_end("tiny", 1e-9)
-    assert waiting.ahead(2, ["short"])("short") == 40
-    assert waiting.ahead(2, ["short", "long"])("short") == 20
+    assert waiting.ahead(2, ["short"])("short") == 16
+    assert waiting.ahead(2, ["short", "long"])("short") == 8
     assert waiting.ahead(2, ["long"])("long") == 0
     assert waiting.ahead(2, ["tiny"])("tiny") == AHEAD
     waiting.attempts.extend(attempt("short", k) for k in range(15))
-    assert waiting.ahead(2, ["short"])("short") == 25
+    assert waiting.ahead(2, ["short"])("short") == 1
     assert waiting.ahead(2, ["short"])("new") == 1
     waiting.forget({attempt("short", k).id for k in range(14)})
     assert [a.position for a in waiting.attempts] == [14]

@@ -95,3 +95,10 @@ def test_outcomes_that_cannot_be_kept_fail_alone(store: Store) -> None:
     round_of(store, "me", Ended(bad, DONE), Ended(good, DONE))
     assert states(store, job) == ["failed", "succeeded"]
     assert job_of(store, job).state == "succeeded"
+
+
+def test_what_was_lost_goes_behind_the_others(store: Store) -> None:
+    add(store, "a", "b", "c")
+    assert [a.position for a in round_of(store, "one", wanted=1, lease=OVER).claimed] == [0]
+    claimed = round_of(store, "two", wanted=3, take_over=True).claimed
+    assert [(a.position, a.number) for a in claimed] == [(1, 1), (2, 1), (0, 2)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import sqlite3
 import time
@@ -25,7 +26,7 @@ SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
 #: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
 WORKER_LIFE = 3.5
 PARTS = ("puma560", "parallel-gripper", "cart-pendulum", "simple-pendulum")
-pytestmark = [pytest.mark.deep, pytest.mark.xdist_group("siege")]
+pytestmark = pytest.mark.deep
 
 
 def tree(i: int) -> dict[str, Any]:
@@ -82,6 +83,14 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[int, tuple[str
         return results(client, job)
 
 
+@pytest.fixture
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """One siege after the other, whichever process has it."""
+    with (tmp_path_factory.getbasetemp().parent / "siege.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 @pytest.fixture(params=["sqlite", "postgresql"])
 def farm(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Server]]:
     """One server on SQLite, two on PostgreSQL."""
@@ -92,6 +101,7 @@ def farm(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Server
         yield servers
 
 
+@pytest.mark.usefixtures("alone")
 def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str, str]], tmp_path: Path) -> None:
     for one in farm:
         one.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "3"
