@@ -60,11 +60,12 @@ class Server:
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(self.command, stderr=log, stdout=log, env=self.environment)
         end = time.monotonic() + START
-        while time.monotonic() < end and self.process.poll() is None:
-            with contextlib.suppress(httpx2.HTTPError):
-                if httpx2.get(f"{self.address}/readyz", timeout=5).status_code == 200:
-                    return
-            time.sleep(0.02)
+        with httpx2.Client(timeout=5) as client:
+            while time.monotonic() < end and self.process.poll() is None:
+                with contextlib.suppress(httpx2.HTTPError):
+                    if client.get(f"{self.address}/readyz").status_code == 200:
+                        return
+                time.sleep(0.02)
         raise RuntimeError(f"the server did not start: {self.log.read_text()[-2000:]}")
 
     def kill(self) -> None:
