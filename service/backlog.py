@@ -48,15 +48,19 @@ class Backlog:
         """How many items of a job to claim beyond those that can start now.
 
         It is what ends while ends are gathered, twice over and shared between the jobs, and one of a job of which
-        nothing runs or waits here: so every job gets its turn. ``running``: the job of every running attempt.
+        nothing runs or waits here, for as many jobs as there are slots: so every job gets its turn. To be asked once
+        about every job. ``running``: the job of every running attempt.
         """
         waiting = Counter(attempt.job for attempt in self.attempts)
         here = waiting.keys() | set(running)
+        firsts = iter(range(slots))
         seconds = 2 * GATHER * slots / max(1, len(here))
 
         def of(job: str) -> int:
             durations = self._durations.get(job)
             ends = min(AHEAD, int(seconds / max(median(durations), 1e-4))) if durations else 0
-            return max(ends, int(job not in here)) - waiting[job]
+            if not ends and job not in here:
+                return int(next(firsts, None) is not None)
+            return ends - waiting[job]
 
         return of

@@ -20,8 +20,9 @@ from service.queries.common import is_outage
 from service.refusals import Refused, problem
 from substructures.documents import write_json
 
-#: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers
-MAX_DEATHS, MAX_ATTEMPTS = 3, 20
+#: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers:
+#: many, since what was claimed is lost with a service that is killed for other reasons
+MAX_DEATHS, MAX_ATTEMPTS = 3, 1000
 ALL_FAILED = problem(Refused(500, "all-items-failed", "every item failed; its problem says why"))
 _log = logging.getLogger(__name__)
 

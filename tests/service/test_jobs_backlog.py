@@ -26,7 +26,8 @@ def attempt(job: str, position: int = 0) -> Attempt:
 
 def test_short_items_are_claimed_ahead_and_long_ones_are_not() -> None:
     waiting = Backlog()
-    assert waiting.ahead(2, [])("new") == 1
+    ahead = waiting.ahead(2, [])
+    assert [ahead(job) for job in ("new", "newer", "newest")] == [1, 1, 0]
     assert waiting.ahead(2, ["new"])("new") == 0
     waiting.note_end("short", 0.05)
     waiting.note_end("long", 100.0)

@@ -7,6 +7,7 @@ import sqlalchemy as sa
 
 from service.job_tables import job_items
 from service.jobs.engine import Outcome
+from service.operations import job_rounds
 from service.operations.job_rounds import Ended
 from service.queries import queue
 from service.queries.attempts import Attempt
@@ -43,7 +44,8 @@ def test_leases(store: Store) -> None:
         assert queue.renew(connection, "one", LEASE) == set()
 
 
-def test_lost_owners_are_no_deaths_but_not_endless(store: Store) -> None:
+def test_lost_owners_are_no_deaths_but_not_endless(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(job_rounds, "MAX_ATTEMPTS", 20)
     job = add(store, "a")
     for number in range(1, 21):
         (attempt,) = round_of(store, f"owner{number}", wanted=1, take_over=True, lease=OVER).claimed
