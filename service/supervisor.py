@@ -104,7 +104,7 @@ class Supervisor:
             _log.info("%s at once: another host was in the way", what)
             return
         if is_outage(error):
-            _log.error("%s: the database does not answer: %s", what, " ".join(str(error).split("\n")[:1]))
+            _log.error("%s: the database does not answer: %s", what, str(error).partition("\n")[0])
         else:
             _log.error("%s", what, exc_info=error)
         self._stop.wait(POLL)

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
@@ -31,24 +31,6 @@ def library() -> MemoryLibrary:
     return MemoryLibrary([PENDULUM, SLIDER], [TREE])
 
 
-@contextmanager
-def started(workers: int) -> Iterator[Cluster]:
-    cluster = Cluster(workers)
-    try:
-        yield cluster
-    finally:
-        cluster.close()
-
-
-@contextmanager
-def connecting(address: str) -> Iterator[DaskEngine]:
-    engine = DaskEngine(address)
-    try:
-        yield engine
-    finally:
-        engine.close()
-
-
 def until(is_so: Callable[[], object], engine: DaskEngine, seconds: float = 40.0) -> None:
     """Wait while nothing dies."""
     end = time.monotonic() + seconds
@@ -68,7 +50,7 @@ def test_workers_of_other_versions_get_no_works(
 ) -> None:
     for name, code in (("other", OTHER), ("without", WITHOUT)):
         (tmp_path / f"{name}.py").write_text(code)
-    with started(0) as cluster, connecting(cluster.address) as engine:
+    with closing(Cluster(0)) as cluster, closing(DaskEngine(cluster.address)) as engine:
         cluster.add_workers(1, "--preload", str(tmp_path / "other.py"))
         cluster.add_workers(1, "--preload", str(tmp_path / "without.py"))
         until(lambda: len(said(caplog, "gets no works")) == 2, engine)
@@ -86,7 +68,7 @@ def test_workers_of_other_versions_get_no_works(
 @pytest.mark.deep
 def test_works_of_the_only_worker_go_to_the_next_one(library: MemoryLibrary) -> None:
     (work,) = library.works("derive", {"items": [chain(60)]}, BUDGET)
-    with started(1) as cluster, connecting(cluster.address) as engine:
+    with closing(Cluster(1)) as cluster, closing(DaskEngine(cluster.address)) as engine:
         connected(engine)
         engine.start(work)
         until(lambda: runners(cluster.workers[0]), engine)
@@ -106,7 +88,7 @@ def test_a_worker_replaced_by_another_version_at_its_address_fails_nothing(
     (work,) = library.works("derive", {"items": [chain(60)]}, BUDGET)
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = str(free.getsockname()[1])
-    with started(0) as cluster, connecting(cluster.address) as engine:
+    with closing(Cluster(0)) as cluster, closing(DaskEngine(cluster.address)) as engine:
         cluster.add_workers(1, "--worker-port", port)
         connected(engine)
         engine.start(work)
@@ -125,13 +107,13 @@ def test_a_worker_that_hangs_stops_no_other(
     library: MemoryLibrary, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.INFO)
-    with started(2) as cluster:
-        with connecting(cluster.address) as engine:
+    with closing(Cluster(2)) as cluster:
+        with closing(DaskEngine(cluster.address)) as engine:
             until(lambda: engine.free == 2 * dask.AHEAD, engine)
         monkeypatch.setattr(dask_cluster, "CONNECT", 5.0)  # a busy machine takes seconds itself
         monkeypatch.setattr(dask_cluster, "AGAIN", 0.5)
         cluster.workers[0].send_signal(signal.SIGSTOP)
-        with connecting(cluster.address) as engine:
+        with closing(DaskEngine(cluster.address)) as engine:
             connected(engine)
             works = cells(library, 4)
             check(works, compute(engine, works))
@@ -167,7 +149,7 @@ def test_what_is_no_scheduler_is_tried_again(
     monkeypatch.setattr(dask, "CONNECT", 1.0)
     tries = []
     monkeypatch.setattr(dask, "Client", lambda *a, _client=dask.Client, **k: tries.append(a) or _client(*a, **k))
-    with web_server() as web, connecting(address or web) as engine:
+    with web_server() as web, closing(DaskEngine(address or web)) as engine:
         until(lambda: len(tries) > 2, engine)
     engine.close()
     assert 1 <= len(said(caplog, "no scheduler at")) < len(tries)
@@ -182,7 +164,7 @@ def test_a_lost_scheduler_and_missing_workers_are_told_of_in_one_line_each(
 ) -> None:
     caplog.set_level(logging.INFO)
     monkeypatch.setattr(dask, "FINDING", 0.5)
-    with started(0) as cluster, connecting(cluster.address) as engine:
+    with closing(Cluster(0)) as cluster, closing(DaskEngine(cluster.address)) as engine:
         until(lambda: said(caplog, "has no workers of this version"), engine)
         cluster.add_workers(1)
         until(lambda: said(caplog, "has workers again"), engine)
