@@ -15,13 +15,13 @@ from benchmarks.chains import ROWS_14, chain, general_rows, pieces, row_of
 from benchmarks.kane import derive_by_kane, operations
 from benchmarks.report import keep, options
 from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
-from substructures.coupling import couple_parts, over_formulas
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.interface import formulas
-from substructures.loads import read_loads
-from substructures.mechanism import mechanism
-from substructures.mounting import assemble
-from substructures.one_piece import derive_in_one_piece
+from substructures.part.formulas import formulas
+from substructures.part.loads import read_loads
+from substructures.part.mechanism import mechanism
+from substructures.part.one_piece import derive_in_one_piece
+from substructures.tree.assembly import assemble
+from substructures.tree.coupling import couple_parts, over_formulas
 
 GRAVITY = (0, 0, "-g")
 EQUATIONS = ("metric", "christoffel", "gravity")

@@ -22,9 +22,9 @@ from benchmarks.report import keep, options
 from benchmarks.robots import CALLS, Robot, robots
 from benchmarks.timing import alternating, ratio
 from substructures.compile import Kernel, compile_program
-from substructures.derived import derived
-from substructures.quantities import DYNAMICS
-from substructures.solve import cholesky_solve
+from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.formulas import derived
+from substructures.quantities.table import DYNAMICS
 
 FORWARD, DERIVATIVE = "forward_dynamics", "forward_dynamics_derivative"
 

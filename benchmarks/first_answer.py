@@ -19,12 +19,12 @@ import numpy as np
 
 from benchmarks.derive import humanoid
 from benchmarks.report import keep, options
+from service.kernels import Way, quickest
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.numeric import CompiledParts, NumericTree
-from substructures.states import default_number
-from substructures.ways import Way, quickest
+from substructures.quantities.from_parts import CompiledParts, NumericTree
+from substructures.quantities.states import default_number
 
 NAMES = ("forces", "metric")
 STATES = (1, 16, 256, 4096, 65536)

@@ -21,13 +21,13 @@ import numpy as np
 
 from benchmarks.report import keep, options
 from benchmarks.transfer import exchange
-from service.arrays import read_npz, view_npz, write_npz
-from service.client import Client
 from service.kernels import Kernels
 from substructures import Definition, TreeSpec, catalogue, couple, derive
-from substructures.evaluation import evaluate
+from substructures.array import Array
+from substructures.client import Client
 from substructures.expr.program import Program
-from substructures.states import Array
+from substructures.formats.arrays import read_npz, view_npz, write_npz
+from substructures.quantities.evaluation import evaluate
 
 STATES = 100_000
 
@@ -37,7 +37,7 @@ def server(folder: str, **settings: str) -> Iterator[Client]:
     """The service in a process of its own, on the database of the folder."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(port)]
+    command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port)]
     command += ["--database", f"sqlite:///{folder}/bench.db"]
     environment = {**os.environ, **{f"SUBSTRUCTURES_{name.upper()}": value for name, value in settings.items()}}
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env=environment)

@@ -21,8 +21,8 @@ from typing import Any
 
 from benchmarks.http import server
 from benchmarks.report import keep, options
-from service.client import Client
 from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures.client import Client
 
 PARTS = ("puma560", "parallel-gripper", "simple-pendulum", "ur5")
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from benchmarks.report import options
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
-from substructures.analysis.constrained import Constrained
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.reductions import REDUCTIONS
-from substructures.analysis.requests import LoopRequest
-from substructures.analysis.simulate_closed import simulate_closed
+from substructures.analysis.closed.constrained import Constrained
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.reductions import REDUCTIONS
+from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.motion.requests import LoopRequest
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers: start, and values at t = 0.03 s
 SQUEEZER = {

@@ -14,7 +14,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Symbol, array, program
-from substructures.skeleton import CHAINS
+from substructures.part.topology import CHAINS
 
 Array = Any
 UNIT = {

@@ -14,8 +14,8 @@ from benchmarks.derive import humanoid
 from benchmarks.peers import Peer
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.compile import Kernel, compile_program
-from substructures.model import Model
-from substructures.states import default_number
+from substructures.quantities.states import default_number
+from substructures.tree.model import Model
 
 Array = Any
 METRIC_FORCES = ("metric", "forces")

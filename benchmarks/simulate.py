@@ -23,11 +23,11 @@ from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
 from benchmarks.report import keep, options
 from substructures import couple, derive
-from substructures.analysis.requests import TAYLOR
-from substructures.analysis.right_hand_side import RightHandSide, forward_dynamics
+from substructures.analysis.motion.requests import TAYLOR
+from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
 from substructures.analysis.simulate import simulate
 from substructures.compile import compile_program
-from substructures.model import Model
+from substructures.tree.model import Model
 
 Array = Any
 SPAN = 5.0

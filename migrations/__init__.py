@@ -1,1 +1,1 @@
-"""Alembic migrations, one file a schema version; ``service.migrate`` runs them when the server starts."""
+"""Alembic migrations, one file a schema version; ``service.database.migrate`` runs them when the server starts."""

@@ -1,8 +1,8 @@
-"""Alembic environment: runs on the connection and in the transaction of ``service.migrate``.
+"""Alembic environment: runs on the connection and in the transaction of ``service.database.migrate``.
 
 New version: ``alembic.command.revision`` with this folder as ``script_location``, or copy the newest file of
-``versions`` and raise its number. On SQLite alter tables with ``op.batch_alter_table``; ``service.migrate`` switches
-foreign keys off around it. The tests compare the migrated schema with ``service.tables``.
+``versions`` and raise its number. On SQLite alter tables with ``op.batch_alter_table``; foreign keys are switched off
+around it by ``service.database.migrate``. The tests compare the migrated schema with ``service.database.tables``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from alembic import context
 
 context.configure(
     connection=context.config.attributes["connection"],
-    transactional_ddl=True,  # SQLite can, and service.migrate has begun the transaction itself
+    transactional_ddl=True,  # SQLite can, and service.database.migrate has begun the transaction itself
     render_as_batch=True,
 )
 context.run_migrations()

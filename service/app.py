@@ -10,10 +10,11 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 from sqlalchemy.exc import DBAPIError
 
-from service import __version__, openapi, problems
-from service.database import Database, DatabaseError, told
+from service import __version__
+from service.database.connections import Database, DatabaseError, told
+from service.http import openapi, problems
+from service.http.middleware import Conventions
 from service.metrics import Metrics
-from service.middleware import Conventions
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
 from service.queries import idempotency

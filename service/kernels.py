@@ -2,6 +2,20 @@
 
 Kernels of trees and of parts are compiled in the background when they are first missed, at once for large batches and
 on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler.
+
+Which of the three is the quickest, measured by ``benchmarks.first_answer`` (AMD Zen 3, one thread) for metric and
+forces of 6 + 6 and of 34 dof:
+
+==============  ==================================================================================================
+kernel          about 40 us for every operation, once; then 0.2 to 2 us a state
+interpreter     1.4 us for every operation and call, and 3 to 5 ns for every operation and state; needs the coupled
+                formulas (20 to 200 ms when they are not there)
+parts           2 to 8 ms a call and 8 to 25 us a state; needs kernels of the parts and nothing of the tree. For one
+                state, over floats, 1.2 to 3.4 times as fast as the interpreter; for batches about as fast
+==============  ==================================================================================================
+
+Both ways without a kernel grow with the same numbers, operations and states, as compiling does with operations alone.
+So where compiling pays off depends on the number of states only: from about 10^4 on, whatever the tree.
 """
 
 from __future__ import annotations
@@ -9,25 +23,47 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from enum import StrEnum
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
 from service.cache import Cache
+from substructures.array import Array
 from substructures.compile import Kernel, compile_program
-from substructures.coupling import ASKED
 from substructures.errors import MissingValue
-from substructures.evaluation import Engine, interpreted
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
-from substructures.numeric import NumericTree, Scalars, kernel_entries
-from substructures.part import Part
-from substructures.states import Array
-from substructures.ways import Way, quickest
+from substructures.part.part import Part
+from substructures.quantities.evaluation import Engine, interpreted
+from substructures.quantities.from_parts import NumericTree, Scalars, kernel_entries
+from substructures.tree.coupling import ASKED
 
+#: from this many states on compiling first is quicker
+AT_ONCE = 8192
 CAPACITY = 2_000_000  # weight of the kernels kept in memory
 
 Key = tuple[str, tuple[str, ...]]
+
+
+class Way(StrEnum):
+    """How numbers are found."""
+
+    PARTS = "parts"
+    INTERPRETER = "interpreter"
+    KERNEL = "kernel"
+
+
+def quickest(states: int, coupled: bool, warm: bool) -> Way:
+    """The way for this many states of a tree without a kernel of its own.
+
+    ``coupled``: its formulas are there; ``warm``: the kernels of its parts are.
+    """
+    if states >= AT_ONCE:
+        return Way.KERNEL
+    if coupled and not (warm and states == 1):
+        return Way.INTERPRETER
+    return Way.PARTS
 
 
 def _weight(kernel: Kernel) -> int:
@@ -36,7 +72,7 @@ def _weight(kernel: Kernel) -> int:
 
 
 class Kernels:
-    """An engine for :func:`substructures.evaluation.evaluate`; kernels are kept in memory, and in a folder if given."""
+    """An engine for :mod:`substructures.quantities.evaluation`; kernels are kept in memory and in a folder if given."""
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
@@ -67,7 +103,7 @@ class Kernels:
         return run
 
     def of_part(self, program: Program, values: Mapping[str, Any], names: Sequence[str]) -> Mapping[str, Scalars]:
-        """An engine for :class:`substructures.numeric.NumericTree`."""
+        """An engine for :class:`substructures.quantities.from_parts.NumericTree`."""
         kernel = self._ready(program, names, 1)
         return interpret_entries(program, values, names) if kernel is None else kernel_entries(kernel, values)
 

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from datetime import timedelta
 from time import monotonic
 
-from service.database import Connection
-from service.problems import Refused
+from service.database.connections import Connection
 from service.queries import keys
 from service.queries.common import now
+from service.refusals import Refused
 
 SCOPES = ("read", "write", "jobs", "admin")
 PREFIX = "sub"

@@ -10,7 +10,7 @@ from typing import Any
 import orjson
 from fastapi import Request
 
-from service.problems import unprocessable
+from service.refusals import unprocessable
 from service.settings import Limits
 
 

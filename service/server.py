@@ -13,12 +13,12 @@ from contextlib import contextmanager
 import uvicorn
 
 from service.app import create_app, open_store
-from service.engines import engine_of
 from service.jobs.engine import Engine
 from service.queries.keys import any_key
+from service.queue.engines import engine_of
+from service.queue.supervisor import Supervisor
 from service.settings import Settings, SettingsError
 from service.store import Store
-from service.supervisor import Supervisor
 
 TURN = 0.001  # seconds that a thread computes while others wait
 
@@ -105,7 +105,7 @@ def _server(store: Store) -> uvicorn.Server:
             host=settings.host,
             port=settings.port,
             log_config=None,
-            access_log=False,  # service.middleware writes a line with the request id
+            access_log=False,  # service.http.middleware writes a line with the request id
             server_header=False,
             loop="asyncio",  # for large answers quicker than uvloop
             lifespan="off",

@@ -8,22 +8,22 @@ from threading import Event
 from typing import Any
 
 from service.cache import Cache
-from service.database import Connection, Database
+from service.database.connections import Connection, Database
 from service.kernels import Kernels
 from service.keys import Authorisations
 from service.metrics import Metrics
 from service.queries import content
 from service.queries.trees import Tree
 from service.settings import Settings
-from substructures.definition import Definition
-from substructures.derived import derived
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.model import Model, couple
-from substructures.numeric import NumericTree
-from substructures.part import Part
-from substructures.regressor import RegressorModel
-from substructures.tree import TreeSpec
+from substructures.part.definition import Definition
+from substructures.part.part import Part
+from substructures.quantities.formulas import derived
+from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.regressor import RegressorModel
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model, couple
 
 THREADS = 16
 PICTURES = 16 * 2**20  # characters
@@ -102,7 +102,7 @@ class Store:
         return model
 
     def derived(self, model: Model, quantity: str) -> Program:
-        """A program of :data:`substructures.derived.DERIVED`. Raises as ``derived`` does."""
+        """A program of :data:`substructures.quantities.formulas.DERIVED`. Raises as ``derived`` does."""
         key = model.program.digest, model.coordinates, quantity
         program = self._derived.get(key)
         self.metrics.cache("derived", program is not None)

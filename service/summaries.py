@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.packed import pack
+from service.database.packed import pack
 from substructures.documents import read_json, write_json
-from substructures.model import Model
-from substructures.part import Part
-from substructures.tree import TreeSpec
+from substructures.part.part import Part
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
 
 
 def tree_summary(spec: TreeSpec, model: Model) -> bytes:

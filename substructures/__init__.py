@@ -8,12 +8,12 @@
 """
 
 from substructures import catalogue
-from substructures.definition import Definition
 from substructures.errors import Fault, InvalidDocument, InvalidProgram, MissingValue, SubstructuresError, TooLarge
 from substructures.expr.program import Program
-from substructures.model import Model, couple
-from substructures.part import Formula, Part, derive
-from substructures.tree import Instance, TreeSpec, read_instance
+from substructures.part.definition import Definition
+from substructures.part.part import Formula, Part, derive
+from substructures.tree.document import Instance, TreeSpec, read_instance
+from substructures.tree.model import Model, couple
 
 __all__ = [
     "Definition",

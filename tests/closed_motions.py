@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.trajectory import Trajectory
+from substructures.analysis.motion.trajectory import Trajectory
 
 METHODS = ["projection", "partitioning"]
 

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from independent import inertia_of, value, values
 
-from substructures.skeleton import CHAINS
+from substructures.part.topology import CHAINS
 
 Plain = dict[str, Any]
 Array = Any

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from substructures import Definition, Model, TreeSpec, couple, derive
-from substructures.skeleton import CHAINS
+from substructures.part.topology import CHAINS
 
 Plain = dict[str, Any]
 

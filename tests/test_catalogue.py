@@ -11,10 +11,10 @@ from independent import defaults, value
 
 from substructures import couple, derive
 from substructures.catalogue import load, names
-from substructures.definition import Definition
-from substructures.evaluation import evaluate
-from substructures.part import Part
-from substructures.tree import TreeSpec
+from substructures.part.definition import Definition
+from substructures.part.part import Part
+from substructures.quantities.evaluation import evaluate
+from substructures.tree.document import TreeSpec
 
 ENTRIES = pytest.mark.parametrize("name", names())
 #: published moments of inertia that no rigid body can have, kept as published

@@ -14,10 +14,10 @@ from independent import defaults, value
 
 from substructures import couple, derive
 from substructures.catalogue import load, load_tree
-from substructures.definition import Definition
-from substructures.evaluation import evaluate
-from substructures.model import Model
-from substructures.tree import TreeSpec
+from substructures.part.definition import Definition
+from substructures.quantities.evaluation import evaluate
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
 
 REFERENCE = Path(__file__).parent / "reference"
 HUMANOID = [(i["name"], i["substructure"], i["at"]) for i in load_tree("humanoid")["instances"]]

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from substructures.documents import MAX_DEPTH, MAX_DIGITS, Model, read_json, read_model, read_yaml, write_json
+from substructures.documents import MAX_DEPTH, MAX_DIGITS, DocumentPart, read_json, read_model, read_yaml, write_json
 from substructures.errors import InvalidDocument
 
 READERS = pytest.mark.parametrize("read", [read_json, read_yaml])
@@ -200,7 +200,7 @@ def test_arbitrary_bytes_raise_nothing_else(data: bytes) -> None:
     ],
 )
 def test_messages_show_what_was_found_as_json(value: object, shown: str) -> None:
-    class One(Model):
+    class One(DocumentPart):
         field: int
 
     with pytest.raises(InvalidDocument) as caught:

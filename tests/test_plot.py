@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from substructures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
+from substructures.pictures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
 
 GRID = np.linspace(0.0, 1.0, 11)
 COLUMNS = {

@@ -74,6 +74,6 @@ def test_python_example(tmp_path: Path) -> None:
 )
 def test_commands_exist(word: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "service.cli", *word.split(), "--help"], capture_output=True, text=True, check=False
+        [sys.executable, "-m", "service.cli.main", *word.split(), "--help"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr

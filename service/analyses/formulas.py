@@ -11,18 +11,18 @@ from typing import Any
 
 from service.analyses.source import Source
 from service.cache import Cache
-from substructures.analysis.adjoint import adjoint_equations
-from substructures.analysis.base_parameters import BaseParameters, base_parameters
-from substructures.analysis.control import Cost
-from substructures.analysis.curvature import curvature
-from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.formulas import inputs_of, multipliers_of
-from substructures.analysis.parameter_sensitivity import QUANTITIES as VARIED
-from substructures.analysis.parameter_sensitivity import sensitivity_formulas
-from substructures.analysis.perturbation import perturbation, state_space
-from substructures.analysis.quasi_velocities import quasi_velocity_equations
-from substructures.analysis.routh import routh
-from substructures.analysis.velocity_constraints import VelocityConstraints
+from substructures.analysis.control.adjoint import adjoint_equations
+from substructures.analysis.control.problem import Cost
+from substructures.analysis.equations.curvature import curvature
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.formulas import inputs_of, multipliers_of
+from substructures.analysis.equations.perturbation import perturbation, state_space
+from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.routh import routh
+from substructures.analysis.equations.velocity_constraints import VelocityConstraints
+from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
+from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
+from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.program import Program
 

@@ -18,23 +18,29 @@ from service.analyses.requests import (
 )
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Report, Source
-from substructures.analysis.curvature import curvature_values
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.equilibrium_search import EquilibriaRequest
-from substructures.analysis.gradient import GradientRequest, cost_gradient
-from substructures.analysis.identification import excitation, identify
-from substructures.analysis.linearisation import LinearisationRequest
-from substructures.analysis.linearise import linearise
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.optimal_control import optimal_control
-from substructures.analysis.parameter_sensitivity import sensitivities
-from substructures.analysis.requests import ClosedRequest, LoopRequest, RollingRequest, SimulationRequest, SpanRequest
-from substructures.analysis.root_locus import RootLocusRequest, root_locus
-from substructures.analysis.shooting_program import OptimalControlRequest
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
+from substructures.analysis.control.nonlinear_program import OptimalControlRequest
+from substructures.analysis.control.optimal_control import optimal_control
+from substructures.analysis.equations.curvature import curvature_values
+from substructures.analysis.identification.fit import excitation, identify
+from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.requests import (
+    ClosedRequest,
+    LoopRequest,
+    RollingRequest,
+    SimulationRequest,
+    SpanRequest,
+)
 from substructures.analysis.simulate import simulate
-from substructures.definition import read_model
+from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.equilibrium_search import EquilibriaRequest
+from substructures.analysis.stability.linearisation import LinearisationRequest
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.root_locus import RootLocusRequest, root_locus
+from substructures.documents import read_model
 from substructures.errors import Fault, InvalidDocument, TooLarge
-from substructures.states import read_states
+from substructures.quantities.states import read_states
 
 Request = Mapping[str, Any]
 

@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 from pydantic import Field, RootModel
 
-from substructures.analysis.requests import ClosedRequest, RollingRequest, SimulationRequest
-from substructures.definition import Model as Document
+from substructures.analysis.motion.requests import ClosedRequest, RollingRequest, SimulationRequest
+from substructures.documents import DocumentPart
 
 
 class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
@@ -23,7 +23,7 @@ class SensitivityRequest(SimulationRequest):
     of_start: bool = Field(False, description="also by coordinates and velocities at the start")
 
 
-class CurvatureRequest(Document):
+class CurvatureRequest(DocumentPart):
     """States."""
 
     q: Any = Field(description="(n,), (N, n) or columns by name; rad, m")
@@ -33,7 +33,7 @@ class CurvatureRequest(Document):
 Drive = Literal["armature", "viscous", "coulomb", "offset"]
 
 
-class ExcitationRequest(Document):
+class ExcitationRequest(DocumentPart):
     """A motion: how well does it show the base parameters?"""
 
     q: Any = Field(description="(N, n) or columns by name; rad, m")

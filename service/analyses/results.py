@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import orjson
 
-from service import arrays, arrow
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
-from substructures.analysis.root_locus import RootLocus
-from substructures.analysis.trajectory import Trajectory
-from substructures.analysis.writers import to_csv
-from substructures.model import Model
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.writers import to_csv
+from substructures.analysis.stability.root_locus import RootLocus
+from substructures.formats import arrays, arrow
+from substructures.tree.model import Model
 
 JSON, CSV, SVG = "application/json", "text/csv", "image/svg+xml"
 #: formats by their names in files and items of jobs

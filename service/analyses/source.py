@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.settings import Limits
-from substructures.evaluation import Engine, interpreted
-from substructures.model import Model
-from substructures.regressor import RegressorModel
+from substructures.quantities.evaluation import Engine, interpreted
+from substructures.quantities.regressor import RegressorModel
+from substructures.tree.model import Model
 
 #: told the finished share of the work
 Report = Callable[[float], bool | None]

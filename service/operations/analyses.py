@@ -7,16 +7,16 @@ from typing import Any
 
 from service.analyses.formulas import Made, Options, made, velocity_equations_of
 from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.printing import Style, made_text
 from service.analyses.results import trajectory_of, written
 from service.analyses.source import Source
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.operations import trees
 from service.operations.sources import sources_of
-from service.printing import Style, made_text
 from service.queries.trees import Tree
 from service.store import Store
-from substructures.model import Model
+from substructures.tree.model import Model
 
 
 def source_of(store: Store, tree: Tree, model: Model) -> Source:

@@ -15,9 +15,9 @@ from service.operations.exchange import Evaluation
 from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
-from substructures.evaluation import Sources, cost, steps
 from substructures.expr.program import Program
-from substructures.states import longest
+from substructures.quantities.evaluation import Sources, cost, steps
+from substructures.quantities.states import longest
 
 BODY = 4096  # bytes of the request
 OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds

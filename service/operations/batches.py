@@ -8,15 +8,16 @@ from typing import IO, Any
 
 import numpy as np
 
-from service import arrow
-from service.arrays import flat, read_npz
-from service.columns import Request, has_rows, request_of
 from service.operations import evaluations
 from service.settings import Limits
+from substructures.array import Array
 from substructures.documents import pointer_step, read_json
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import Sources
-from substructures.states import Array, numeric, read_states
+from substructures.formats import arrow
+from substructures.formats.arrays import flat, read_npz
+from substructures.formats.columns import Request, has_rows, request_of
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.states import numeric, read_states
 
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states

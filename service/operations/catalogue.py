@@ -6,15 +6,15 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from service.database import Connection
+from service.database.connections import Connection
 from service.paging import read_token, write_token
-from service.problems import Refused, not_found, unprocessable
 from service.queries import aliases, catalogue, content
 from service.references import ALIAS, Reference, parse_reference
+from service.refusals import Refused, not_found, unprocessable
 from service.store import Store
 from service.summaries import PartContent, part_content
-from substructures.definition import Definition
-from substructures.part import derive
+from substructures.part.definition import Definition
+from substructures.part.part import derive
 
 
 @dataclass(frozen=True, slots=True)

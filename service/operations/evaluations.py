@@ -10,8 +10,8 @@ import orjson
 
 from service.settings import Limits
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.evaluation import QUANTITIES, Sources, cost
-from substructures.states import longest
+from substructures.quantities.evaluation import QUANTITIES, Sources, cost
+from substructures.quantities.states import longest
 
 
 def check_size(sources: Sources, request: Any, limits: Limits, streamed: bool = False) -> None:

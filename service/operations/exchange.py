@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from service import arrays, arrow
 from service.answers import JSON, Answer, Stream, json_answer, streamed
-from service.columns import Request
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
-from service.problems import Refused
+from service.refusals import Refused
 from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
-from substructures.evaluation import Engine, Sources, evaluate
+from substructures.formats import arrays, arrow
+from substructures.formats.columns import Request
+from substructures.quantities.evaluation import Engine, Sources, evaluate
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 _KNOWN = ", ".join(MEDIA_TYPES)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from service.database import Connection
+from service.addresses import tree_path, version_path
+from service.database.connections import Connection
 from service.jobs.engine import Outcome
 from service.operations import catalogue, trees
 from service.operations.catalogue import Submission
 from service.queries import results
 from service.queries.attempts import Attempt
 from service.summaries import PartContent
-from service.views import tree_path, version_path
 from substructures.documents import read_json, write_json
 
 #: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned

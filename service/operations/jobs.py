@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from time import sleep
 from typing import Any
 
-from service.database import Connection
+from service.database.connections import Connection
 from service.jobs import kinds
 from service.operations.library import StoreLibrary
 from service.queries import jobs, uploads

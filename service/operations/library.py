@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from service.database import Connection
+from service.database.connections import Connection
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.queries import catalogue, content, trees
 from service.references import parse_reference

@@ -7,11 +7,11 @@ from typing import Any
 
 import orjson
 
+from service.analyses.printing import Style, bound, check_quantity, described, model_quantity, quantities, text_of
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
-from service.printing import Style, bound, check_quantity, described, model_quantity, quantities, text_of
-from service.problems import unprocessable
 from service.queries.content import FormulaRow
+from service.refusals import unprocessable
 from substructures.expr.program import Output, Program
 
 __all__ = [

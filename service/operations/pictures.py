@@ -9,19 +9,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.database import Connection
+from service.database.connections import Connection
 from service.operations import trees
 from service.operations.evaluations import check_size
-from service.problems import unprocessable
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.refusals import unprocessable
 from service.store import Store
 from substructures.documents import read_json
-from substructures.evaluation import Sources
-from substructures.model import Model
-from substructures.part import Part
-from substructures.picture import picture
-from substructures.tree import TreeSpec
+from substructures.part.part import Part
+from substructures.pictures.tree import picture
+from substructures.quantities.evaluation import Sources
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
 
 Pose = tuple[float, ...]
 INSTANCE = "part"

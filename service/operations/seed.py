@@ -8,7 +8,7 @@ from time import perf_counter
 from service.operations import catalogue as operations
 from service.store import Store
 from substructures import catalogue
-from substructures.definition import Definition
+from substructures.part.definition import Definition
 
 _log = logging.getLogger(__name__)
 

@@ -6,12 +6,12 @@ from service.operations.trees import parts_of
 from service.queries.trees import Tree
 from service.store import Store
 from substructures.documents import read_json
-from substructures.evaluation import Engine, Sources
-from substructures.model import Model
-from substructures.numeric import NumericTree
-from substructures.part import Part
-from substructures.regressor import RegressorModel, regressor
-from substructures.tree import TreeSpec
+from substructures.part.part import Part
+from substructures.quantities.evaluation import Engine, Sources
+from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
 
 
 def sources_of(store: Store, tree: Tree, model: Model) -> Sources:

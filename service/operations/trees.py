@@ -8,21 +8,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.answers import etag
-from service.database import Connection
+from service.database.connections import Connection
+from service.database.packed import pack
 from service.operations import catalogue
-from service.packed import pack
-from service.problems import Refused, not_found
 from service.queries import catalogue as versions
 from service.queries import content, trees
 from service.queries.common import now
 from service.references import Reference, parse_reference
+from service.refusals import Refused, not_found
 from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
-from substructures.model import Model, couple
-from substructures.part import Part, derive
-from substructures.tree import Instance, TreeSpec
+from substructures.part.part import Part, derive
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import Model, couple
 
 
 class StaleError(Exception):

@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from service.arrays import flat, write_npz
-from service.columns import Request, parted, pointer_of, request_of
 from service.jobs.kinds.evaluate import states_per_item
 from service.operations import jobs
 from service.queries.trees import Tree
 from service.queries.uploads import put_uploads
 from service.settings import Limits
 from service.store import Store
+from substructures.array import Array
 from substructures.errors import Fault, InvalidDocument
-from substructures.evaluation import Sources, check
-from substructures.states import Array
+from substructures.formats.arrays import flat, write_npz
+from substructures.formats.columns import Request, parted, pointer_of, request_of
+from substructures.quantities.evaluation import Sources, check
 
 TOGETHER = 8 * 2**20  # bytes that are written in one transaction
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import orjson
 
+from service.addresses import tree_path, version_path
 from service.pages.html import Content, Html, joined, link, table, tag
 from service.pages.layout import FILTER, document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
-from service.views import tree_path, version_path
 
 EQUATION = Html(
     "g<sub>ab</sub>(q)&#8201;q&#776;<sup>b</sup> + &#915;<sub>abc</sub>(q)&#8201;q&#775;<sup>b</sup>"

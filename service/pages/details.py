@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from service.addresses import tree_path, version_path
 from service.pages import words
 from service.pages.catalogue import links, size
 from service.pages.html import Content, Html, facts, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
-from service.views import tree_path, version_path
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.model import Model
-from substructures.part import Part
+from substructures.part.part import Part
+from substructures.tree.model import Model
 
 QUANTITIES = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
 OF_PART = "total: the whole stored program, with what coupling needs."

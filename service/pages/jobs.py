@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import orjson
 
-from service.job_views import job_path
 from service.operations.jobs import Progress
 from service.pages.html import Content, Html, facts, html, link, table, tag
 from service.pages.layout import document
 from service.queries.jobs import Item, Job
+from service.views.jobs import job_path
 
 AGAIN = 2  # seconds until a page of what changes is loaded again
 STATES = {"failed": "warn", "cancelled": "quiet", "queued": "quiet"}

@@ -9,8 +9,8 @@ from pathlib import Path
 from fastapi import Request, Response
 
 from service.answers import Answer, etag
+from service.http.requests import conditional
 from service.pages.html import Html, html, link, tag
-from service.requests import conditional
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
 FILTER = Path(__file__).with_name("filter.js").read_text(encoding="utf-8")

@@ -7,6 +7,7 @@ import re
 from fastapi import APIRouter, Request, Response
 
 from service import keys
+from service.http.requests import StoreOf, needs
 from service.operations import catalogue, jobs, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
@@ -18,9 +19,8 @@ from service.queries import aliases
 from service.queries import jobs as job_rows
 from service.queries import trees as revisions
 from service.queries.catalogue import Search
-from service.requests import StoreOf, needs
 from service.settings import Settings
-from substructures.lean import lean
+from substructures.part.alone import lean
 
 CARDS, TREES, JOBS, BAD = 500, 100, 100, 50
 _HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")

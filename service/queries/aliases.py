@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from sqlalchemy import Connection, bindparam, insert, select, update
 
+from service.database.tables import alias_history, aliases
 from service.queries.common import insert_missing, now
-from service.tables import alias_history, aliases
 
 
 @dataclass(frozen=True, slots=True)

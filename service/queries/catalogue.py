@@ -7,9 +7,9 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Select, and_, bindparam, func, insert, or_, select, update
 
+from service.database.tables import aliases, parts, substructures, tags, versions
 from service.queries.common import insert_missing, now
 from service.references import Reference
-from service.tables import aliases, parts, substructures, tags, versions
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")

@@ -8,10 +8,10 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select
 
-from service.packed import unpack
+from service.database.packed import unpack
+from service.database.tables import formulas, parts, programs, tags
 from service.queries.common import insert_missing, now
 from service.queries.uploads import get_upload
-from service.tables import formulas, parts, programs, tags
 
 
 @dataclass(frozen=True, slots=True)

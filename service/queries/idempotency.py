@@ -7,8 +7,8 @@ from datetime import timedelta
 
 from sqlalchemy import ColumnElement, Connection, delete, select, update
 
+from service.database.tables import idempotency
 from service.queries.common import insert_missing, now
-from service.tables import idempotency
 
 
 @dataclass(frozen=True, slots=True)

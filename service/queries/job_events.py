@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 from sqlalchemy import Connection, func, insert, select
 
-from service.job_tables import job_events
+from service.database.job_tables import job_events
 from service.queries.common import now
 
 

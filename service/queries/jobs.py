@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, and_, bindparam, case, exists, func, insert, or_, select, update
 
-from service.job_tables import job_items, jobs, results
+from service.database.job_tables import job_items, jobs, results
 from service.queries.common import now
 from service.queries.job_events import add_event
 from service.queries.states import OPEN, QUEUED, RUNNING

@@ -7,8 +7,8 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, bindparam, insert, select, update
 
+from service.database.tables import api_keys
 from service.queries.common import now
-from service.tables import api_keys
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import Any
 import orjson
 from sqlalchemy import ColumnElement, Connection, and_, bindparam, exists, func, select, tuple_, update
 
-from service.job_tables import job_items, jobs, results
+from service.database.job_tables import job_items, jobs, results
 from service.queries import jobs as job_queries
 from service.queries.attempts import Attempt, Changes, Lost, attempt_id
 from service.queries.common import now

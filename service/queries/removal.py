@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import Connection, delete, exists, select
 
-from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
+from service.database.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
 from service.queries.jobs import share_results
 
 

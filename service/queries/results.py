@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import Connection, select
 
-from service.job_tables import result_files, results
+from service.database.job_tables import result_files, results
 from service.queries.common import now, put_all
 
 

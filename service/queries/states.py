@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import literal_column
 
-from service.job_tables import job_items
+from service.database.job_tables import job_items
 
 OPEN = ("queued", "running", "cancelling")
 QUEUED = job_items.c.state == literal_column("'queued'")

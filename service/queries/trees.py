@@ -8,9 +8,9 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
 
+from service.database.tables import tree_names, tree_parts, trees
 from service.queries.common import insert_missing
 from service.references import Reference
-from service.tables import tree_names, tree_parts, trees
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 
 from sqlalchemy import Connection, delete, exists, insert, select, update
 
-from service.job_tables import job_uploads, uploads
+from service.database.job_tables import job_uploads, uploads
 from service.queries.common import now, put_all
 
 

@@ -7,14 +7,14 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Request, Response
 
 from service.answers import REVALIDATE, json_answer
+from service.http.requests import JsonBody, StoreOf, needs
 from service.operations import catalogue
-from service.problems import not_found
 from service.queries import aliases
-from service.requests import JsonBody, StoreOf, needs
+from service.refusals import not_found
 from service.routes.bodies import body_of
-from service.schemas import AliasList, AliasRequest, AliasView
-from service.views import alias_view, dump
-from substructures.definition import read_model
+from service.schemas.resources import AliasList, AliasRequest, AliasView
+from service.views.resources import alias_view, dump
+from substructures.documents import read_model
 
 router = APIRouter(prefix="/v1/substructures/{name}/aliases", tags=["catalogue"])
 READ, WRITE = [needs("read")], [needs("write")]

@@ -6,17 +6,17 @@ from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, Request, Response
 
-from service.acting import OnceOf, timed
 from service.analyses.numbers import ANALYSES, Analysis
 from service.analyses.results import JSON, MEDIA_TYPES
+from service.http.acting import OnceOf, timed
+from service.http.requests import JsonBody, StoreOf, needs
 from service.negotiation import MEDIA_TYPES as PRINTED
 from service.negotiation import choose_media_type
 from service.operations.analyses import analyse, velocity_equations
-from service.requests import JsonBody, StoreOf, needs
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, deferred
 from service.routes.style import StyleOf
-from service.schemas import AnalysisResult
+from service.schemas.numbers import AnalysisResult
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
 READ = [needs("read")]

@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from service.answers import Answer, json_answer
-from service.database import Connection
-from service.job_schemas import JobView
-from service.job_views import job_path, job_view
-from service.once import Commit, Once
+from service.database.connections import Connection
+from service.http.once import Commit, Once
 from service.operations import jobs
 from service.queries.jobs import Job
+from service.schemas.jobs import JobView
 from service.store import Store
-from service.views import dump
+from service.views.jobs import job_path, job_view
+from service.views.resources import dump
 
 FRESH = {"Cache-Control": "no-store"}
 #: ``responses`` of an endpoint that may answer with a job

@@ -7,16 +7,16 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag, json_answer
+from service.http.requests import StoreOf, conditional, needs
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
-from service.problems import not_found
 from service.queries import content
-from service.requests import StoreOf, conditional, needs
+from service.refusals import not_found
 from service.routes.bodies import printed
 from service.routes.style import StyleOf
-from service.schemas import FormulaIndex
-from service.views import dump, formulas_view
-from substructures.lean import lean
+from service.schemas.resources import FormulaIndex
+from service.views.resources import dump, formulas_view
+from substructures.part.alone import lean
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]

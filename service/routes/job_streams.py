@@ -13,14 +13,14 @@ from fastapi import APIRouter, Header, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from service.job_views import event_text, item_view
+from service.http.requests import StoreOf, needs
 from service.operations import jobs
 from service.queries import job_events, results
 from service.queries import jobs as rows
-from service.requests import StoreOf, needs
 from service.routes.bodies import binary
 from service.store import Store
-from service.views import dump
+from service.views.jobs import event_text, item_view
+from service.views.resources import dump
 
 EVENTS, ITEMS = 500, 100  # of one read
 POLL, HEARTBEAT = 0.25, 15.0  # seconds

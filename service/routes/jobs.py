@@ -6,21 +6,21 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.acting import OnceOf
 from service.answers import Answer, json_answer
-from service.database import Connection
-from service.job_schemas import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView
-from service.job_views import BINARY, item_view, job_view, media_type
+from service.database.connections import Connection
+from service.http.acting import OnceOf
+from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
 from service.operations import jobs
 from service.paging import limited, link_header, next_link, read_token, write_token
 from service.queries import jobs as rows
 from service.queries import results
 from service.refusals import not_found
-from service.requests import JsonBody, OptionalJsonBody, StoreOf, needs
 from service.routes.bodies import binary, body_of
 from service.routes.deferred import FRESH, answer, committed
-from service.views import dump
-from substructures.definition import read_model
+from service.schemas.jobs import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView
+from service.views.jobs import BINARY, item_view, job_view, media_type
+from service.views.resources import dump
+from substructures.documents import read_model
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 MANY = 2**31  # more items than a job has, and what every database takes for a position

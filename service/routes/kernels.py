@@ -6,16 +6,16 @@ from time import perf_counter
 
 from fastapi import APIRouter, Response
 
-from service.acting import OnceOf, timed
 from service.answers import Answer, json_answer
+from service.http.acting import OnceOf, timed
+from service.http.requests import JsonBody, StoreOf, needs
 from service.operations import trees
 from service.operations.sources import sources_of
-from service.requests import JsonBody, StoreOf, needs
 from service.routes.bodies import body_of
-from service.schemas import KernelsView
-from service.views import dump
+from service.schemas.numbers import KernelsView
+from service.views.resources import dump
 from substructures.errors import InvalidDocument
-from substructures.evaluation import read_quantities, steps
+from substructures.quantities.evaluation import read_quantities, steps
 
 router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
 

@@ -6,23 +6,23 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
-from service.acting import OnceSpooled, OnceSpooledOf
 from service.analyses.formulas import QUANTITIES
 from service.answers import JSON, Answer, Stream, etag
-from service.arrays import MEDIA_TYPE as NPZ
-from service.arrow import MEDIA_TYPE as ARROW
+from service.http.acting import OnceSpooled, OnceSpooledOf
+from service.http.once import Commit
+from service.http.requests import StoreOf, conditional, media_type, needs
 from service.negotiation import MEDIA_TYPES
-from service.once import Commit
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
-from service.requests import StoreOf, conditional, media_type, needs
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.routes.trees import is_pinned
-from service.schemas import EvaluationResult
+from service.schemas.numbers import EvaluationResult
+from substructures.formats.arrays import MEDIA_TYPE as NPZ
+from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
 READ = [needs("read")]

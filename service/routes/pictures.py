@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag
+from service.http.requests import StoreOf, conditional, needs
 from service.operations import catalogue, pictures, trees
-from service.requests import StoreOf, conditional, needs
 
 MEDIA_TYPE = "image/svg+xml"
 #: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own

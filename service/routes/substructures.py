@@ -6,20 +6,22 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.acting import OnceOf, timed
+from service.addresses import version_path
 from service.answers import Answer, etag, json_answer
-from service.database import Connection
+from service.database.connections import Connection
+from service.http.acting import OnceOf, timed
+from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, conditional, needs
 from service.operations import catalogue
 from service.paging import limited, link_header, next_link
-from service.problems import unprocessable
 from service.queries import aliases, content
 from service.queries.catalogue import SORTS, Search, Version
-from service.requests import JsonBody, OptionalJsonBody, StoreOf, conditional, needs
+from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import ACCEPTED, deferred
-from service.schemas import VersionPage, VersionView, YankRequest
-from service.views import dump, page_view, version_path, version_view
-from substructures.definition import Definition, read_model
+from service.schemas.resources import VersionPage, VersionView, YankRequest
+from service.views.resources import dump, page_view, version_view
+from substructures.documents import read_model
+from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/substructures", tags=["catalogue"])
 READ, WRITE = [needs("read")], [needs("write")]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 
 from service.answers import Answer, json_answer
+from service.http.requests import StoreOf, needs
 from service.metrics import CONTENT_TYPE
 from service.queries.jobs import counts
 from service.refusals import Refused
-from service.requests import StoreOf, needs
-from service.schemas import Health, LimitsView
-from service.views import dump
+from service.schemas.resources import Health, LimitsView
+from service.views.resources import dump
 from substructures.documents import MAX_DEPTH, MAX_DIGITS
 from substructures.expr.graph import MAX_EXPONENT
 

@@ -7,20 +7,21 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from service.acting import OnceOf, timed
+from service.addresses import BASE, tree_path
 from service.answers import Answer, json_answer
-from service.database import Connection
-from service.once import Commit, Once
+from service.database.connections import Connection
+from service.http.acting import OnceOf, timed
+from service.http.once import Commit, Once
+from service.http.requests import JsonBody, StoreOf, conditional, needs
 from service.operations import trees
-from service.operations.job_results import BASE, IS_EXACT
+from service.operations.job_results import IS_EXACT
 from service.paging import limited, link_header, next_link, read_token, write_token
 from service.queries.trees import page
 from service.references import parse_reference
-from service.requests import JsonBody, StoreOf, conditional, needs
 from service.routes.bodies import body_of
 from service.routes.deferred import ACCEPTED, deferred
-from service.schemas import TreePage, TreeView
-from service.views import dump, tree_item, tree_path, tree_view
+from service.schemas.resources import TreePage, TreeView
+from service.views.resources import dump, tree_item, tree_view
 
 router = APIRouter(prefix="/v1/trees", tags=["trees"])
 READ, WRITE = [needs("read")], [needs("write")]

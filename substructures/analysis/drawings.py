@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from substructures.analysis.root_locus import RootLocus
-from substructures.analysis.trajectory import Check, Trajectory
-from substructures.plot import Line, Panel, plot
-from substructures.states import Array
+from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.analysis.stability.root_locus import RootLocus
+from substructures.array import Array
+from substructures.pictures.plot import Line, Panel, plot
 
 TIME = "t in s"
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from substructures.analysis.progress import Report
-from substructures.analysis.simulate_closed import simulate_closed
-from substructures.analysis.simulate_rolling import simulate_rolling
-from substructures.analysis.simulate_tree import simulate_tree
-from substructures.analysis.trajectory import Trajectory
-from substructures.model import Model
+from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.motion.progress import Report
+from substructures.analysis.motion.rolling import simulate_rolling
+from substructures.analysis.motion.simulation import simulate_tree
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.tree.model import Model
 
 
 def simulate(

@@ -8,9 +8,9 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from substructures.array import Array
+
 #: names, and an array whose columns (last axis) are their values
 Columns = tuple[Sequence[str], Array]
 

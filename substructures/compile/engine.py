@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from substructures.array import Array
 from substructures.compile import cache, target
-from substructures.compile.arguments import Array
 from substructures.compile.lowering import Step
 from substructures.compile.runtime import CONTEXT, STEP, runtime
 

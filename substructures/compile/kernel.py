@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.compile.arguments import Array, Column, Columns, batch_shape, merged
+from substructures.array import Array
+from substructures.compile.arguments import Column, Columns, batch_shape, merged
 from substructures.compile.recipe import needed_symbols
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Output, Program

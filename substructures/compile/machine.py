@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from substructures.array import Array
 from substructures.compile import layout, target
-from substructures.compile.arguments import Arguments, Array, Columns, batch_shape, merged
+from substructures.compile.arguments import Arguments, Columns, batch_shape, merged
 from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, Table, address, workers
 from substructures.compile.kernel import Blocks, Kernel, Request, is_packed
 from substructures.compile.layout import Layout, Words

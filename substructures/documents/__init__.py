@@ -4,16 +4,16 @@ A document is text in JSON or YAML; plain data are dicts with string keys, lists
 ``int`` and ``decimal.Decimal``. A number is taken exactly as its decimal text, never through binary floating point.
 Both readers refuse the same things: duplicate keys, nesting deeper than ``MAX_DEPTH``, numbers of more than
 ``MAX_DIGITS`` digits (written out without an exponent), NaN and infinities, lone surrogates and invalid UTF-8.
-All functions raise :class:`substructures.errors.InvalidDocument` and nothing else. ``Model`` and ``Document`` are the
-bases of what is read from plain data by ``read_model``.
+All functions raise :class:`substructures.errors.InvalidDocument` and nothing else. ``DocumentPart`` and ``Document``
+are the bases of what is read from plain data by ``read_model``.
 
 Sources: RFC 8259 (JSON), RFC 6901 (pointers), YAML 1.2.2 section 10.3 (core schema).
 """
 
 from substructures.documents.from_json import read_json
 from substructures.documents.from_yaml import read_yaml
-from substructures.documents.model import Document, Model, message_of, read_model
 from substructures.documents.numbers import MAX_DIGITS
+from substructures.documents.schema import Document, DocumentPart, message_of, read_model
 from substructures.documents.text import MAX_DEPTH, escape, pointer_step
 from substructures.documents.to_json import write_json
 
@@ -21,7 +21,7 @@ __all__ = [
     "MAX_DEPTH",
     "MAX_DIGITS",
     "Document",
-    "Model",
+    "DocumentPart",
     "escape",
     "message_of",
     "pointer_step",

@@ -6,12 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from substructures.array import Array
 from substructures.errors import MissingValue
 from substructures.expr.program import Output, Program
-
-Array = NDArray[np.float64]
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "add": np.add,

@@ -11,13 +11,13 @@ from random_trees import Kind, Plain, model_of, random_definition, with_paramete
 from scipy.integrate import solve_ivp
 
 from substructures import InvalidDocument, MissingValue, Model
-from substructures.analysis.adjoint import adjoint_equations
-from substructures.analysis.control import Cost, initial_state, inputs_of, read_problem
-from substructures.analysis.gradient import GradientRequest, cost_gradient
-from substructures.analysis.shooting import Shooting
-from substructures.evaluation import evaluate
+from substructures.analysis.control.adjoint import adjoint_equations
+from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
+from substructures.analysis.control.problem import Cost, initial_state, inputs_of, read_problem
+from substructures.analysis.control.shooting import Shooting
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
+from substructures.quantities.evaluation import evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 

@@ -9,9 +9,9 @@ from closed_trees import at, closed_entry, four_bar, slider_crank
 from random_trees import Plain
 
 from substructures import InvalidDocument
+from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.motion.simulation import simulate_tree
 from substructures.analysis.simulate import simulate
-from substructures.analysis.simulate_closed import simulate_closed
-from substructures.analysis.simulate_tree import simulate_tree
 
 
 def test_a_locked_motion_fails_with_the_motion_up_to_there() -> None:

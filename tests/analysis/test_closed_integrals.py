@@ -10,7 +10,7 @@ from closed_trees import bricard, four_bar, governor, tree_model
 from random_trees import Plain
 
 from substructures import Model
-from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
+from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.simulate import simulate
 from substructures.expr.interpret import interpret_in_blocks
 

@@ -10,9 +10,9 @@ from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank
 from random_trees import Plain
 
 from substructures import Model
-from substructures.analysis.linearise import linearise
-from substructures.analysis.linearise_closed import ClosedLinearisation
-from substructures.analysis.loops import analyse_loops
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.linearise_closed import ClosedLinearisation
 
 G = 9.81
 DOWN = (0, -G, 0)

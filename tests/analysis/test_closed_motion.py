@@ -10,9 +10,9 @@ from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, stewart, stewart_points
 from random_trees import Plain
 
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.simulate_closed import simulate_closed
-from substructures.evaluation import evaluate
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.simulation import simulate_closed
+from substructures.quantities.evaluation import evaluate
 
 
 @pytest.mark.parametrize("method", METHODS)

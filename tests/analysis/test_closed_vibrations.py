@@ -13,13 +13,13 @@ from random_trees import Plain
 
 from substructures import InvalidDocument, Model
 from substructures.analysis.drawings import draw_root_locus
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.linearise import linearise
-from substructures.analysis.linearise_closed import ClosedLinearisation
-from substructures.analysis.perturbation import perturbation
-from substructures.analysis.root_locus import root_locus
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.simulate import simulate
+from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.linearise_closed import ClosedLinearisation
+from substructures.analysis.stability.root_locus import root_locus
 from substructures.expr.program import Program
 
 G = 9.81

@@ -12,12 +12,12 @@ from analysis_models import seeds
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, vector
 
 from substructures import Definition, InvalidDocument, Model, TreeSpec, catalogue, couple, derive
-from substructures.closures import ROWS
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
+from substructures.tree.closures import ROWS
 
 TYPES = tuple(ROWS)
 

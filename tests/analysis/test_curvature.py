@@ -14,12 +14,12 @@ from analysis_models import seeds, shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
 from substructures import InvalidDocument, Model, TooLarge
-from substructures.analysis.curvature import curvature, curvature_values, independent_elements
-from substructures.evaluation import evaluate
+from substructures.analysis.equations.curvature import curvature, curvature_values, independent_elements
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.quantities.evaluation import evaluate
 
 
 def symbolic(bodies: list[Plain], parameters: str) -> Model:

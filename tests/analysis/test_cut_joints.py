@@ -9,9 +9,9 @@ import pytest
 from closed_trees import angles, tree_model
 from random_trees import GRAVITY, Plain, add_inertia, number, vector
 
-from substructures.analysis.loops import analyse_loops
-from substructures.evaluation import evaluate
-from substructures.skeleton import CHAINS
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.part.topology import CHAINS
+from substructures.quantities.evaluation import evaluate
 
 KINDS = ("revolute", "prismatic", "spherical", "fixed", "cylindrical", "universal", "planar")
 

@@ -8,9 +8,9 @@ from analysis_models import catalogue_model, random_model, seeds
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.root_locus import root_locus
-from substructures.evaluation import evaluate
+from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.root_locus import root_locus
+from substructures.quantities.evaluation import evaluate
 
 SLIDE: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": {"type": "prismatic", "coordinate": "s"}}
 

@@ -10,10 +10,10 @@ from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
 from substructures import InvalidDocument, Model
-from substructures.analysis.first_integrals import FirstIntegrals, first_integrals
-from substructures.analysis.routh import routh
-from substructures.evaluation import evaluate
+from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
+from substructures.analysis.equations.routh import routh
 from substructures.expr.interpret import interpret
+from substructures.quantities.evaluation import evaluate
 
 FALL = (0, 0, -9.81)
 NONE = (0, 0, 0)

@@ -8,11 +8,11 @@ import pytest
 from analysis_models import catalogue_model
 
 from substructures import Model, Program
-from substructures.analysis.first_integrals import first_integrals
-from substructures.analysis.parameter_sensitivity import sensitivity_formulas
-from substructures.analysis.perturbation import perturbation, state_space
-from substructures.analysis.right_hand_side import forward_dynamics
-from substructures.analysis.routh import routh
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.perturbation import perturbation, state_space
+from substructures.analysis.equations.routh import routh
+from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
+from substructures.analysis.motion.right_hand_side import forward_dynamics
 from substructures.printers import FORMATS, render
 
 PROGRAMS: dict[str, Callable[[Model], Program]] = {

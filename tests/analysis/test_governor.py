@@ -7,8 +7,8 @@ import pytest
 from closed_motions import right
 from closed_trees import at, governor
 
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.simulate_closed import simulate_closed
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.simulation import simulate_closed
 
 
 def lift(angle: float) -> tuple[float, float, float]:

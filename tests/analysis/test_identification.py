@@ -12,14 +12,14 @@ import pytest
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
 from substructures import Definition, InvalidDocument, Part, TooLarge, TreeSpec, catalogue, couple, derive
-from substructures.analysis import dependencies
-from substructures.analysis.base_parameters import BaseParameters, base_parameters
-from substructures.analysis.identification import excitation, identify
-from substructures.evaluation import evaluate
+from substructures.analysis.identification import dependencies
+from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
+from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
-from substructures.regressor import RegressorModel, regressor
-from substructures.states import default_number
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.states import default_number
 
 UP = (0, 0, "-9.81")
 IN_PLANE = (0, "-9.81", 0)

@@ -12,9 +12,9 @@ from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, R, disc, sleigh
 
 from substructures import Model
+from substructures.analysis.motion.trajectory import Check, Trajectory
 from substructures.analysis.simulate import simulate
-from substructures.analysis.trajectory import Check, Trajectory
-from substructures.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate
 
 TREES: dict[str, tuple[str, Plain]] = {
     "acrobot": ("acrobot", {"q": [1.2, 0], "span": [0, 5], "step": 0.02}),

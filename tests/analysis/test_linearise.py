@@ -11,12 +11,12 @@ from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument, Model, Program
-from substructures.analysis.linearise import linearise
-from substructures.analysis.perturbation import inputs_of, perturbation, state_space
+from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
 from substructures.analysis.simulate import simulate
-from substructures.analysis.vibrations import modes
-from substructures.evaluation import evaluate
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.vibrations import modes
 from substructures.expr.interpret import interpret
+from substructures.quantities.evaluation import evaluate
 
 G = 9.81
 STEP = 1e-4

@@ -10,7 +10,7 @@ from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, tree
 from random_trees import Plain
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive
-from substructures.analysis.loops import analyse_loops
+from substructures.analysis.closed.loops import analyse_loops
 
 
 def test_planar_pin_is_redundant_but_harmless() -> None:

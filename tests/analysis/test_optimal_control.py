@@ -12,10 +12,10 @@ from random_trees import Plain, model_of
 from scipy.integrate import solve_ivp
 
 from substructures import InvalidDocument, Model
-from substructures.analysis.control import read_problem
-from substructures.analysis.optimal_control import Optimum, optimal_control
-from substructures.analysis.shooting_program import OptimalControlRequest, ShootingProgram
-from substructures.evaluation import evaluate
+from substructures.analysis.control.nonlinear_program import OptimalControlRequest, ShootingProgram
+from substructures.analysis.control.optimal_control import Optimum, optimal_control
+from substructures.analysis.control.problem import read_problem
+from substructures.quantities.evaluation import evaluate
 
 
 @cache

@@ -8,7 +8,7 @@ from analysis_models import catalogue_model, defaults, random_model, values_at
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidDocument
-from substructures.analysis.parameter_sensitivity import sensitivities, sensitivity_formulas
+from substructures.analysis.motion.parameter_sensitivity import sensitivities, sensitivity_formulas
 from substructures.analysis.simulate import simulate
 from substructures.expr.interpret import interpret
 

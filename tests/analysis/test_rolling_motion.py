@@ -8,8 +8,8 @@ from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 
 from substructures import InvalidDocument
+from substructures.analysis.motion.rolling import FORMS, simulate_rolling
 from substructures.analysis.simulate import simulate
-from substructures.analysis.simulate_rolling import FORMS, simulate_rolling
 
 
 @pytest.mark.parametrize("form", FORMS)

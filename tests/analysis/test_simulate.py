@@ -10,11 +10,11 @@ import pytest
 from analysis_models import FINE, PERIOD, catalogue_model, defaults, oscillator, random_model, seeds
 from random_trees import model_of, random_states
 
-from substructures.analysis.right_hand_side import RightHandSide, forward_kernel
+from substructures.analysis.motion.right_hand_side import RightHandSide, forward_kernel
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.writers import to_csv, to_npz
 from substructures.analysis.simulate import simulate
-from substructures.analysis.trajectory import Trajectory
-from substructures.analysis.writers import to_csv, to_npz
-from substructures.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate
 
 
 def names(trajectory: Trajectory) -> set[str]:

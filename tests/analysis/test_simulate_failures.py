@@ -10,9 +10,9 @@ from analysis_models import catalogue_model, oscillator
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument, MissingValue
-from substructures.analysis.equilibria import equilibria
-from substructures.analysis.linearise import linearise
 from substructures.analysis.simulate import simulate
+from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.linearise import linearise
 
 
 def test_progress_is_told_and_can_cancel() -> None:

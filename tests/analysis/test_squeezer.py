@@ -11,8 +11,8 @@ from closed_trees import SQUEEZER, at, closed_entry, tree_model
 from random_trees import Plain
 
 from substructures import Model, catalogue
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.simulate_closed import simulate_closed
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.simulation import simulate_closed
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers; IFToMM benchmark A03: start, and values at 0.03 s
 START = [-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550]

@@ -11,8 +11,8 @@ from random_trees import Plain
 from rolling_bodies import FLOOR, R, disc
 
 from substructures import Model
+from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import simulate
-from substructures.analysis.trajectory import Trajectory
 
 ACROBOT: Plain = {"q": [1.2, 0.4], "span": [0, 1]}
 

@@ -8,7 +8,7 @@ from analysis_models import PERIOD, catalogue_model
 from random_trees import Plain, model_of
 
 from substructures import InvalidDocument
-from substructures.analysis import taylor
+from substructures.analysis.motion import taylor
 from substructures.analysis.simulate import simulate
 
 pytest.importorskip("heyoka", reason="heyoka is in the test extra")

@@ -11,17 +11,17 @@ from random_trees import Kind, Plain, model_of, random_definition
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 
 from substructures import Model
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.quasi_velocities import QuasiVelocities, quasi_velocity_equations
-from substructures.analysis.simulate_closed import simulate_closed
-from substructures.analysis.simulate_rolling import simulate_rolling
-from substructures.evaluation import evaluate
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.motion.rolling import simulate_rolling
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
 from substructures.printers import render
+from substructures.quantities.evaluation import evaluate
 
 
 def exact(equations: QuasiVelocities, expected: Plain) -> None:

@@ -11,8 +11,8 @@ import pytest
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.expr.interpret import constant, interpret
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.model import Model
-from substructures.states import default_number
+from substructures.quantities.states import default_number
+from substructures.tree.model import Model
 
 Array = Any
 EPS = float(np.finfo(float).eps)

@@ -11,8 +11,8 @@ from random_trees import GRAVITY, Kind, model_of, random_definition
 
 from substructures import catalogue
 from substructures.compile import compile_program
-from substructures.model import Model
-from substructures.states import default_number
+from substructures.quantities.states import default_number
+from substructures.tree.model import Model
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional

@@ -13,7 +13,7 @@ import pytest
 
 from substructures import catalogue
 from substructures.compile import compile_program, engine, target
-from substructures.model import Model
+from substructures.tree.model import Model
 
 pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
 

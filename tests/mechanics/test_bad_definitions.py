@@ -9,7 +9,7 @@ import pytest
 from bad_documents import GOOD, Path, Plain, cell, changed, pointer_of, request
 
 from substructures import Definition, InvalidDocument, TooLarge, TreeSpec, couple, derive
-from substructures.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate
 
 B: Path = ("bodies", 1)
 J: Path = ("bodies", 0, "joint")

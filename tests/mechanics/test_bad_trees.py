@@ -9,8 +9,8 @@ import pytest
 from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good, pointer_of, request
 
 from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
-from substructures.evaluation import evaluate
-from substructures.regressor import regressor
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.regressor import regressor
 
 INSTANCE: Path = ("instances", 1)
 TREES: list[tuple[str, Path, Any, str, str]] = [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from substructures import Definition, TreeSpec, couple, derive
-from substructures.certificate import TOLERANCE, VerificationFailed, compare
+from substructures.part.certificate import TOLERANCE, VerificationFailed, compare
 
 PART: dict[str, Any] = {
     "name": "x",

@@ -11,19 +11,19 @@ from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart
 from random_trees import Plain
 
 from substructures import InvalidDocument, Model, TreeSpec, catalogue, derive
-from substructures.analysis.adjoint import adjoint_equations
-from substructures.analysis.base_parameters import base_parameters
-from substructures.analysis.control import Cost
-from substructures.analysis.curvature import curvature
-from substructures.analysis.loops import analyse_loops
-from substructures.analysis.parameter_sensitivity import sensitivities, variational
-from substructures.analysis.perturbation import state_space
-from substructures.analysis.quasi_velocities import quasi_velocity_equations
-from substructures.analysis.routh import routh
-from substructures.definition import Definition
-from substructures.derived import derived, kept
-from substructures.evaluation import evaluate
-from substructures.regressor import regressor
+from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.control.adjoint import adjoint_equations
+from substructures.analysis.control.problem import Cost
+from substructures.analysis.equations.curvature import curvature
+from substructures.analysis.equations.perturbation import state_space
+from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.routh import routh
+from substructures.analysis.identification.base_parameters import base_parameters
+from substructures.analysis.motion.parameter_sensitivity import sensitivities, variational
+from substructures.part.definition import Definition
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.formulas import derived, kept
+from substructures.quantities.regressor import regressor
 
 FD = "forward_dynamics"
 DOWN = (0, -9.81, 0)

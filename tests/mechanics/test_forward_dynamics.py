@@ -12,12 +12,12 @@ from random_trees import Kind, Plain, model_of, random_definition, random_states
 
 from substructures import InvalidDocument, Model, TooLarge, catalogue
 from substructures.compile import compile_program
-from substructures.derived import DERIVED, derived
-from substructures.evaluation import Sources, cost, evaluate
 from substructures.expr.graph import Graph
+from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
-from substructures.sensitivity import SingularMetric, forward_dynamics
-from substructures.solve import cholesky_solve
+from substructures.quantities.derivatives import SingularMetric, forward_dynamics
+from substructures.quantities.evaluation import Sources, cost, evaluate
+from substructures.quantities.formulas import DERIVED, derived
 
 N = 5
 Q: Plain = {"quantities": ["forward_dynamics"]}
@@ -133,7 +133,7 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
     def small(model: Model, name: str) -> Any:
         return forward_dynamics(model, 3) if name == "forward_dynamics" else derived(model, name)
 
-    monkeypatch.setattr("substructures.evaluation.BLOCK", 2 * model.dof**2)
+    monkeypatch.setattr("substructures.quantities.evaluation.BLOCK", 2 * model.dof**2)
     found = evaluate(model, request, sources=Sources(model, small))
     np.testing.assert_allclose(found["forward_dynamics"], expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
     assert cost(Sources(model, small), ["forward_dynamics"])[1] == model.dof

@@ -16,8 +16,8 @@ import pytest
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, vector, with_parameters
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
-from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
+from substructures.quantities.evaluation import evaluate
 
 N = 3
 Array = Any

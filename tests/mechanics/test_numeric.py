@@ -10,9 +10,9 @@ import pytest
 
 from substructures import Definition, MissingValue, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
-from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
-from substructures.numeric import EQUATIONS, CompiledParts, NumericTree
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.from_parts import EQUATIONS, CompiledParts, NumericTree
 
 
 def parts_of(spec: TreeSpec) -> dict[str, Part]:
@@ -82,7 +82,7 @@ def test_square_commutes(name: str, batch: tuple[int, ...], monkeypatch: pytest.
     parts, model = pair(name)
     evaluator = NumericTree(TREES[name], parts)
     values = values_of(evaluator, batch)
-    monkeypatch.setattr("substructures.numeric.BLOCK", 10)
+    monkeypatch.setattr("substructures.quantities.from_parts.BLOCK", 10)
     compare(evaluator.evaluate(values, list(model.program.outputs)), interpret(model.program, values))
 
 
@@ -103,7 +103,7 @@ def test_parts_that_are_warm_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -
     engine = CompiledParts()
     for part in parts.values():
         engine.warm(part)
-    monkeypatch.setattr("substructures.numeric.compile_program", None)
+    monkeypatch.setattr("substructures.quantities.from_parts.compile_program", None)
     evaluator = NumericTree(TREES["springs"], parts, engine)
     evaluator.evaluate(values_of(evaluator, ()))
     evaluator.evaluate(values_of(evaluator, ()), ["metric"])

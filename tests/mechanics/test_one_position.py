@@ -10,10 +10,10 @@ import pytest
 from random_trees import Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
+from substructures.array import Array
 from substructures.compile import compile_program
-from substructures.evaluation import QUANTITIES, REGRESSOR, Engine, evaluate, interpreted
 from substructures.expr.program import Program
-from substructures.states import Array
+from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, Engine, evaluate, interpreted
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]

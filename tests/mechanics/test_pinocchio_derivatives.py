@@ -11,7 +11,7 @@ import pytest
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
-from substructures.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional

@@ -11,11 +11,11 @@ from formulas import alone
 from random_trees import Plain
 
 from substructures import catalogue
-from substructures.evaluation import evaluate
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.quantities.evaluation import evaluate
 
 #: P. Corke, Robotics Toolbox for Python, models/DH/Puma560.py and tests/test_DHRobot.py
 PUMA_ROWS = [(0.67183, 0, 90), (0, 0.4318, 0), (0.15005, 0.0203, -90), (0.4318, 0, 90), (0, 0, -90), (0, 0, 0)]

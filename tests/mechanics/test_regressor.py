@@ -15,14 +15,14 @@ from random_cuts import all_cuts, cut_tree
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, tree_of, with_parameters
 
 from substructures import Definition, InvalidDocument, MissingValue, Part, TooLarge, TreeSpec, catalogue, couple, derive
-from substructures.derived import derived
-from substructures.evaluation import evaluate
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.replay import replay
-from substructures.regressor import RegressorModel, regressor
-from substructures.states import default_number
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.formulas import derived
+from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.states import default_number
 
 N = 3
 TEN = ("m", "sx", "sy", "sz", "Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz")

@@ -11,7 +11,6 @@ from random_trees import GRAVITY, Plain, model_of
 from samples import SEEDS, flat, pair, request_for, same
 
 from substructures import Definition, Part, derive
-from substructures.evaluation import evaluate
 from substructures.expr.bind import bind
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
@@ -20,6 +19,7 @@ from substructures.mechanics.inertia import Inertia, composites
 from substructures.mechanics.joints import Joint, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
+from substructures.quantities.evaluation import evaluate
 
 
 @pytest.mark.parametrize("seed", SEEDS)

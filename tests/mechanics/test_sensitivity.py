@@ -9,11 +9,11 @@ import pytest
 from random_trees import Kind, Plain, model_of, random_definition, random_states, with_parameters
 
 from substructures import Definition, InvalidDocument, MissingValue, Model, Program, TreeSpec, catalogue, couple, derive
-from substructures.evaluation import evaluate
 from substructures.expr.interpret import interpret
-from substructures.sensitivity import inverse_dynamics_derivative, inverse_dynamics_jacobians
-from substructures.solve import cholesky_solve
-from substructures.states import default_number
+from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.derivatives import inverse_dynamics_derivative, inverse_dynamics_jacobians
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.states import default_number
 
 N = 2
 #: of central differences of fourth order; their error is about STEP^4 and 1e-16 / STEP

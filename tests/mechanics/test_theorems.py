@@ -14,7 +14,7 @@ from independent import Moving
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, with_parameters
 
 from substructures import Model
-from substructures.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate
 
 N = 3
 STEP = 1e-4

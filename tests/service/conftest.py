@@ -13,9 +13,9 @@ from fastapi.testclient import TestClient
 from sqlalchemy import func, select
 
 from service.app import create_app, open_store
+from service.database.tables import metadata
 from service.settings import Settings
 from service.store import Store
-from service.tables import metadata
 
 Given, Answer = TypeVar("Given"), TypeVar("Answer")
 

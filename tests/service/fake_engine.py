@@ -12,8 +12,8 @@ from fastapi.testclient import TestClient
 
 from service.jobs.engine import Outcome, Report, Work
 from service.jobs.kinds import run
+from service.queue.supervisor import Supervisor
 from service.store import Store
-from service.supervisor import Supervisor
 
 
 class FakeEngine:

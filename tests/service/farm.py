@@ -17,7 +17,7 @@ from typing import Any, Self
 import httpx2
 import numpy as np
 
-from service.client import Client, ProblemError
+from substructures.client import Client, ProblemError
 
 START = 60.0
 
@@ -44,7 +44,7 @@ class Server:
 
     def __init__(self, database: str, log: Path, settings: Sequence[str] = ()) -> None:
         self.port, self.log = free_port(), log
-        command = [sys.executable, "-m", "service.cli", "serve", "--port", str(self.port), "--database", database]
+        command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(self.port), "--database", database]
         self.command = [*command, *settings]
         self.environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"}
         self.process: subprocess.Popen[bytes] | None = None

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.arrays import read_npz
 from service.jobs.engine import Outcome
 from service.jobs.kinds import run
 from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
-from substructures.evaluation import evaluate
-from substructures.model import Model
+from substructures.formats.arrays import read_npz
+from substructures.quantities.evaluation import evaluate
+from substructures.tree.model import Model
 
 from .conftest import PENDULUM, SLIDER, TREE
 from .jobs_library import MemoryLibrary

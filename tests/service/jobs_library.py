@@ -10,11 +10,11 @@ from service.jobs.kinds import expand, resolve
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.settings import Limits
 from service.summaries import tree_summary
-from substructures.definition import Definition
 from substructures.documents import write_json
-from substructures.model import couple
-from substructures.part import Part, derive
-from substructures.tree import TreeSpec
+from substructures.part.definition import Definition
+from substructures.part.part import Part, derive
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import couple
 
 BUDGET = Budget(60.0, 2**31)
 

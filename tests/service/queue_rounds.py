@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from service.app import open_store
-from service.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
+from service.database.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
 from service.jobs.engine import Outcome
-from service.operations.job_rounds import Ended, Played, Round, play
 from service.queries import jobs as queries
 from service.queries.jobs import NewItem
+from service.queue.rounds import Ended, Played, Round, play
 from service.settings import Settings
 from service.store import Store
 

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service import arrow
 from service.app import open_store
 from service.negotiation import MEDIA_TYPES
 from service.settings import Limits, Settings
 from service.store import Store
 from substructures.expr.program import Program
+from substructures.formats import arrow
 
 from .analysis_trees import TREES, ask, client, store, submit
 from .conftest import make_client

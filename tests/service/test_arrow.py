@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
 
-from service import arrow
+from substructures.formats import arrow
 
 from .conftest import HAND
 

@@ -11,9 +11,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.backup import backup, restore
-from service.cli import main
-from service.database import DatabaseError
+from service.cli.main import main
+from service.database.backup import backup, restore
+from service.database.connections import DatabaseError
 from service.settings import Settings
 
 from .conftest import PENDULUM, TREE, make_client

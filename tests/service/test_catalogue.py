@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.schemas import AliasView, FormulaIndex, VersionPage, VersionView
+from service.schemas.resources import AliasView, FormulaIndex, VersionPage, VersionView
 
 from .conftest import PENDULUM, SLIDER, at_once
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from service import demo
-from service.cli import main
+from service.cli import demo
+from service.cli.main import main
 from service.server import background
 from service.settings import Settings
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.cli import main
-from service.client import Client
+from service.cli.main import main
 from service.server import background
 from service.settings import Limits, Settings
+from substructures.client import Client
 
 from .conftest import PENDULUM, TREE
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.cli import main
+from service.cli.main import main
 from service.jobs.kinds import run
 from substructures.documents import read_json, write_json
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from service.client import Client
+from substructures.client import Client
 
 from .conftest import PENDULUM
 from .farm import Server, finished, running

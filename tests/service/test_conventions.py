@@ -12,8 +12,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.operations.retention import sweep
-from service.schemas import Problem
+from service.queue.retention import sweep
+from service.schemas.resources import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store import Store
 

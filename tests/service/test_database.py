@@ -12,10 +12,10 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.operations import Operations
 
-from service.client import Client
-from service.database import Database, DatabaseError
-from service.migrate import MigrationError, upgrade
-from service.tables import metadata, parts
+from service.database.connections import Database, DatabaseError
+from service.database.migrate import MigrationError, upgrade
+from service.database.tables import metadata, parts
+from substructures.client import Client
 
 from .conftest import HAND, PENDULUM, TREE
 from .farm import Server, running
@@ -65,7 +65,7 @@ def test_altering_a_table_keeps_its_child_rows(database: Database, monkeypatch: 
         ) as batch:
             batch.add_column(sa.Column("extra", sa.Text))
 
-    monkeypatch.setattr("service.migrate.command.upgrade", alter)
+    monkeypatch.setattr("service.database.migrate.command.upgrade", alter)
     upgrade(database.writer)
     with database.read() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM versions").scalar() == 1
@@ -79,7 +79,7 @@ def test_failed_migrations_change_nothing(database: Database, monkeypatch: pytes
         configuration.attributes["connection"].exec_driver_sql("CREATE TABLE half (x)")
         raise RuntimeError("half way")
 
-    monkeypatch.setattr("service.migrate.command.upgrade", fail)
+    monkeypatch.setattr("service.database.migrate.command.upgrade", fail)
     with pytest.raises(RuntimeError, match="half way"):
         upgrade(database.writer)
     with database.read() as connection:

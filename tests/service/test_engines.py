@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from service.engines import engine_of
+from service.queue.engines import engine_of
 from service.settings import Settings, SettingsError
 
 BAD = [

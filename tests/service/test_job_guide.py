@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import openapi
 from service.app import bare_app
-from service.job_guide import EXAMPLES, KINDS
+from service.http import openapi
 from service.jobs import kinds
+from service.schemas.job_guide import EXAMPLES, KINDS
 from substructures import catalogue
 from substructures.documents import write_json
 

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import backlog
-from service.backlog import AHEAD, Backlog
 from service.queries.attempts import Attempt
+from service.queue import backlog
+from service.queue.backlog import AHEAD, Backlog
 from service.store import Store
 
 from .fake_engine import FakeEngine, eventually, export, finished, items, running, submitted

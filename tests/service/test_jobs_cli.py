@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service import arrow
-from service.cli import main
-from service.cli_progress import Bar, text
-from service.client import Client, ProblemError
+from service.cli.main import main
+from service.cli.progress import Bar, text
 from service.jobs.kinds import KINDS
 from service.server import background
 from service.settings import Settings
+from substructures.client import Client, ProblemError
+from substructures.formats import arrow
 
 from .conftest import HAND, PENDULUM, TREE
 
@@ -135,7 +135,7 @@ def test_states_in_files(
         (part,) = client.results(job)
         assert part["range"] == [0, 30]
         np.testing.assert_allclose(part["forces"], known["forces"], rtol=1e-12)
-        monkeypatch.setattr("service.job_caller.AT_ONCE", 100)  # then it travels as an Arrow stream
+        monkeypatch.setattr("substructures.client.jobs.AT_ONCE", 100)  # then it travels as an Arrow stream
         many = client.submit_states("cell@1", {"q": q, "parameters.arm.m": masses, "t": 0.0}, quantities=["forces"])
         assert client.wait(many["id"])["state"] == "succeeded"
     file.write_bytes(b"nothing")

@@ -15,8 +15,8 @@ from service.analyses.numbers import ANALYSES
 from service.app import open_store
 from service.settings import Settings
 from service.store import Store
-from substructures.derived import DERIVED
-from substructures.regressor import OUTPUTS
+from substructures.quantities.formulas import DERIVED
+from substructures.quantities.regressor import OUTPUTS
 
 from .analysis_trees import client_with_trees
 from .fake_engine import FakeEngine, finished, items, running, submitted

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.arrays import read_npz
-from service.arrow import read_tables
 from service.jobs.kinds.states import DRAWS, sample_states
 from service.settings import Limits
+from substructures.formats.arrays import read_npz
+from substructures.formats.arrow import read_tables
 
 from .job_outcomes import evaluated, joined, known_library, outcomes
 from .jobs_library import MemoryLibrary

@@ -9,8 +9,8 @@ from typing import Any, get_args
 
 from fastapi.testclient import TestClient
 
-from service.job_schemas import JobKind
 from service.jobs.kinds import KINDS
+from service.schemas.jobs import JobKind
 from service.store import Store
 
 from .conftest import PENDULUM, SLIDER

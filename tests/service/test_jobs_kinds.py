@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from service.database.packed import unpack
 from service.jobs.kinds import KINDS, expand, run
-from service.packed import unpack
 from service.settings import Limits
 from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
-from substructures.model import Model, couple
-from substructures.part import derive
+from substructures.part.part import derive
 from substructures.printers import render
-from substructures.tree import TreeSpec
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model, couple
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE
 from .job_outcomes import known_library, outcomes, quiet

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 import sqlalchemy as sa
 
-from service.job_tables import job_items
+from service.database.job_tables import job_items
 from service.jobs.engine import Outcome
-from service.operations import job_rounds
-from service.operations.job_rounds import Ended
 from service.queries import queue
 from service.queries.attempts import Attempt
+from service.queue import rounds
+from service.queue.rounds import Ended
 from service.store import Store
 
 from .queue_rounds import DONE, LEASE, OVER, add, job_of, opened, round_of, states, store
@@ -45,7 +45,7 @@ def test_leases(store: Store) -> None:
 
 
 def test_lost_owners_are_no_deaths_but_not_endless(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(job_rounds, "MAX_ATTEMPTS", 20)
+    monkeypatch.setattr(rounds, "MAX_ATTEMPTS", 20)
     job = add(store, "a")
     for number in range(1, 21):
         (attempt,) = round_of(store, f"owner{number}", wanted=1, take_over=True, lease=OVER).claimed

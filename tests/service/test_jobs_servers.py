@@ -15,11 +15,11 @@ from typing import Any
 import pytest
 
 from service.app import open_store
-from service.cli import main
-from service.client import Client
+from service.cli.main import main
 from service.jobs.engine import Outcome, Work
+from service.queue.supervisor import Supervisor
 from service.settings import Settings
-from service.supervisor import Supervisor
+from substructures.client import Client
 
 from .conftest import PENDULUM, TREE, make_client
 from .databases import fresh
@@ -59,7 +59,7 @@ def serving(database: str, folder: Path, *options: str) -> Iterator[tuple[Server
 @contextmanager
 def working(database: str) -> Iterator[None]:
     """A worker that is killed in the end."""
-    command = [sys.executable, "-m", "service.cli", "worker", "--database", database, "--workers", "1"]
+    command = [sys.executable, "-m", "service.cli.main", "worker", "--database", database, "--workers", "1"]
     process = subprocess.Popen(command, env={**os.environ, "SUBSTRUCTURES_LIMIT_LEASE_SECONDS": "2"})
     try:
         yield

@@ -8,15 +8,15 @@ import orjson
 import pytest
 import sqlalchemy as sa
 
-from service.database import Connection
-from service.job_tables import ITEM_STATES, JOB_STATES, jobs, result_files, results
-from service.operations.job_rounds import Ended
+from service.database.connections import Connection
+from service.database.job_tables import ITEM_STATES, JOB_STATES, jobs, result_files, results
+from service.database.tables import metadata
 from service.queries import jobs as queries
 from service.queries import removal
 from service.queries.common import now
 from service.queries.job_events import events_after
+from service.queue.rounds import Ended
 from service.store import Store
-from service.tables import metadata
 
 from .queue_rounds import DONE, OVER, add, job_of, opened, round_of, states, store
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.client import Client
 from substructures import catalogue
+from substructures.client import Client
 
 from .databases import fresh
 from .farm import Assassin, Server, Submitter, finished, running, submit

@@ -14,15 +14,15 @@ import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.arrays import read_npz, write_npz
-from service.arrow import MEDIA_TYPE as ARROW
-from service.arrow import read_tables
-from service.job_tables import job_items, job_uploads, jobs, results, uploads
+from service.database.job_tables import job_items, job_uploads, jobs, results, uploads
 from service.operations import batches
-from service.operations.retention import sweep
 from service.queries.common import now
+from service.queue.retention import sweep
 from service.settings import Limits, Settings
 from service.store import Store
+from substructures.formats.arrays import read_npz, write_npz
+from substructures.formats.arrow import MEDIA_TYPE as ARROW
+from substructures.formats.arrow import read_tables
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
 from .databases import fresh

@@ -13,10 +13,10 @@ from typing import Any
 
 import pytest
 
-from service import cli_progress
-from service.cli import main
-from service.cli_progress import Bar
-from service.client import Client
+from service.cli import progress
+from service.cli.main import main
+from service.cli.progress import Bar
+from substructures.client import Client
 
 from .conftest import PENDULUM, TREE
 from .farm import Server, free_port
@@ -55,7 +55,7 @@ def test_a_server_that_is_gone_is_told_of_and_given_up(capsys: pytest.CaptureFix
 def test_watching_goes_on_when_the_server_returns(
     server: Server, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cli_progress, "LINES", 0.0)
+    monkeypatch.setattr(progress, "LINES", 0.0)
     job, shown = queued(server), ""
     command = ["jobs", "watch", job, "--server", server.address, "--patience", "60"]
     status: list[int] = []

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from service import kernels
 from service.kernels import Kernels
 from service.settings import Settings
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive, ways
-from substructures.evaluation import evaluate
-from substructures.numeric import NumericTree
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.from_parts import NumericTree
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +51,7 @@ def test_small_batches_are_answered_first_and_compiled_then(model: Model, tmp_pa
 
 
 def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ways, "AT_ONCE", 10)
+    monkeypatch.setattr(kernels, "AT_ONCE", 10)
     engine = Kernels(tmp_path)
     agree(model, engine, 33)
     engine.close()
@@ -59,7 +60,7 @@ def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkey
 
 def test_large_batches_may_come_in_pieces(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The background is too busy to compile; the third piece is more than is worth interpreting."""
-    monkeypatch.setattr(ways, "AT_ONCE", 10)
+    monkeypatch.setattr(kernels, "AT_ONCE", 10)
     engine = Kernels(tmp_path)
     monkeypatch.setattr(engine._compiler, "submit", lambda *_: None)
     for _ in range(2):
@@ -71,7 +72,7 @@ def test_large_batches_may_come_in_pieces(model: Model, tmp_path: Path, monkeypa
 
 
 def test_damaged_files_are_made_anew(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ways, "AT_ONCE", 1)
+    monkeypatch.setattr(kernels, "AT_ONCE", 1)
     for _ in range(2):
         engine = Kernels(tmp_path)
         agree(model, engine, 5)
@@ -117,11 +118,11 @@ def test_one_state_comes_from_warm_parts(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_ways() -> None:
-    assert ways.quickest(1, coupled=True, warm=True) is ways.Way.PARTS
-    assert ways.quickest(1, coupled=True, warm=False) is ways.Way.INTERPRETER
-    assert ways.quickest(100, coupled=True, warm=True) is ways.Way.INTERPRETER
-    assert ways.quickest(100, coupled=False, warm=True) is ways.Way.PARTS
-    assert ways.quickest(10**5, coupled=False, warm=True) is ways.Way.KERNEL
+    assert kernels.quickest(1, coupled=True, warm=True) is kernels.Way.PARTS
+    assert kernels.quickest(1, coupled=True, warm=False) is kernels.Way.INTERPRETER
+    assert kernels.quickest(100, coupled=True, warm=True) is kernels.Way.INTERPRETER
+    assert kernels.quickest(100, coupled=False, warm=True) is kernels.Way.PARTS
+    assert kernels.quickest(10**5, coupled=False, warm=True) is kernels.Way.KERNEL
 
 
 def test_kernels_on_request(filled: TestClient) -> None:

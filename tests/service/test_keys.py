@@ -10,13 +10,13 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from service import keys
+from service.database.tables import api_keys
 from service.keys import REMEMBERED, Authorisations
 from service.queries.common import now
 from service.queries.keys import list_keys, revoke_key
 from service.server import check_exposure
 from service.settings import SettingsError
 from service.store import Store
-from service.tables import api_keys
 
 from .conftest import PENDULUM, make_client
 

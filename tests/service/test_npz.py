@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.arrays import read_npz, view_npz, write_npz
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.formats.arrays import read_npz, view_npz, write_npz
 
 from .conftest import HAND
 

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from service import openapi
 from service.app import bare_app
+from service.http import openapi
 
 COMMITTED = Path(openapi.__file__).with_name("openapi.json")
 

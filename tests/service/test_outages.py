@@ -14,15 +14,16 @@ from fastapi.testclient import TestClient
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import DBAPIError, OperationalError
 
-from service import app, database
+from service import app
 from service.app import open_store
-from service.database import Database, DatabaseError
+from service.database import connections
+from service.database.connections import Database, DatabaseError
+from service.database.tables import tree_names
+from service.http.problems import as_refused
 from service.operations import trees
-from service.problems import as_refused
 from service.queries.common import insert_missing, is_conflict, is_outage
 from service.settings import Settings
 from service.store import Store
-from service.tables import tree_names
 
 from .conftest import PENDULUM, TREE, make_client
 from .databases import fresh
@@ -34,12 +35,12 @@ def address(tmp_path: Path) -> Iterator[str]:
         yield address
 
 
-def put(connection: database.Connection, name: str) -> None:
+def put(connection: connections.Connection, name: str) -> None:
     insert_missing(connection, tree_names, [{"name": name, "latest": 0}])
 
 
 def test_a_process_that_stands_still_does_not_hold_the_others(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(database, "IDLE_MS", 300)
+    monkeypatch.setattr(connections, "IDLE_MS", 300)
     store = Database(address)
     begun, go_on, seen = threading.Event(), threading.Event(), list[Exception]()
 
@@ -88,7 +89,7 @@ def test_deadlocks_are_tried_again(address: str, monkeypatch: pytest.MonkeyPatch
         client.post("/v1/substructures", json=PENDULUM)
         commit, meet, seen = trees.commit, threading.Barrier(2), list[str]()
 
-        def crossed(connection: database.Connection, revision: trees.Revision) -> object:
+        def crossed(connection: connections.Connection, revision: trees.Revision) -> object:
             seen.append(revision.spec.name)
             first, second = ("x", "y") if revision.spec.name == "one" else ("y", "x")
             put(connection, first)
@@ -147,7 +148,7 @@ def test_a_full_disk_is_named(client: TestClient, store: Store, monkeypatch: pyt
     assert (answer.status_code, answer.json()["code"]) == (503, "database-unavailable")
     assert answer.json()["detail"] == "the disk of the database is full; nothing was changed"
     assert client.get("/readyz").status_code == 200
-    monkeypatch.setattr(database, "ROOM", 10**18)
+    monkeypatch.setattr(connections, "ROOM", 10**18)
     assert (client.get("/readyz").status_code, client.get("/readyz").json()["detail"]) == (
         503,
         "the disk of the database is full",

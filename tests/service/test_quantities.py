@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from substructures.evaluation import QUANTITIES
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
+from substructures.quantities.evaluation import QUANTITIES
 
 from .conftest import HAND
 

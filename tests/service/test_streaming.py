@@ -13,11 +13,11 @@ import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
 
-from service import spool
-from service.arrow import MEDIA_TYPE
+from service.http import spool
 from service.operations import batches
 from service.settings import Limits
 from service.store import Store
+from substructures.formats.arrow import MEDIA_TYPE
 
 from .conftest import make_client
 from .test_arrow import column, lists, post, stream

@@ -15,9 +15,9 @@ import httpx2
 import numpy as np
 import pytest
 
-from service.client import Client, ProblemError
 from service.server import background
 from service.settings import Limits, Settings
+from substructures.client import Client, ProblemError
 
 from .conftest import PENDULUM, TREE
 
@@ -31,7 +31,7 @@ def server(folder: Path, *arguments: str) -> Iterator[tuple[Client, int]]:
     """The service in a process of its own; a client and the process id."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", str(port), *arguments]
+    command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port), *arguments]
     process = subprocess.Popen([*command, "--database", f"sqlite:///{folder}/store.db"], stderr=subprocess.DEVNULL)
     try:
         with Client(f"http://127.0.0.1:{port}", timeout=120) as client:

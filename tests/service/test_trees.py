@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.schemas import TreePage, TreeView
+from service.schemas.resources import TreePage, TreeView
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once
 

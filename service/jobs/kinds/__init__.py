@@ -18,8 +18,8 @@ from service.jobs.kinds.library import Library
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.settings import Limits
-from substructures.certificate import VerificationFailed
 from substructures.errors import Fault, InvalidDocument, InvalidProgram
+from substructures.part.certificate import VerificationFailed
 
 __all__ = ["KINDS", "Library", "expand", "resolve", "run"]
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from service.cache import Cache
+from service.database.packed import pack
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library, StoredVersion
-from service.packed import pack
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
-from substructures.definition import Definition
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument
-from substructures.model import couple
-from substructures.part import Part, derive
-from substructures.tree import Instance, TreeSpec
+from substructures.part.definition import Definition
+from substructures.part.part import Part, derive
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import couple
 
 WORLD = "world"
 DEFINITIONS = 1000  # kept decoded

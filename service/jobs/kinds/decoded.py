@@ -8,10 +8,10 @@ from typing import Any
 
 from service.cache import Cache
 from service.jobs.kinds.library import StoredTree
-from substructures.definition import Definition
 from substructures.documents import read_json
-from substructures.model import Model
-from substructures.part import Part
+from substructures.part.definition import Definition
+from substructures.part.part import Part
+from substructures.tree.model import Model
 
 CAPACITY = 300_000  # operations
 

@@ -11,13 +11,13 @@ from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from service.summaries import part_content
-from substructures.definition import Definition
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import ExpressionError, parse
-from substructures.part import derive
-from substructures.skeleton import skeleton
+from substructures.part.definition import Definition
+from substructures.part.part import derive
+from substructures.part.topology import skeleton
 
 #: fields of bodies and ports that are no expressions in parameters, or none that deriving reads
 TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits")

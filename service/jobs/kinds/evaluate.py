@@ -2,9 +2,9 @@
 
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
-named there are 0). ``format``: npz, or arrow (:mod:`service.arrow`). Its parts have a field ``range``, the first state
-and the one behind the last. Of states that were uploaded (:mod:`service.operations.uploads`) an item has its chunk:
-``states`` is the digest of the npz file with the columns.
+named there are 0). ``format``: npz, or arrow (:mod:`substructures.formats.arrow`). Its parts have a field ``range``,
+the first state and the one behind the last. Of states that were uploaded (:mod:`service.operations.uploads`) an item
+has its chunk: ``states`` is the digest of the npz file with the columns.
 """
 
 from __future__ import annotations
@@ -17,9 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from service.arrays import as_npz, read_npz
 from service.cache import Cache
-from service.columns import request_of
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import model_of, summary_of
 from service.jobs.kinds.joint_limits import joint_limits
@@ -29,10 +27,14 @@ from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sa
 from service.jobs.kinds.trees import pinned, regressor_of
 from service.jobs.kinds.values import check_described, check_states
 from service.settings import Limits
+from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
-from substructures.evaluation import (
+from substructures.expr.program import Program
+from substructures.formats.arrays import as_npz, read_npz
+from substructures.formats.columns import request_of
+from substructures.quantities.evaluation import (
     QUANTITIES,
     REGRESSOR,
     Sources,
@@ -41,9 +43,7 @@ from substructures.evaluation import (
     numbers_per_state,
     read_quantities,
 )
-from substructures.expr.program import Program
-from substructures.model import Model
-from substructures.states import Array
+from substructures.tree.model import Model
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
@@ -193,7 +193,7 @@ def _written(answer: dict[str, Any], form: str, has_axis: bool) -> bytes:
         return b"".join(as_npz(answer).pieces)
     names = [name for name in answer if name not in (*ABOUT, "count", "failures")]
     rows = answer if has_axis else {**answer, **{name: _row(answer[name]) for name in names}}
-    arrow = import_module("service.arrow")  # an extra; most runners need not load it
+    arrow = import_module("substructures.formats.arrow")  # an extra; most runners need not load it
     metadata = {name: answer[name] for name in ABOUT if name in answer} | {"quantities": names}
     return b"".join(arrow.write_tables([arrow.table_of(rows, names)], metadata))
 

@@ -13,13 +13,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
-from service.analyses.source import Source
-from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
-from service.jobs.kinds.library import Library
-from service.jobs.kinds.trees import pinned, source_of
-from service.printing import (
+from service.analyses.printing import (
     Style,
     bound,
     check_quantity,
@@ -30,17 +24,23 @@ from service.printing import (
     quantities,
     text_of,
 )
+from service.analyses.source import Source
+from service.jobs.engine import Outcome
+from service.jobs.kinds.decoded import summary_of
+from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
+from service.jobs.kinds.library import Library
+from service.jobs.kinds.trees import pinned, source_of
 from service.refusals import Refused
 from service.settings import Limits
-from substructures.derived import DERIVED
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, TooLarge, listed
-from substructures.evaluation import Sources
 from substructures.expr.graph import Graph
 from substructures.expr.parse import ExpressionError, parse
 from substructures.printers import FORMATS
 from substructures.printers.render import FORMS
-from substructures.regressor import OUTPUTS
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.formulas import DERIVED
+from substructures.quantities.regressor import OUTPUTS
 
 
 def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import pi
 
 from service.jobs.kinds.library import Library, StoredTree
-from substructures.definition import Definition
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
-from substructures.skeleton import JointEntry, skeleton
-from substructures.states import default_number
-from substructures.tree import Instance, TreeSpec
+from substructures.part.definition import Definition
+from substructures.part.topology import JointEntry, skeleton
+from substructures.quantities.states import default_number
+from substructures.tree.document import Instance, TreeSpec
 
 
 def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, float] | None]:

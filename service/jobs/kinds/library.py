@@ -11,7 +11,7 @@ from typing import Protocol
 class StoredVersion:
     """A version of a substructure: its name, the digest of its definition, and that of its program.
 
-    The blob of ``digest`` is the canonical definition (:meth:`substructures.definition.Definition.canonical`), the
+    The blob of ``digest`` is the canonical definition (:meth:`substructures.part.definition.Definition.canonical`), the
     blob of ``program`` the canonical program.
     """
 

@@ -10,12 +10,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from substructures.array import Array
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 
-Array = NDArray[np.float64]
 Axis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
 DRAWS = 4

@@ -12,7 +12,7 @@ from service.jobs.kinds.kind import Blobs, Item, known_tree
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from substructures.documents import read_json
-from substructures.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import RegressorModel, regressor
 
 CAPACITY = 2_000_000  # operations
 

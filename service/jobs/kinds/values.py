@@ -7,10 +7,10 @@ from typing import Any
 
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
-from substructures.evaluation import QUANTITIES, REGRESSOR, read_quantities
 from substructures.expr.program import Program
-from substructures.model import Model
-from substructures.states import States, given_values, read_states
+from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, read_quantities
+from substructures.quantities.states import States, given_values, read_states
+from substructures.tree.model import Model
 
 Request = Mapping[str, Any]
 

@@ -6,10 +6,10 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields
 from service.jobs.kinds.library import Library
 from service.settings import Limits
-from substructures.definition import Definition
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument, InvalidProgram
-from substructures.part import Part, recheck
+from substructures.part.definition import Definition
+from substructures.part.part import Part, recheck
 
 ALL = "*"
 

@@ -1,0 +1,163 @@
+"""Formulas as text: which outputs a quantity has, numbers in place of parameters, and the formats."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+
+from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
+from service.refusals import not_found, unprocessable
+from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.expr.bind import bind
+from substructures.expr.program import Program
+from substructures.printers import entries, render
+from substructures.printers.render import LIMIT
+from substructures.printers.symmetry import symmetry_rule
+from substructures.quantities.evaluation import REGRESSOR, Sources
+from substructures.quantities.formulas import DERIVED
+from substructures.quantities.regressor import OUTPUTS
+from substructures.tree.model import Model
+
+JSON = "json"
+#: quantities that consist of several outputs
+GROUPS = {
+    "kinematics": ("position", "rotation", "U", "Omega"),
+    "momentum": ("linear_momentum", "angular_momentum"),
+    "closures": ("closure.residual", "closure.jacobian", "closure.acceleration", "closure.direction"),
+    "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
+}
+CHRISTOFFEL = "christoffel"
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How formulas are printed: format, form (compact or expanded) and the text of ``bind=``."""
+
+    format: str
+    form: str
+    bind: str = ""
+
+    @property
+    def identity(self) -> tuple[str, ...]:
+        """What an ETag depends on beside the content."""
+        return self.format, self.form, self.bind
+
+
+def quantities(name: str) -> tuple[str, ...]:
+    """The quantities that a name stands for."""
+    return GROUPS.get(name, (name,))
+
+
+def check_quantity(model: Model, quantity: str) -> None:
+    """Raise Refused 404 unless the model has the quantity."""
+    if quantity in (*DERIVED, *OUTPUTS) or any(name in model.program.outputs for name in quantities(quantity)):
+        return
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
+    known = ", ".join(dict.fromkeys(names))
+    raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
+
+
+def needs_parts(quantity: str) -> bool:
+    """Whether a quantity needs the parts of the tree, beside its formulas."""
+    return quantity in (*OUTPUTS, *OF_PARTS)
+
+
+def model_quantity(sources: Sources, quantity: str) -> Program:
+    """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
+    if quantity in DERIVED:
+        return sources.program(quantity)
+    if quantity in OUTPUTS:
+        return sources.program(REGRESSOR).select([quantity])
+    wanted, whole = quantities(quantity), sources.model.program
+    return whole.select([name for name in whole.outputs if name in wanted])
+
+
+def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[str, Any]]:
+    """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
+    if quantity not in OUTPUTS:
+        return {}, sources.model.parameters
+    found = sources.columns()
+    return {"columns": {"names": found.names, "units": found.units}}, found.parameters
+
+
+def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: str) -> Program:
+    """The program with numbers in place of parameters; ``text`` is ``name:value,...`` and may contain ``defaults``.
+
+    Raises Refused 422 naming the parameter.
+    """
+    values: dict[str, Any] = {}
+    for item in filter(None, (item.strip() for item in text.split(","))):
+        name, colon, value = item.partition(":")
+        if item == "defaults":
+            given = {n: p["value"] for n, p in parameters.items() if p.get("value") is not None}
+            values = {**given, **values}
+        elif not colon:
+            raise unprocessable("bind", f"'{item[:80]}' is not name:value", "/query/bind")
+        elif name not in parameters:
+            message = f"there is no parameter '{name[:80]}'; there are {listed(parameters)}"
+            raise unprocessable("unknown-parameter", message, "/query/bind")
+        else:
+            values[name] = value
+    used = {symbol.name for symbol in program.symbols}
+    chosen = {name: value for name, value in values.items() if name in used}
+    if not chosen:
+        return program
+    try:
+        return bind(program, chosen)
+    except InvalidDocument as error:
+        message = "; ".join(fault.message for fault in error.faults)
+        raise unprocessable("bind", message, "/query/bind") from None
+
+
+def text_of(
+    program: Program,
+    style: Style,
+    coordinates: Sequence[str] = (),
+    members: Mapping[str, Any] | None = None,
+    limit: int = LIMIT,
+) -> str:
+    """The program in the format chosen; ``members`` are put before it in JSON. Raises TooLarge for more than ``limit``
+    nodes."""
+    text = render(program, style.format, style.form, limit=limit)
+    if style.format == JSON and CHRISTOFFEL in program.outputs:
+        text = _with_entries(text, program, style, coordinates)
+    return _joined(members, text) if style.format == JSON and members else text
+
+
+def made_text(found: Made, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT) -> str:
+    """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
+    integrals in text. Raises as :func:`bound`, and TooLarge."""
+    text = render(bound(found.program, parameters, style.bind), style.format, style.form, limit=limit)
+    if style.format == JSON and found.members:
+        return _joined(found.members, text)
+    if style.format != "text":
+        return text
+    return "\n".join([text.rstrip("\n"), *_notes(found.members), ""])
+
+
+def _notes(members: Mapping[str, Any]) -> Iterator[str]:
+    """What is said for people about first integrals."""
+    for each in members.get("integrals", ()):
+        yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
+
+
+def _with_entries(text: str, program: Program, style: Style, coordinates: Sequence[str]) -> str:
+    """The JSON program with the sparse list of Christoffel symbols; formulas too long to stand alone are null."""
+    try:
+        listed = entries(program, CHRISTOFFEL, "text", style.form)
+    except TooLarge:
+        listed = [{"index": list(index), "formula": None} for index in program.outputs[CHRISTOFFEL].index]
+    members = {
+        "coordinates": list(coordinates),
+        "symmetry_rule": symmetry_rule(CHRISTOFFEL, "Gamma"),
+        "entries": [dict(zip("abc", e["index"], strict=True)) | {"formula": e["formula"]} for e in listed],
+    }
+    return _joined(members, text)
+
+
+def _joined(members: Mapping[str, Any], text: str) -> str:
+    """A JSON object with further members before those of another one."""
+    return orjson.dumps(members).decode()[:-1] + "," + text[1:]

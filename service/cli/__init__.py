@@ -1,0 +1,1 @@
+"""The command ``substructures``: one file a group of commands."""

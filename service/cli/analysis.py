@@ -1,0 +1,176 @@
+"""The commands ``simulate`` and ``analyse``: a tree document here, without a server, or a stored tree on a server."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from service.analyses.formulas import OPTIONS, QUANTITIES, Options
+from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.results import JSON, MEDIA_TYPES, written
+from service.analyses.source import Source
+from service.answers import Answer
+from service.cli.jobs import Add, add_server, read_document
+from service.operations import models
+from service.operations.analyses import printed
+from service.operations.models import Style
+from service.settings import Limits
+from substructures import catalogue
+from substructures.client import Client
+from substructures.errors import InvalidDocument
+from substructures.part.definition import Definition
+from substructures.part.part import Part, derive
+from substructures.printers import FORMATS
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.regressor import regressor
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import couple
+
+SUFFIXES = (".yaml", ".yml", ".json")
+
+
+def add_commands(commands: Any, add: Add) -> None:
+    """Add both commands to a parser."""
+    command = add(commands, "simulate", _simulate, "simulate a tree and judge the motion by its first integrals")
+    _add_tree(command)
+    command.add_argument("request", type=Path, help="request, JSON or YAML: q, qd, span, ...")
+    _add_output(command)
+
+    command = add(commands, "analyse", _analyse, "formulas and numbers that follow from the equations of motion")
+    _add_tree(command)
+    command.add_argument("what", help=f"numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...")
+    command.add_argument("request", type=Path, nargs="?", help="request of numbers, JSON or YAML")
+    _add_output(command)
+    command.add_argument("--format", choices=sorted(FORMATS), default="text", help="of formulas")
+    command.add_argument("--form", choices=("compact", "expanded"), default="compact", help="of formulas")
+    command.add_argument("--bind", default="", help="numbers in formulas: name:value,... or defaults")
+    for name, text in OPTIONS.items():
+        command.add_argument(f"--{name}", action="append", help=text)
+
+
+def _add_tree(command: argparse.ArgumentParser) -> None:
+    command.add_argument("tree", help="tree document (JSON or YAML), or the name of a tree on a server")
+    add_server(command)
+
+
+def _add_output(command: argparse.ArgumentParser) -> None:
+    known = ", ".join(f".{name}" for name in MEDIA_TYPES)
+    command.add_argument("--out", type=Path, help=f"file for the result; its ending says what it is: {known}")
+
+
+def _simulate(options: argparse.Namespace) -> int:
+    return _numbers(options, "simulations")
+
+
+def _analyse(options: argparse.Namespace) -> int:
+    if options.what in ANALYSES:
+        return _numbers(options, options.what)
+    if options.request is not None:
+        raise ValueError(f"'{options.what}' is a formula: it has options, but no request")
+    chosen = {name: tuple(",".join(texts).split(",")) for name in OPTIONS if (texts := getattr(options, name))}
+    text = _formula(options, chosen)
+    if options.out is not None:
+        options.out.write_bytes(text)
+    else:
+        print(text.decode().rstrip("\n"))
+    return 0
+
+
+def _formula(options: argparse.Namespace, chosen: Options) -> bytes:
+    style, what = Style(options.format, options.form, options.bind), options.what
+    if not is_document(options.tree):
+        given = {name: list(texts) for name, texts in chosen.items()}
+        with Client(options.server, options.key) as client:
+            return client.formula(options.tree, what, style.format, style.form, style.bind, **given).encode()
+    source = local_source(Path(options.tree))
+    if what in QUANTITIES:
+        return printed(source, what, chosen, style).body
+    return _model_formula(source, what, style).body
+
+
+def _model_formula(source: Source, what: str, style: Style) -> Answer:
+    sources = Sources(source.model, regressor=source.regressor)
+    models.check_quantity(source.model, what)
+    members, parameters = models.described(sources, what)
+    program = models.bound(models.model_quantity(sources, what), parameters, style.bind)
+    return models.printed(program, style, source.model.coordinates, members)
+
+
+def _numbers(options: argparse.Namespace, name: str) -> int:
+    request = {} if options.request is None else read_document(options.request)
+    media = _media(options.out, name)
+    if is_document(options.tree):
+        source = local_source(Path(options.tree))
+        result = ANALYSES[name].compute(source, require_object(request), lambda _: None)
+        told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
+    else:
+        with Client(options.server, options.key) as client:
+            data, told = client.analysis(options.tree, name, request, media)
+        told = orjson.loads(data) if media == JSON else told
+    return _tell(told, data, options.out)
+
+
+def _media(out: Path | None, name: str) -> str:
+    media = MEDIA_TYPES.get(out.suffix.removeprefix(".")) if out is not None else JSON
+    if media is None or media not in ANALYSES[name].media:
+        known = [f".{suffix}" for suffix, each in MEDIA_TYPES.items() if each in ANALYSES[name].media]
+        raise ValueError(f"the result of '{name}' can be written as {', '.join(known)}")
+    return media
+
+
+def _tell(told: Mapping[str, Any], data: bytes, out: Path | None) -> int:
+    """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
+    if out is not None:
+        out.write_bytes(data)
+        print(f"{out}: {len(data)} bytes")
+    if out is not None or "checks" in told:
+        _summary(told)
+    else:
+        print(data.decode())
+    return int(told.get("status") == "failed" or not told.get("is_right", True))
+
+
+def _summary(told: Mapping[str, Any]) -> None:
+    words = [str(told[key]) for key in ("status", "message") if told.get(key)]
+    print(*words, *([] if told.get("is_right", True) else ["WRONG: a necessary condition is violated"]))
+    for check in told.get("checks", []):
+        verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
+        drift = f"{check['relative']:.2g} (limit {check['limit']:.2g})"
+        print(f"{check['name']}: {check['rule']}, {verdict}, {drift}: {check['reason']}")
+    for event in told.get("events", []):
+        print(f"{event['name']} at t = {event['t']:.9g} s")
+    if "t" in told and "q" in told:
+        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
+        print(f"t = {told['t'][-1]:.9g} s: {last}")
+
+
+def is_document(tree: str) -> bool:
+    """Whether a tree is given as a file."""
+    return tree.endswith(SUFFIXES)
+
+
+def local_source(path: Path) -> Source:
+    """A tree document coupled here. Its parts are inline definitions, files ``<name>.yaml`` or ``.json`` beside the
+    document, or entries of the shipped catalogue. Raises InvalidDocument.
+    """
+    spec, limits = TreeSpec.read(read_document(path)), Limits()
+    parts = {i.name: _part(k, i, path.parent) for k, i in enumerate(spec.instances)}
+    model = couple(spec, parts, limits.program_nodes)
+    return Source(model, spec.digest, lambda: regressor(spec, parts, limits.program_nodes), limits)
+
+
+def _part(index: int, instance: Instance, folder: Path) -> Part:
+    if instance.definition is not None:
+        return derive(instance.definition)
+    name = (instance.substructure or "").partition("@")[0]
+    files = [file for suffix in SUFFIXES if (file := folder / f"{name}{suffix}").is_file()]
+    if files:
+        return derive(Definition.read(read_document(files[0])))
+    if name not in catalogue.names():
+        message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
+        raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)
+    return derive(Definition.read(catalogue.load(name)))

@@ -1,0 +1,108 @@
+"""The progress of a job on a terminal, or in lines, also while its server cannot be reached."""
+
+from __future__ import annotations
+
+import sys
+from itertools import islice
+from time import monotonic
+from typing import Any, TextIO
+
+from substructures.client import Client, ServerLost
+from substructures.client.jobs import PATIENCE
+
+WIDTH = 30
+LINES = 10.0  # seconds between lines where there is no terminal
+
+
+def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
+    """Show the progress of a job until it has ended; 0 when all items succeeded. Raises ServerLost."""
+    bar = Bar(sys.stderr)
+    try:
+        end = client.wait(job, bar.show, lambda waited, reason: bar.lost(waited, patience, reason), patience)
+    except ServerLost:
+        bar.leave()
+        raise
+    bar.end(end)
+    if end["progress"]["failed"]:
+        _explain(client, job)
+    return 0 if end["state"] == "succeeded" and not end["progress"]["failed"] else 1
+
+
+def _explain(client: Client, job: str) -> None:
+    """Say why the first item failed that did, and where the others are told."""
+    for item in islice(client.job_items(job, state="failed"), 1):
+        sys.stderr.write(f"item {item['position']}: {item['problem']['detail']}\n")
+    sys.stderr.write(f"all items: substructures jobs result {job}\n")
+
+
+class Bar:
+    """A line that is written over on a terminal; elsewhere a new line now and then."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream, self._next, self._width = stream, 0.0, 0
+        self._waited: float | None = None
+
+    def show(self, job: dict[str, Any]) -> None:
+        """Show where a job is."""
+        if self._waited is not None:
+            self._put(f"the server answers again after {self._waited:.0f} s", at_once=True)
+            self.leave()
+            self._waited = None
+        self._put(text(job))
+
+    def lost(self, waited: float, patience: float, reason: str) -> None:
+        """Show for how long, in seconds, the server has not answered, and how long it is tried."""
+        line = f"the server cannot be reached ({reason}): {waited:.0f} s, trying for {patience:g} s"
+        self._put(line, at_once=self._waited is None)
+        self._waited = waited
+
+    def _put(self, line: str, at_once: bool = False) -> None:
+        if self._stream.isatty():
+            self._stream.write("\r" + line.ljust(self._width))
+            self._width = len(line)
+        elif at_once or monotonic() >= self._next:
+            self._stream.write(line + "\n")
+            self._next = monotonic() + LINES
+        self._stream.flush()
+
+    def end(self, job: dict[str, Any]) -> None:
+        """Leave the last line."""
+        self._next = 0.0
+        self.show(job)
+        self.leave()
+
+    def leave(self) -> None:
+        """Begin a new line."""
+        self._next, self._width = 0.0, 0
+        if self._stream.isatty():
+            self._stream.write("\n")
+
+
+def text(job: dict[str, Any]) -> str:
+    """A line about a job: a bar, the state, counts, rate and time left."""
+    progress = job["progress"]
+    done = int(WIDTH * progress["fraction"])
+    words = [
+        f"[{'#' * done}{'.' * (WIDTH - done)}]",
+        f"{100 * progress['fraction']:.0f} %",
+        job["state"],
+        counted(job),
+    ]
+    if progress["rate"]:
+        words.append(f"{progress['rate']:.3g}/s")
+    if progress["eta_seconds"] is not None:
+        words.append(f"{_time(progress['eta_seconds'])} left")
+    return "  ".join(words)
+
+
+def counted(job: dict[str, Any]) -> str:
+    """How many items have ended."""
+    progress = job["progress"]
+    failed = f", {progress['failed']:,} failed" if progress["failed"] else ""
+    return f"{progress['done']:,} of {progress['total']:,}{failed}"
+
+
+def _time(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"

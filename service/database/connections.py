@@ -1,0 +1,178 @@
+"""Connections: one writer and a pool of readers on SQLite, one pool on PostgreSQL; transactions as context managers."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from shutil import disk_usage
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event, text
+from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError
+
+from service.database.migrate import upgrade
+
+READERS = 16
+BUSY_MS = 10_000
+IDLE_MS = 10_000  # after which PostgreSQL ends a write transaction of a process that was stopped in the middle of it
+#: seconds, but for the last: both ends of a connection to PostgreSQL notice a peer that is gone after some 20 s
+TCP = {"keepalives_idle": 5, "keepalives_interval": 5, "keepalives_count": 3, "tcp_user_timeout": 20_000}
+CONNECT_SECONDS = 10
+
+ROOM = 2**20  # bytes
+
+__all__ = ["Connection", "Database", "DatabaseError", "claimed", "normalised", "told"]
+
+
+class DatabaseError(Exception):
+    """A database that cannot be used; the message says which and why."""
+
+
+class Database:
+    """The store. Use ``read()`` and ``write()``; a ``write()`` commits as a whole or not at all."""
+
+    def __init__(self, address: str, *, exclusive: bool = True) -> None:
+        """Open and migrate the database at an SQLAlchemy URL.
+
+        ``exclusive`` claims an SQLite file for this process, since its one writer must be the only server's. Raises
+        DatabaseError when another server holds it, when it does not answer and for an unknown kind of URL,
+        MigrationError for a database of a newer version.
+        """
+        self.url = normalised(address)
+        with ExitStack() as opened:
+            if exclusive and self.is_sqlite:
+                opened.enter_context(closing(claimed(self.url)))
+            self.writer = _engine(self.url, writer=True)
+            opened.callback(self.writer.dispose)
+            self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)
+            opened.callback(self.reader.dispose)
+            try:
+                upgrade(self.writer)
+            except DBAPIError as error:
+                raise DatabaseError(f"cannot use the database {self.url}: {told(error)}") from None
+            self._opened = opened.pop_all()
+
+    @property
+    def is_sqlite(self) -> bool:
+        """Whether this is SQLite; the alternative is PostgreSQL."""
+        return self.url.get_backend_name() == "sqlite"
+
+    @contextmanager
+    def read(self) -> Iterator[Connection]:
+        """A transaction that sees one state of the database and writes nothing."""
+        with self.reader.connect() as connection:
+            yield connection
+
+    @contextmanager
+    def write(self) -> Iterator[Connection]:
+        """A transaction that commits when the block ends and leaves nothing behind when it raises."""
+        with self.writer.begin() as connection:
+            if not self.is_sqlite:  # its locks must not outlast a process that stands still
+                connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {IDLE_MS}")
+            yield connection
+
+    def ping(self) -> None:
+        """Raise when the database does not answer."""
+        with self.read() as connection:
+            connection.execute(text("SELECT 1"))
+
+    @property
+    def has_room(self) -> bool:
+        """Whether the disk of an SQLite file has room for more; PostgreSQL does not say."""
+        return not self.is_sqlite or disk_usage(Path(self.url.database or "").absolute().parent).free > ROOM
+
+    def close(self) -> None:
+        """Close all connections and give up the claim."""
+        self._opened.close()
+
+
+def normalised(address: str) -> URL:
+    """The URL of a database. Raises DatabaseError for what is not supported."""
+    try:
+        url = make_url(address)
+    except (ArgumentError, ValueError):
+        raise DatabaseError(f"'{address}' is no database URL; expected sqlite:///FILE or postgresql://...") from None
+    if url.drivername in ("postgresql", "postgres"):
+        return url.set(drivername="postgresql+psycopg")
+    if url.drivername == "sqlite" and not url.database:
+        raise DatabaseError("the SQLite URL needs a file: sqlite:///FILE")
+    if url.drivername not in ("sqlite", "postgresql+psycopg"):
+        raise DatabaseError(f"databases of kind '{url.drivername}' are not supported; use sqlite or postgresql")
+    return url
+
+
+def _engine(url: URL, *, writer: bool) -> Engine:
+    if url.get_backend_name() != "sqlite":
+        try:
+            return _postgres(url)
+        except ImportError:
+            raise DatabaseError("PostgreSQL needs the extra: pip install 'substructures[postgres]'") from None
+    engine = create_engine(
+        url,
+        pool_size=1 if writer else READERS,
+        max_overflow=0,
+        pool_timeout=60,
+        connect_args={"timeout": BUSY_MS / 1000, "check_same_thread": False},
+    )
+    event.listen(engine, "connect", _configure)
+    if not writer:
+        event.listen(engine, "connect", lambda connection, _: connection.execute("PRAGMA query_only=ON"))
+    # A deferred transaction that reads and then writes fails with "database is locked" under load.
+    begin = "BEGIN IMMEDIATE" if writer else "BEGIN"
+    event.listen(engine, "begin", lambda connection: connection.exec_driver_sql(begin))
+    return engine
+
+
+def _postgres(url: URL) -> Engine:
+    """What the URL says itself goes before."""
+    limits = {"connect_timeout": CONNECT_SECONDS, **TCP}
+    given = {name: value for name, value in limits.items() if name not in url.query}
+    engine = create_engine(url, pool_size=READERS, pool_pre_ping=True, connect_args=given)
+    event.listen(engine, "connect", _watch_client)
+    return engine
+
+
+def _watch_client(connection: Any, _record: object) -> None:
+    """Let the server notice when we are gone: with us go the locks that others wait for."""
+    names = (name if name.startswith("tcp_") else f"tcp_{name}" for name in TCP)
+    connection.execute("; ".join(f"SET {name} = {value}" for name, value in zip(names, TCP.values(), strict=True)))
+    connection.commit()
+
+
+def told(error: DBAPIError) -> str:
+    """What the database said, in a line."""
+    return (str(error.orig).strip() or type(error.orig).__name__).splitlines()[0]
+
+
+def _snapshots(engine: Engine) -> Engine:
+    """Read transactions whose statements all see the same state, as on SQLite."""
+    return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+
+
+def _configure(connection: Any, _record: object) -> None:
+    connection.isolation_level = None  # the driver must not begin transactions of its own
+    connection.execute("PRAGMA journal_mode=WAL")
+    connection.execute("PRAGMA synchronous=FULL")  # acknowledged means on the disk
+    connection.execute(f"PRAGMA busy_timeout={BUSY_MS}")
+    connection.execute("PRAGMA foreign_keys=ON")
+
+
+def claimed(url: URL) -> sqlite3.Connection:
+    """An exclusive lock beside an SQLite file; the operating system drops it when the process dies.
+
+    Raises DatabaseError when another process has it.
+    """
+    path = Path(f"{url.database}.lock")
+    try:
+        lock = sqlite3.connect(path, timeout=0, isolation_level=None, check_same_thread=False)
+    except sqlite3.OperationalError as error:
+        raise DatabaseError(f"cannot open {path}: {error}") from None
+    try:
+        lock.execute("BEGIN EXCLUSIVE")
+    except sqlite3.OperationalError:
+        lock.close()
+        raise DatabaseError(f"another server uses {url.database}; stop it or use PostgreSQL for several") from None
+    return lock

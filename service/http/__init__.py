@@ -1,0 +1,1 @@
+"""What every request passes through: reading, keys, idempotency, deadlines, problem documents."""

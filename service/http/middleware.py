@@ -1,0 +1,67 @@
+"""Around every request: id, Host check, metrics, log line, and a problem document when nothing else caught an error."""
+
+from __future__ import annotations
+
+import logging
+from time import perf_counter
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.http import problems
+from service.http.request_id import begin_request
+from service.metrics import Metrics
+from service.refusals import Refused
+
+_log = logging.getLogger("service.access")
+
+
+class Conventions:
+    """ASGI middleware; sits outside of everything else."""
+
+    def __init__(self, app: ASGIApp, allowed_hosts: tuple[str, ...], metrics: Metrics) -> None:
+        self.app, self.allowed_hosts, self.metrics = app, allowed_hosts, metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        await self._serve(scope, receive, send)
+
+    async def _serve(self, scope: Scope, receive: Receive, send: Send) -> None:
+        headers = Headers(scope=scope)
+        identifier = begin_request(headers.get("x-request-id"))
+        start = perf_counter()
+        status = 0
+
+        async def send_with_id(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                MutableHeaders(scope=message)["X-Request-Id"] = identifier
+            await send(message)
+
+        try:
+            if self._accepts(headers.get("host", "")):
+                await self.app(scope, receive, send_with_id)
+            else:
+                named = headers.get("host", "")[:80]
+                detail = (
+                    f"the Host header names '{named}', which is not served here; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
+                )
+                raise Refused(400, "host-not-allowed", detail)
+        except Exception as error:
+            if status:  # the answer has begun: nothing can be said any more
+                raise
+            await problems.response(error, scope["path"])(scope, receive, send_with_id)
+        finally:
+            self._record(scope, status, perf_counter() - start)
+
+    def _accepts(self, host: str) -> bool:
+        name = host[: host.find("]") + 1] if host.startswith("[") else host.partition(":")[0]
+        return "*" in self.allowed_hosts or name.strip("[]").lower() in self.allowed_hosts
+
+    def _record(self, scope: Scope, status: int, seconds: float) -> None:
+        route = getattr(scope.get("route"), "path", "(none)")
+        self.metrics.observe(scope["method"], route, status, seconds)
+        _log.info("%s %r %d %.1f ms", scope["method"], scope["path"], status, 1000 * seconds)

@@ -1,0 +1,91 @@
+"""The OpenAPI 3.1 document: what FastAPI generates, with the schemas of the bodies that the service reads itself."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from service.analyses.numbers import ANALYSES
+from service.schemas.jobs import CancelRequest, JobRequest
+from service.schemas.numbers import EvaluationRequest, KernelsRequest
+from service.schemas.resources import AliasRequest, Problem, YankRequest
+from substructures.analysis.equations.velocity_constraints import VelocityConstraints
+from substructures.part.definition import Definition
+from substructures.tree.document import Instance, TreeSpec
+
+TEMPLATE = "#/components/schemas/{model}"
+PROBLEM: dict[int | str, dict[str, Any]] = {
+    "default": {
+        "description": "Problem document",
+        "headers": {
+            "Retry-After": {
+                "description": "seconds, where the same request can succeed later (some of 409 and 503)",
+                "schema": {"type": "integer"},
+            }
+        },
+        "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
+    }
+}
+JOB_ADDRESS = {"description": "the job", "schema": {"type": "string", "format": "uri-reference"}}
+PREFER = {
+    "name": "Prefer",
+    "in": "header",
+    "description": "`wait=N`: at most N seconds, then it becomes a job; `respond-async`: it becomes one at once",
+    "schema": {"type": "string"},
+}
+_ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
+_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
+_READ_BY_US: tuple[type[BaseModel], ...] = (
+    Definition,
+    TreeSpec,
+    Instance,
+    *_REQUESTS,
+    VelocityConstraints,
+    *_ANALYSED,
+    Problem,
+)
+
+
+def document(app: FastAPI) -> dict[str, Any]:
+    """The document of an app."""
+    result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+    _, extra = models_json_schema([(model, "validation") for model in _READ_BY_US], ref_template=TEMPLATE)
+    schemas = result.setdefault("components", {}).setdefault("schemas", {})
+    schemas.update(extra["$defs"])
+    result["components"]["schemas"] = dict(sorted(schemas.items()))
+    result["components"]["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
+    result["security"] = [{}, {"key": []}]
+    for methods in result["paths"].values():
+        for operation in methods.values():
+            _describe_job(operation)
+    return result
+
+
+def _describe_job(operation: dict[str, Any]) -> None:
+    """The headers of an endpoint whose answer is, or can become, a job."""
+    accepted = operation["responses"].get("202")
+    if accepted is None:
+        return
+    accepted["headers"] = {"Location": JOB_ADDRESS}
+    if any(status in operation["responses"] for status in ("200", "201")):
+        operation.setdefault("parameters", []).append(PREFER)
+
+
+def text(app: FastAPI) -> str:
+    """The document as it is committed."""
+    return json.dumps(document(app), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+class DocumentedApp(FastAPI):
+    """Serves this document in place of FastAPI's."""
+
+    def openapi(self) -> dict[str, Any]:
+        """The document, made once."""
+        if self.openapi_schema is None:
+            self.openapi_schema = document(self)
+        return self.openapi_schema

@@ -1,0 +1,101 @@
+"""Exceptions to RFC 9457 problem documents: every answer that is not a success has this one shape.
+
+::
+
+    Refused                a request that cannot be served: status, code, detail
+    InvalidDocument        422, one error for every fault, with a pointer into the document
+    TooLarge, MissingValue 422
+    anything else          500; the log has the trace, the client the request id
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import orjson
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
+from sqlalchemy.exc import DataError, DBAPIError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
+from starlette.exceptions import HTTPException
+
+from service.http.request_id import current_request_id
+from service.queries.common import is_conflict, is_full, is_outage
+from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
+from substructures.documents import message_of, pointer_step
+from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
+
+MEDIA_TYPE = "application/problem+json"
+_log = logging.getLogger(__name__)
+
+
+def as_refused(error: Exception) -> Refused:
+    """What a client is told about an exception."""
+    known = known_refusal(error)
+    if known is not None:
+        return known
+    match error:
+        case RequestValidationError():
+            faults = [_validation_fault(item) for item in error.errors()]
+            return Refused(422, "invalid-request", "; ".join(map(str, faults[:3])), faults)
+        case HTTPException(status_code=404):
+            return not_found("there is nothing at this path; /openapi.json lists all there are")
+        case HTTPException():
+            return Refused(error.status_code, "http-error", str(error.detail), headers=error.headers)
+        case DataError():
+            return unprocessable("invalid-text", "a text holds characters that the database cannot store, such as NUL")
+        case DBAPIError() | PoolTimeout() if _is_unavailable(error):
+            _log.error("the database does not answer: %s", error)
+            return Refused(503, "database-unavailable", _why(error), headers={"Retry-After": "1"})
+    _log.error("unexpected %s", type(error).__name__, exc_info=error)
+    return Refused(500, "internal-error", "an error in the service; please report it with the request id")
+
+
+def _is_unavailable(error: Exception) -> bool:
+    """Locked, full or not to be reached; SQLite reports wrong statements under the same exception."""
+    if isinstance(error, DBAPIError) and not is_outage(error):
+        return False
+    return getattr(getattr(error, "orig", None), "sqlite_errorname", "") != "SQLITE_ERROR"
+
+
+def _why(error: Exception) -> str:
+    if is_full(error):
+        return "the disk of the database is full; nothing was changed"
+    what = "is busy with changes of others" if is_conflict(error) else "does not answer"
+    return f"the database {what}; nothing was changed"
+
+
+def _validation_fault(item: Mapping[str, Any]) -> Fault:
+    return Fault("".join(map(pointer_step, item["loc"])), str(item["type"]).replace("_", "-"), message_of(item))
+
+
+def document(refused: Refused, instance: str) -> dict[str, Any]:
+    """The problem document."""
+    return problem(refused, instance=instance, request_id=current_request_id())
+
+
+def response(error: Exception, instance: str) -> Response:
+    """The answer to a request that ended in an exception."""
+    refused = as_refused(error)
+    headers = {"Cache-Control": "no-store", **refused.headers}
+    body = orjson.dumps(document(refused, instance))
+    return Response(body, refused.status, headers, MEDIA_TYPE)
+
+
+def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
+    """Let the app answer with problem documents; ``service.http.middleware`` catches what no handler is for."""
+
+    def handle(request: Request, error: Exception) -> Response:
+        if isinstance(error, HTTPException) and error.status_code == 405:
+            # the framework names the methods of the first route only
+            found = [route for route in routes if route.path_regex.fullmatch(request.url.path)]
+            methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
+            detail = f"{request.method[:40]} is not possible at this path, but {methods}"
+            error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
+        return response(error, request.url.path)
+
+    for kind in (Refused, InvalidDocument, TooLarge, MissingValue, RequestValidationError, HTTPException):
+        app.add_exception_handler(kind, handle)

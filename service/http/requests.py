@@ -1,0 +1,132 @@
+"""Dependencies of the routes: store, authorisation, bodies of limited size, conditional answers."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, closing
+from typing import Annotated, Any
+
+from fastapi import Depends, Request, Response
+from fastapi.concurrency import run_in_threadpool
+
+from service import keys
+from service.answers import FOR_EVER, REVALIDATE, Answer
+from service.refusals import Refused
+from service.spool import Spool
+from service.store import Store
+from substructures.documents import read_json
+from substructures.formats import arrays, arrow
+
+SUBMISSIONS = "/v1/jobs"  # longer bodies
+
+
+def store_of(request: Request) -> Store:
+    """The store of the app; in other dependencies this costs less than one more dependency."""
+    store: Store = request.app.state.store
+    return store
+
+
+async def get_store(request: Request) -> Store:
+    """The store of the app, as a dependency."""
+    return store_of(request)
+
+
+StoreOf = Annotated[Store, Depends(get_store)]
+
+
+def needs(scope: str) -> Any:
+    """The dependency of a route that only API keys with this scope may use."""
+
+    async def authorise(request: Request) -> None:
+        store = store_of(request)
+        given = request.headers.get("authorization")
+        principal = store.authorisations.get(given, scope)
+        if principal is None:
+            principal = await run_in_threadpool(_authorised, store, given, scope)
+        request.state.principal = principal
+
+    return Depends(authorise)
+
+
+def _authorised(store: Store, given: str | None, scope: str) -> str:
+    with store.database.read() as connection:
+        principal = keys.authorise(connection, given, scope)
+    store.authorisations.put(given, scope, principal)
+    return principal
+
+
+async def raw_body(request: Request) -> bytes:
+    """The request body, refused with 413 as soon as it exceeds its limit."""
+    limits = store_of(request).settings.limits
+    limit = limits.job_bytes if request.url.path == SUBMISSIONS else limits.json_bytes
+    return b"".join([chunk async for chunk in _limited(request, limit)])
+
+
+@asynccontextmanager
+async def spooled_body(request: Request) -> AsyncIterator[Spool]:
+    """The request body of any kind; the limit is that of its media type. 413 as soon as the body exceeds it."""
+    limits = store_of(request).settings.limits
+    limit = {arrays.MEDIA_TYPE: limits.binary_bytes, arrow.MEDIA_TYPE: limits.stream_bytes}.get(
+        media_type(request), limits.json_bytes
+    )
+    with closing(Spool()) as body:
+        await body.fill(_limited(request, limit))
+        yield body
+
+
+async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
+    declared = request.headers.get("content-length", "0")
+    if declared.isdigit() and int(declared) > limit:
+        raise _too_long(limit)
+    size = 0
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size > limit:
+            raise _too_long(limit)
+        yield chunk
+
+
+def _too_long(limit: int) -> Refused:
+    detail = f"the request body is larger than {limit:,} bytes, the limit for its media type"
+    return Refused(413, "body-too-large", detail, limit=limit)
+
+
+RawBody = Annotated[bytes, Depends(raw_body)]
+
+
+def media_type(request: Request) -> str:
+    """The media type of the request body, without parameters."""
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+def require_json(request: Request) -> None:
+    """Refuse a body that is not declared as JSON; this also keeps HTML forms of other sites out."""
+    if media_type(request) != "application/json":
+        raise Refused(
+            415, "unsupported-media-type", "send Content-Type: application/json", headers={"Accept": "application/json"}
+        )
+
+
+def json_body(request: Request, raw: RawBody) -> Any:
+    """The request body as plain data, numbers exact. Runs in a worker thread."""
+    require_json(request)
+    return read_json(raw)
+
+
+def optional_json_body(request: Request, raw: RawBody) -> Any:
+    """Like :func:`json_body`; an empty body is an empty object."""
+    return json_body(request, raw) if raw else {}
+
+
+JsonBody = Annotated[Any, Depends(json_body)]
+OptionalJsonBody = Annotated[Any, Depends(optional_json_body)]
+
+
+def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
+    """304 when the client has the representation already, otherwise make it."""
+    headers = {"ETag": tag, "Cache-Control": FOR_EVER if immutable else REVALIDATE, "Vary": "Accept"}
+    known = [item.strip().removeprefix("W/") for item in request.headers.get("if-none-match", "").split(",")]
+    if tag in known or "*" in known:
+        return Response(status_code=304, headers=headers)
+    answer = make()
+    return Response(answer.body, answer.status, {**answer.headers, **headers})

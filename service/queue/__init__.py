@@ -1,0 +1,1 @@
+"""Hands queued items of jobs to whatever computes them, and keeps what ends."""

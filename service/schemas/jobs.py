@@ -1,0 +1,106 @@
+"""Shapes of jobs: requests and answers, for OpenAPI; units are in the descriptions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
+from service.schemas.shapes import Links, Shape, Time
+
+JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
+JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
+Item = dict[str, Any]
+Values = Annotated[list[Any], Field(min_length=1)]
+ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+
+
+class JobRequest(Shape):
+    """What is to be computed: a list of items, or a template with lists of choices."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "oneOf": [{"required": ["items"]}, {"required": ["template", "choices"]}],
+            "examples": list(EXAMPLES),
+        },
+    )
+
+    kind: JobKind = Field(description=KINDS)
+    items: list[Item] = Field(default_factory=list, min_length=1, description="what an item is: see `kind`")
+    template: Item = Field(default_factory=dict, description="an item that is copied for every combination of choices")
+    choices: dict[str, Values] = Field(default_factory=dict, min_length=1, description=CHOICES)
+
+
+class CancelRequest(Shape):
+    """Nothing needs to be said."""
+
+
+class JobProgress(Shape):
+    """How far a job is."""
+
+    done: int = Field(description="items that succeeded or failed")
+    failed: int
+    total: int
+    fraction: float = Field(description="0 to 1, with parts of running items")
+    rate: float | None = Field(description="items per second, of late")
+    eta_seconds: float | None = Field(description="time left at this rate, s")
+
+
+class JobView(Shape):
+    """A job. It fails when all of its items fail; otherwise the result says which of them did."""
+
+    id: str
+    kind: JobKind
+    state: JobState
+    progress: JobProgress
+    attempts: int = Field(description="attempts on all items")
+    principal: str = Field(description="id of the API key, or local")
+    created: Time
+    started: Time | None
+    finished: Time | None
+    error: dict[str, Any] | None = Field(description="problem document")
+    result: str = Field(description="where the results are, also in part while the job runs")
+    links: Links
+
+
+class JobPage(Shape):
+    """Jobs, the newest first."""
+
+    items: list[JobView]
+    next_page_token: str | None
+    links: Links
+
+
+class FileView(Shape):
+    """A file of a result."""
+
+    name: str
+    size: int = Field(description="bytes")
+    media_type: str
+    href: str
+
+
+class ItemView(BaseModel):
+    """An item of a job: its result, or the problem document of its own."""
+
+    position: int
+    state: ItemState
+    attempts: int
+    deaths: list[str] = Field(description="what was seen of attempts whose worker died")
+    fraction: float
+    key: Annotated[str, Field(description="digest of what is computed; equal items share their result")]
+    started: Time | None
+    finished: Time | None
+    problem: dict[str, Any] | None
+    result: dict[str, Any] | None
+    files: list[FileView]
+
+
+class ItemPage(Shape):
+    """Items in their order."""
+
+    items: list[ItemView]
+    next_page_token: str | None
+    links: Links

@@ -1,0 +1,195 @@
+"""Shapes of answers and of the small requests, for OpenAPI and for validation; units are in the descriptions.
+
+Definitions and trees are described by the science package (``Definition``, ``TreeSpec``).
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.schemas.shapes import Digest, Links, Shape, Time
+
+
+class ProblemError(Shape):
+    """One thing wrong."""
+
+    pointer: str = Field(description="RFC 6901 pointer into the request document")
+    code: str
+    message: str
+
+
+class Problem(BaseModel):
+    """RFC 9457 problem document; every answer that is not a success has this shape."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    instance: str
+    code: str
+    request_id: str
+    errors: list[ProblemError]
+
+
+class ParameterView(BaseModel):
+    """A named constant and its default value."""
+
+    value: float | int | str | None = Field(None, description="default, in the unit given")
+    unit: str = ""
+    description: str = ""
+
+
+class VersionView(Shape):
+    """A version of a substructure."""
+
+    name: str
+    version: int
+    digest: Digest
+    title: str
+    description: str
+    tags: list[str]
+    dof: int = Field(description="number of coordinates")
+    joints: str = Field(description="R or P for every coordinate, in order")
+    coordinates: list[str]
+    bodies: list[str]
+    ports: list[str]
+    parameters: dict[str, ParameterView]
+    operations: dict[str, Any] = Field(description="operation counts of the stored program")
+    certificate: dict[str, Any] = Field(description="what was checked when this was stored, with figures")
+    program: Digest
+    created: Time
+    aliases: list[str]
+    yanked: bool
+    yanked_at: Time | None
+    yank_reason: str | None
+    links: Links
+
+
+class VersionPage(Shape):
+    """A page of latest versions."""
+
+    items: list[VersionView]
+    facets: dict[Literal["tags", "joints", "dof"], dict[str, int]] = Field(description="counts over all pages")
+    next_page_token: str | None
+    links: Links
+
+
+class FormulaView(Shape):
+    """A stored formula."""
+
+    quantity: str
+    body: str | None
+    coordinate: str | None
+    shape: list[int]
+    symmetry: str
+    operations: int = Field(description="operations to compute this alone")
+    output: str = Field(description="output of the stored program")
+    entry: list[int] = Field(description="its leading index within the output")
+
+
+class FormulaIndex(Shape):
+    """All stored formulas of a version."""
+
+    name: str
+    version: int
+    digest: Digest
+    program: Digest
+    count: int
+    formulas: list[FormulaView]
+    links: Links
+
+
+class AliasRequest(Shape):
+    """Where an alias shall point to."""
+
+    version: int = Field(ge=1, le=10**9, strict=True)
+
+
+class AliasChange(Shape):
+    """One change of an alias."""
+
+    revision: int
+    version: int
+    changed: Time
+    principal: str = Field(description="id of the API key, or local")
+
+
+class AliasView(Shape):
+    """An alias with its history, the newest change first."""
+
+    name: str
+    alias: str
+    version: int
+    revision: int
+    changed: Time
+    history: list[AliasChange]
+    links: Links
+
+
+class AliasList(Shape):
+    """All aliases of a substructure."""
+
+    items: list[AliasView]
+
+
+class YankRequest(Shape):
+    """Why a version is withdrawn."""
+
+    reason: str = Field("", max_length=2000)
+
+
+class TreeView(Shape):
+    """A revision of a tree."""
+
+    name: str
+    revision: int
+    digest: Digest
+    dof: int
+    coordinates: list[str] = Field(description="instance.coordinate, in the order of all arrays")
+    joints: str = Field(description="R or P for every coordinate, in order")
+    frames: list[str] = Field(description="instance.body and instance.port, in the order of kinematic arrays")
+    parameters: dict[str, ParameterView]
+    gravity: Any = Field(description="acceleration in world axes, m/s^2")
+    instances: list[dict[str, Any]] = Field(description="references pinned to digests")
+    closures: list[dict[str, Any]] = Field(
+        [], description="loops: name, type, from, to and rows of each; left out if none"
+    )
+    operations: dict[str, Any]
+    certificate: dict[str, Any]
+    program: Digest
+    created: Time
+    based_on: int | None = Field(description="the revision that was changed")
+    links: Links
+
+
+class TreeItem(Shape):
+    """A tree in a list."""
+
+    name: str
+    revision: int
+    digest: Digest
+    dof: int
+    created: Time
+    links: Links
+
+
+class TreePage(Shape):
+    """A page of trees, the latest revision of each."""
+
+    items: list[TreeItem]
+    next_page_token: str | None
+    links: Links
+
+
+class LimitsView(BaseModel):
+    """Every limit with its value."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class Health(Shape):
+    """State of the server."""
+
+    status: Literal["ok"]

@@ -1,0 +1,1 @@
+"""JSON of resources and jobs, as it goes out."""

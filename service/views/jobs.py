@@ -1,0 +1,86 @@
+"""JSON of jobs. Stored JSON is spliced in as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import orjson
+
+from service.addresses import BASE
+from service.operations.jobs import Progress
+from service.queries.job_events import Event
+from service.queries.jobs import Item, Job
+from service.queries.results import File
+
+BINARY = "application/octet-stream"
+MEDIA_TYPES = {"certificate": "application/json", "result": "application/x-npz", "text": "text/plain; charset=utf-8"}
+
+
+def job_path(identifier: str) -> str:
+    """The address of a job."""
+    return f"{BASE}/jobs/{identifier}"
+
+
+def job_view(job: Job, progress: Progress) -> dict[str, Any]:
+    """A job (the HTTP contract, section 5)."""
+    path = job_path(job.id)
+    return {
+        "id": job.id,
+        "kind": job.kind,
+        "state": job.state,
+        "progress": {
+            "done": job.done,
+            "failed": job.failed,
+            "total": job.total,
+            "fraction": round(progress.fraction, 6),
+            "rate": progress.rate,
+            "eta_seconds": progress.eta_seconds,
+        },
+        "attempts": job.attempts,
+        "principal": job.principal,
+        "created": job.created,
+        "started": job.started,
+        "finished": job.finished,
+        "error": None if job.error is None else orjson.Fragment(job.error),
+        "result": f"{path}/result",
+        "links": {"self": path} | {name: f"{path}/{name}" for name in ("items", "events", "archive", "cancel")},
+    }
+
+
+def item_view(job: str, item: Item, files: Sequence[File]) -> dict[str, Any]:
+    """An item with its result or its problem."""
+    return {
+        "position": item.position,
+        "state": item.state,
+        "attempts": item.attempts,
+        "deaths": orjson.Fragment(item.deaths),
+        "fraction": item.fraction,
+        "key": item.key,
+        "started": item.started,
+        "finished": item.finished,
+        "problem": None if item.problem is None else orjson.Fragment(item.problem),
+        "result": None if item.summary is None else orjson.Fragment(item.summary),
+        "files": [_file(job, item, file) for file in files],
+    }
+
+
+def _file(job: str, item: Item, file: File) -> dict[str, Any]:
+    return {
+        "name": file.name,
+        "size": file.size,
+        "media_type": media_type(item, file.name),
+        "href": f"{job_path(job)}/items/{item.position}/files/{file.name}",
+    }
+
+
+def media_type(item: Item, name: str) -> str:
+    """The media type of a file: what the item says of itself, or what is usual for the name."""
+    said = orjson.loads(item.summary or "{}").get("media_type")
+    return str(said) if said and name in ("result", "text") else MEDIA_TYPES.get(name, BINARY)
+
+
+def event_text(event: Event) -> bytes:
+    """A server-sent event; its id is where a reader resumes."""
+    data = f'{{"time":"{event.time}",{event.data.strip()[1:]}'
+    return f"id: {event.seq}\nevent: {event.type}\ndata: {data}\n\n".encode()

@@ -1,0 +1,129 @@
+"""JSON of resources. Stored JSON is spliced in as it is, so exact numbers stay exact and nothing is parsed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import orjson
+
+from service.addresses import BASE, tree_path, version_path
+from service.operations.catalogue import Page
+from service.queries.aliases import Alias, Change
+from service.queries.catalogue import Version
+from service.queries.content import FormulaRow
+from service.queries.trees import Tree
+
+_STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
+
+
+def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
+    """A version (the HTTP contract, section 2)."""
+    path = version_path(version)
+    return {
+        "name": version.name,
+        "version": version.version,
+        "digest": version.digest,
+        "title": version.title,
+        "description": version.description,
+        "dof": version.dof,
+        "joints": version.joints,
+        **{name: orjson.Fragment(getattr(version, name)) for name in _STORED},
+        "program": version.program,
+        "created": version.created,
+        "aliases": aliases,
+        "yanked": version.yanked is not None,
+        "yanked_at": version.yanked,
+        "yank_reason": version.yank_reason,
+        "links": {
+            "self": path,
+            "definition": f"{path}/definition",
+            "formulas": f"{path}/formulas",
+            "picture": f"{path}/picture",
+            "latest": f"{BASE}/substructures/{version.name}",
+            "aliases": f"{BASE}/substructures/{version.name}/aliases",
+        },
+    }
+
+
+def page_view(page: Page, aliases: Sequence[Sequence[str]], next_link: str | None) -> dict[str, Any]:
+    """A page of versions with facets."""
+    return {
+        "items": [version_view(version, names) for version, names in zip(page.versions, aliases, strict=True)],
+        "facets": page.facets,
+        "next_page_token": page.next_token,
+        "links": {"next": next_link},
+    }
+
+
+def formulas_view(version: Version, rows: Sequence[FormulaRow]) -> dict[str, Any]:
+    """The index of the stored formulas."""
+    path = f"{version_path(version)}/formulas"
+    return {
+        "name": version.name,
+        "version": version.version,
+        "digest": version.digest,
+        "program": version.program,
+        "count": len(rows),
+        "formulas": [_formula(row) for row in rows],
+        "links": {"quantities": {q: f"{path}/{q}" for q in dict.fromkeys(row.quantity for row in rows)}},
+    }
+
+
+def _formula(row: FormulaRow) -> dict[str, Any]:
+    return {
+        "quantity": row.quantity,
+        "body": row.body,
+        "coordinate": row.coordinate,
+        "shape": orjson.Fragment(row.shape),
+        "symmetry": row.symmetry,
+        "operations": row.operations,
+        "output": row.output,
+        "entry": orjson.Fragment(row.entry),
+    }
+
+
+def alias_view(name: str, alias: Alias, history: Sequence[Change]) -> dict[str, Any]:
+    """An alias with its history, the newest change first."""
+    return {
+        "name": name,
+        "alias": alias.alias,
+        "version": alias.version,
+        "revision": alias.revision,
+        "changed": alias.changed,
+        "history": [
+            {"revision": c.revision, "version": c.version, "changed": c.changed, "principal": c.principal}
+            for c in history
+        ],
+        "links": {"version": f"{BASE}/substructures/{name}@{alias.version}"},
+    }
+
+
+def tree_view(tree: Tree) -> bytes:
+    """The JSON of a tree (the HTTP contract, section 3): names and links, then the stored summary as it is."""
+    path = tree_path(tree)
+    quantities = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
+    names = {
+        "name": tree.name,
+        "revision": tree.revision,
+        "digest": tree.digest,
+        "dof": tree.dof,
+        "program": tree.program,
+        "created": tree.created,
+        "based_on": tree.based_on,
+        "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
+        | {"kernels": f"{path}/kernels"}
+        | {name: f"{path}/{name}" for name in (*quantities, "picture")},
+    }
+    return dump(names)[:-1] + b"," + tree.summary.encode()[1:]
+
+
+def tree_item(tree: Tree) -> dict[str, Any]:
+    """A tree in a list."""
+    names = ("name", "revision", "digest", "dof", "created")
+    return {**{name: getattr(tree, name) for name in names}, "links": {"self": tree_path(tree)}}
+
+
+def dump(view: Any) -> bytes:
+    """The JSON bytes of a view."""
+    return orjson.dumps(view)

@@ -1,0 +1,1 @@
+"""Closed loops: consistent states, reactions, and motions that stay on the closures."""

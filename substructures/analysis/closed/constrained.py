@@ -1,0 +1,209 @@
+"""A model with closures and prescribed coordinates in numbers: everything a state needs in one compiled call.
+
+With rows of closures and rows q_a - s(t) of prescribed coordinates:
+
+    g q'' + Gamma q'q' = Q + G^T lambda        phi(q, t) = 0        G q' + phi_t = 0        G q'' + c = 0
+
+where c = G' q' for closures and -s'' for prescribed coordinates, whose multipliers are the forces of their actuators.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack, qr, svdvals
+
+from substructures.analysis.closed.prescribed import Prescribed
+from substructures.analysis.closed.work import POWER, with_power
+from substructures.analysis.equations.kernels import Known
+from substructures.analysis.motion.inputs import VaryingInputs, read_along, state_names
+from substructures.analysis.motion.requests import ClosedRequest, LoopRequest
+from substructures.array import Array
+from substructures.compile import Kernel, compile_program
+from substructures.errors import InvalidDocument
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Program
+from substructures.mechanics.accelerations import CLOSED, RANK
+from substructures.tree.model import Model
+
+NEEDS = ("metric", "bias", "forces", "potential_energy")
+SINGULAR = (
+    "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
+    "(another start, a shorter time span), or change the lengths"
+)
+
+
+class Singular(ArithmeticError):
+    """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
+
+
+class Constrained:
+    """A state at a time and what follows from it, in arrays that the next :meth:`move` overwrites.
+
+    ``g`` (n, n), ``f`` = Q - Gamma q'q' (n,), ``phi`` (m,), ``G`` (m, n), ``c`` (m,), ``phi_t`` (m,);
+    ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
+    """
+
+    def __init__(self, model: Model, request: LoopRequest | ClosedRequest, folder: Path | None = None) -> None:
+        """``folder``: a cache of compiled kernels. Raises InvalidDocument (pointers into the request), MissingValue."""
+        self.model, self.n = model, model.dof
+        _check_fixed(model, request.fixed)
+        span = request.span if isinstance(request, ClosedRequest) else (request.t, request.t)
+        needs = [*NEEDS, *(CLOSED if model.closures else ())]
+        self.along = read_along(model, request, span, needs)
+        self.prescribed = Prescribed(model, request.prescribed, span)
+        self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
+        self.closed = len(self.labels)
+        self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
+        self._arrays()
+        self._bind(list(request.inputs), folder)
+
+    def _arrays(self) -> None:
+        n, m = self.n, len(self.labels)
+        self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
+        self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
+        self.G = np.zeros((m, n))
+        for k, a in enumerate(self.prescribed.index):
+            self.G[self.closed + k, a] = 1
+
+    def _bind(self, inputs: list[str], folder: Path | None) -> None:
+        outputs = [*NEEDS, *(CLOSED if self.closed else ())]
+        known = Known(self.model.program.digest, self.model)
+        source, kernel = _compiled(known, tuple(outputs), frozenset(inputs), folder)
+        self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
+        self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
+        self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
+        self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
+        columns = [(state_names(self.model), self._x), *self.inputs.columns]
+        self._run = kernel.bind(self._out, self.along.values | {"t": self._t}, columns=columns)
+        self.g = self._out["metric"][0]
+
+    def move(self, t: float, q: Array, qd: Array) -> None:
+        """Evaluate everything at a state."""
+        n, x, out = self.n, self._x[0], self._out
+        self.t, self.q, self.qd = t, q, qd
+        x[:n], x[n:], self._t[0] = q, qd, t
+        self.inputs.fill()
+        self._run()
+        np.subtract(out["forces"][0], out["bias"][0], out=self.f)
+        m = self.closed
+        if m:
+            self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
+            self.G[:m] = out["closure.jacobian"][0]
+        if self.prescribed.index:
+            motion = self.prescribed.at(t)
+            self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
+            self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
+
+    @property
+    def velocity_residual(self) -> Array:
+        """G q' + phi_t."""
+        return self.G @ self.qd + self.phi_t
+
+    @property
+    def energies(self) -> tuple[float, float]:
+        """T and V [J]."""
+        return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
+
+    @property
+    def lost_power(self) -> float:
+        """(Q + dV/dq) q': power of the applied forces that have no potential [W]."""
+        return float(self._out[POWER][0])
+
+    def directions(self) -> Array:
+        """Force or moment on ``to`` of unit multipliers of the closures, in the axes of ``from`` (m, 3)."""
+        return self._closure_output("closure.direction", (0, 3))
+
+    def upside_down(self) -> str:
+        """The name of a closure that holds all three directions but is closed with axes turned round; else ''."""
+        aligned = self._closure_output("closure.alignment", (0,))
+        k = 0
+        for rows in self.model.closures:
+            end = k + len(rows.rows)
+            if "rz" in rows.rows and aligned[k:end].min() < 0:
+                return rows.name
+            k = end
+        return ""
+
+    def _closure_output(self, name: str, empty: tuple[int, ...]) -> Array:
+        """An output that is seldom needed, at the present state."""
+        if not self.closed:
+            return np.zeros(empty)
+        rates = [f"{name}'" for name in self.model.coordinates]
+        values = self.along.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
+        values |= dict(zip(self.model.coordinates, self.q, strict=True))
+        return interpret(self.model.program, values, [name])[name]
+
+    def factor(self, rows: NDArray[np.int64]) -> Factor:
+        """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
+        n, r = self.n, len(rows)
+        A = np.zeros((n + r, n + r), order="F")
+        A[:n, :n] = self.g
+        if r:
+            G = self.G[rows]
+            A[n:, :n], A[:n, n:] = G, G.T
+        lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
+        if info:
+            raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
+        return Factor(n, lu, pivots)
+
+    def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
+        """q'' (n,) and the multipliers of the given rows. Raises Singular."""
+        q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
+        if not np.isfinite(q2).all():
+            raise Singular("the accelerations are not finite: check masses, inertias and loads")
+        return q2, -minus
+
+    def rank(self) -> int:
+        """Number of independent rows here."""
+        return rank_of(self.G)
+
+    def independent_rows(self) -> NDArray[np.int64]:
+        """Indices of as many independent rows as there are, chosen by QR with pivoting of G^T; in order."""
+        rank = self.rank()
+        if not rank:
+            return np.zeros(0, dtype=np.int64)
+        pivots = qr(self.G.T, mode="r", pivoting=True)[1]
+        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Factors of [g G^T; G 0]."""
+
+    n: int
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    def solve(self, a: Array, b: Array) -> tuple[Array, Array]:
+        """x, y with g x + G^T y = a and G x = b."""
+        x, _ = lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
+        return x[: self.n], x[self.n :]
+
+
+@lru_cache(maxsize=32)
+def _compiled(
+    known: Known, outputs: tuple[str, ...], inputs: frozenset[str], folder: Path | None
+) -> tuple[Program, Kernel]:
+    """Outputs of a model with their POWER, once for the same model."""
+    source = with_power(known.source, outputs, inputs)
+    return source, compile_program(source, [*outputs, POWER], folder)
+
+
+def rank_of(G: Array) -> int:
+    """Number of singular values above RANK times the largest."""
+    if not G.size:
+        return 0
+    values = svdvals(G)
+    return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
+
+
+def _check_fixed(model: Model, fixed: Sequence[str]) -> None:
+    for i, name in enumerate(fixed):
+        if name not in model.coordinates:
+            raise InvalidDocument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")

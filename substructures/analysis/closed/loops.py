@@ -1,0 +1,172 @@
+"""Closed loops at a state: redundancy, degrees of freedom, independent coordinates, accelerations, reaction forces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lstsq, null_space, qr, svd
+
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of
+from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
+from substructures.analysis.motion.requests import LoopRequest
+from substructures.array import Array
+from substructures.mechanics.accelerations import RANK
+from substructures.tree.model import Model
+
+#: size of the tangent step that tells a singular position from a redundant closure [rad, m]
+NEARBY = 1e-3
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """What the closures leave free at a state.
+
+    ``counted`` = coordinates - rows, as in the formulas of Gruebler and Kutzbach; ``degrees_of_freedom`` = coordinates
+    - ``rank``, from the singular values above 1e-8 of the largest. ``dependent``: rows (closure.row) that can be left
+    out; ``entangled``: all rows whose reactions are not unique, by closure. ``singular``: the rank is lower here than
+    nearby, so that the motion is not determined (a dead centre, a branching).
+    """
+
+    rank: int
+    degrees_of_freedom: int
+    counted: int
+    dependent: tuple[str, ...]
+    entangled: Mapping[str, tuple[str, ...]]
+    independent_coordinates: tuple[str, ...]
+    singular: bool
+
+    @property
+    def redundant(self) -> bool:
+        """Whether closures depend on each other."""
+        return bool(self.dependent)
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """Force [N] and moment [N m] that a closure exerts on its frame ``to``, in the axes of its frame ``from``, at the
+    origin of ``to``; the opposite acts on ``from``. ``not_unique``: rows of which only sums are determined; the least
+    ones are given.
+    """
+
+    closure: str
+    force: Array
+    moment: Array
+    not_unique: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class LoopState:
+    """Accelerations (n,), multipliers (m,) of least norm, reactions and actuator forces of prescribed coordinates."""
+
+    consistent: Consistent
+    mobility: Mobility
+    qdd: Array
+    multipliers: Array
+    reactions: tuple[Reaction, ...]
+    actuation: Mapping[str, float]
+    message: str = ""
+
+    def plain(self) -> dict[str, Any]:
+        """As plain data with arrays, for an answer in JSON."""
+        state = {k: getattr(self.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
+        reactions = [asdict(reaction) for reaction in self.reactions]
+        mobility = asdict(self.mobility) | {"redundant": self.mobility.redundant}
+        forces = {"qdd": self.qdd, "multipliers": self.multipliers, "actuation": dict(self.actuation)}
+        return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
+
+
+def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None = None) -> LoopState:
+    """Close the loops at a state and say what moves and what holds.
+
+    ``request``: see LoopRequest; ``q`` and ``qd`` near a closed position. ``folder``: a cache of compiled kernels.
+    Raises InvalidDocument and MissingValue; loops that cannot be closed, and singular positions, are messages in the
+    result.
+    """
+    asked = LoopRequest.read(request)
+    s, t = Constrained(model, asked, folder), asked.t
+    state = consistent_state(s, t, s.along.q, s.along.qd, asked.fixed)
+    place = mobility(s, t, state.q)
+    s.move(t, state.q, state.qd)
+    nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
+    message = state.message or ("the position is singular: " + SINGULAR if place.singular else "")
+    try:
+        qdd, _ = s.accelerations(s.independent_rows())
+        multipliers = least_multipliers(s, qdd)
+    except Singular as error:
+        (qdd, multipliers), message = nothing, message or str(error)
+    actuation = zip(s.labels[s.closed :], multipliers[s.closed :], strict=True)
+    forces = {label.removeprefix("motion."): float(x) for label, x in actuation}
+    return LoopState(state, place, qdd, multipliers, reactions(s, multipliers, place), forces, message)
+
+
+def mobility(s: Constrained, t: float, q: Array) -> Mobility:
+    """Rank, redundancy and independent coordinates at a position that meets the closures."""
+    s.move(t, q, np.zeros(s.n))
+    G = s.G.copy()
+    rank, m = rank_of(G), len(s.labels)
+    chosen = set(s.independent_rows().tolist())
+    dependent = tuple(label for k, label in enumerate(s.labels) if k not in chosen)
+    entangled: dict[str, tuple[str, ...]] = {}
+    for k in np.flatnonzero(_ambiguous(G)):
+        closure, _, row = s.labels[k].partition(".")
+        entangled[closure] = (*entangled.get(closure, ()), row)
+    names = tuple(s.model.coordinates[a] for a in independent_coordinates(G))
+    return Mobility(rank, s.n - rank, s.n - m, dependent, entangled, names, _is_singular(s, t, q, G, rank))
+
+
+def independent_coordinates(G: Array) -> NDArray[np.int64]:
+    """Coordinates whose velocities determine all others, by QR with pivoting of the Jacobian; in order."""
+    rank = rank_of(G)
+    if not rank:
+        return np.arange(G.shape[1])
+    pivots = qr(G, mode="r", pivoting=True)[1]
+    return np.sort(np.asarray(pivots[rank:], dtype=np.int64))
+
+
+def _ambiguous(G: Array) -> NDArray[np.bool_]:
+    """Rows that take part in a dependency: G^T lambda = 0 with a lambda that is not zero there."""
+    if not G.size:
+        return np.zeros(len(G), dtype=np.bool_)
+    free = null_space(G.T, rcond=RANK)
+    return np.asarray(np.abs(free).max(axis=1, initial=0) > np.sqrt(RANK))
+
+
+def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> bool:
+    """Whether the rank is higher at a closed position nearby, in some direction along the closures."""
+    _, _, rows = svd(G) if G.size else (None, None, np.eye(s.n))
+    tangent = rows[rank:]
+    rng = np.random.default_rng(5)
+    for _ in range(2 if rank < min(G.shape) else 0):
+        step = rng.standard_normal(len(tangent)) @ tangent
+        step *= NEARBY / float(np.linalg.norm(step))
+        beside = consistent_state(s, t, q + step, np.zeros(s.n))
+        s.move(t, beside.q, np.zeros(s.n))
+        if beside.residual <= CLOSED and s.rank() > rank:
+            return True
+    return False
+
+
+def least_multipliers(s: Constrained, qdd: Array) -> Array:
+    """lambda of least norm with G^T lambda = g q'' + Gamma q'q' - Q."""
+    if not len(s.labels):
+        return np.zeros(0)
+    found = lstsq(s.G.T, s.g @ qdd - s.f, cond=RANK, lapack_driver="gelsd", check_finite=False)[0]
+    return np.asarray(found, dtype=np.float64)
+
+
+def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reaction, ...]:
+    """Forces and moments of the closures from their multipliers, at the state where s is."""
+    direction = s.directions()
+    result, k = [], 0
+    for rows in s.model.closures:
+        load = np.zeros((2, 3))
+        for row in rows.rows:
+            load[int(row not in ("x", "y", "z", "length"))] += multipliers[k] * direction[k]
+            k += 1
+        result.append(Reaction(rows.name, load[0], load[1], place.entangled.get(rows.name, ())))
+    return tuple(result)

@@ -1,0 +1,189 @@
+"""Two ways from the equations with closures to ordinary differential equations: projection and partitioning.
+
+Both integrate accelerations from [g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c] with a set of independent rows.
+
+* Projected: the state is (q, q'); after every step it is moved onto the closures, in the metric.
+* Partitioned: the state is (q, q') of the independent coordinates only; the others follow from the closures at every
+  evaluation, by Newton's method. When the choice becomes ill conditioned, another one is taken (R. A. Wehage and
+  E. J. Haug, ASME J. Mech. Design 104, 1982).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack, qr, svdvals
+
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
+from substructures.analysis.closed.projection import CLOSED, project
+from substructures.array import Array
+from substructures.mechanics.accelerations import RANK
+
+#: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
+WORN = 0.3
+#: residuals that are as small as rounding lets them be, where lengths are large [m, 1]
+ROUNDING = 1e-10
+
+
+class Reduction(ABC):
+    """The vector y of the integrator for a state (q, q'); its last element is the work of lossy and driving forces.
+
+    ``close``: a position is singular when the share of the smallest singular value in the largest one has fallen to
+    this part of what it was at best along the motion.
+    """
+
+    close = 1e-4
+
+    def __init__(self, s: Constrained, rank: int) -> None:
+        self.s, self.n, self.rank = s, s.n, rank
+        self.rows = s.independent_rows()
+        self.best_share = 0.0
+        self.near = s.q.copy()
+
+    @abstractmethod
+    def pack(self, q: Array, qd: Array, work: float) -> Array:
+        """y of a state."""
+
+    @abstractmethod
+    def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
+        """q, q' of y; s stays at this state. Raises Singular."""
+
+    def expect(self, q: Array) -> None:
+        """Where the next state will be, about: several may belong to the same y."""
+        self.near = q
+
+    @abstractmethod
+    def rates(self, t: float, y: Array) -> Array:
+        """y'. Raises Singular."""
+
+    @abstractmethod
+    def choose(self, anew: bool = False) -> bool:
+        """Look at the closures where s is: choose anew what has become ill conditioned; whether y changed its meaning.
+
+        ``anew``: in any case. Raises Singular when the closures have lost rank.
+        """
+
+    def land(self, t: float, y: Array) -> tuple[Array, Array]:
+        """The state of y (q, q'), on the closures; s stays there. Raises Singular."""
+        q, qd = self.unpack(t, y)
+        q, qd, _ = project(self.s, t, q, qd, self.rows)
+        return q, qd
+
+    def _acceleration(self) -> tuple[Array, float]:
+        """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
+        s = self.s
+        qdd, multipliers = s.accelerations(self.rows)
+        power = 0.0 if s.conservative else s.lost_power
+        for row, force in zip(self.rows, multipliers, strict=True):
+            if row >= s.closed:
+                power -= float(force * s.phi_t[row])
+        return qdd, power
+
+    def _check_rank(self, anew: bool) -> None:
+        """Rows that stay independent; all other rows depend on them."""
+        if not self.rank:
+            return
+        values = svdvals(self.s.G)
+        share = 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
+        self.best_share = max(self.best_share, share)
+        if not share > max(100 * RANK, self.close * self.best_share):
+            raise Singular(SINGULAR)
+        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * values[self.rank - 1]:
+            pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
+            self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
+
+
+class Projected(Reduction):
+    """y = (q, q', work)."""
+
+    def pack(self, q: Array, qd: Array, work: float) -> Array:
+        return np.concatenate((q, qd, (work,)))
+
+    def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
+        q, qd = y[: self.n], y[self.n : -1]
+        self.s.move(t, q, qd)
+        return q, qd
+
+    def rates(self, t: float, y: Array) -> Array:
+        q, qd = y[: self.n], y[self.n : -1]
+        self.s.move(t, q, qd)
+        qdd, power = self._acceleration()
+        result = np.empty(len(y))
+        result[: self.n], result[self.n : -1], result[-1] = qd, qdd, power
+        return result
+
+    def choose(self, anew: bool = False) -> bool:
+        self._check_rank(anew)
+        return False
+
+
+class Partitioned(Reduction):
+    """y = (q, q' of the independent coordinates, work); rounding in the others grows as singular values fall."""
+
+    close = 1e-3
+
+    def __init__(self, s: Constrained, rank: int) -> None:
+        super().__init__(s, rank)
+        self._partition()
+
+    def _partition(self) -> None:
+        pivots = np.arange(self.n) if not self.rank else qr(self.s.G[self.rows], mode="r", pivoting=True)[1]
+        self.dependent: NDArray[np.int64] = np.sort(pivots[: self.rank]).astype(np.int64)
+        self.independent: NDArray[np.int64] = np.sort(pivots[self.rank :]).astype(np.int64)
+        self.best = self._condition()
+
+    def _condition(self) -> float:
+        """Smallest over largest singular value of the columns of the dependent coordinates."""
+        if not self.rank:
+            return 1.0
+        values = svdvals(self.s.G[np.ix_(self.rows, self.dependent)])
+        return float(values[-1] / values[0])
+
+    def pack(self, q: Array, qd: Array, work: float) -> Array:
+        self.near = q.copy()
+        return np.concatenate((q[self.independent], qd[self.independent], (work,)))
+
+    def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
+        s, k = self.s, len(self.independent)
+        q, qd = self.near.copy(), np.zeros(self.n)
+        q[self.independent], qd[self.independent] = y[:k], y[k:-1]
+        size = np.inf
+        for _ in range(20):
+            s.move(t, q, qd)
+            residual, before = s.phi[self.rows], size
+            size = float(np.abs(residual).max(initial=0))
+            if size <= CLOSED / 10 or before / 2 < size <= ROUNDING:
+                break
+            q[self.dependent] -= self._solve(residual)
+        else:
+            raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
+        qd[self.dependent] = -self._solve(s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows])
+        self.near = q
+        s.move(t, q, qd)
+        return q, qd
+
+    def _solve(self, b: Array) -> Array:
+        if not self.rank:
+            return b
+        _, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
+        if info or not np.isfinite(x).all():
+            raise Singular("the independent coordinates do not determine the others: " + SINGULAR)
+        return np.asarray(x, dtype=np.float64)
+
+    def rates(self, t: float, y: Array) -> Array:
+        _, qd = self.unpack(t, y)
+        qdd, power = self._acceleration()
+        return np.concatenate((qd[self.independent], qdd[self.independent], (power,)))
+
+    def choose(self, anew: bool = False) -> bool:
+        before = self.rows
+        self._check_rank(anew)
+        if not anew and self._condition() >= WORN * self.best and before is self.rows:
+            return False
+        self._partition()
+        return True
+
+
+REDUCTIONS: dict[str, type[Reduction]] = {"projection": Projected, "partitioning": Partitioned}

@@ -1,0 +1,1 @@
+"""Optimal control: the problem, the adjoint gradient, shooting as a nonlinear program."""

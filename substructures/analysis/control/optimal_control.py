@@ -1,0 +1,157 @@
+"""Optimal control by direct shooting with the adjoint gradient.
+
+The nonlinear program of substructures.analysis.control.nonlinear_program is solved by sequential quadratic programming
+(D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988), or by L-BFGS-B where only
+bounds are demanded (both in SciPy). One segment is single shooting; more of them start from a guess of the motion and
+are better conditioned for long and unstable motions (multiple shooting).
+
+A result is judged by the necessary conditions of the optimum: the gradient of the Lagrangian vanishes in all free
+variables (Karush, Kuhn and Tucker), all demands hold, and, where l and the forces do not depend on time, the
+Hamiltonian is constant along the motion up to the discretisation of the controls (L. S. Pontryagin).
+
+Example, a cart pendulum swung up in two seconds by a force of at most 20 N::
+
+    optimal_control(model, {
+        "controls": ["tau.x.q0"], "cost": {"running": "tau.x.q0^2"}, "horizon": 2, "intervals": 40, "steps": 2,
+        "q": {"x.q0": 0, "x.q1": math.pi}, "end": {"q": [0, 0], "qd": [0, 0]},
+        "bounds": {"tau.x.q0": [-20, 20]},
+    })
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from scipy.optimize import Bounds, minimize
+
+from substructures.analysis.control.cost_gradient import trajectory
+from substructures.analysis.control.nonlinear_program import BEYOND, OptimalControlRequest, ShootingProgram
+from substructures.analysis.control.problem import read_problem
+from substructures.analysis.control.shooting import Rollout
+from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.array import Array
+from substructures.tree.model import Model
+
+#: called with the number of an iteration, the cost and the violation
+Progress = Callable[[int, float, float], None]
+#: stationarity (relative to the largest derivative of the cost) that counts as an optimum
+STATIONARY = 1e-3
+
+ADVICE = {
+    "optimal": "",
+    "feasible": "all demands hold, but the cost can still fall: raise 'iterations' or lower 'tolerance'",
+    "failed": "the demands are not met: give a better 'guess', more 'segments', a longer 'horizon' or wider 'bounds'",
+}
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best controls found (nodes, m), in the order of ``names``, with their cost and motion.
+
+    ``status``: optimal; feasible (demands hold, not stationary yet); failed; ``message`` says what to change.
+    ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost;
+    ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
+    where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
+    series of substructures.analysis.control.cost_gradient, and the demands as its checks.
+    """
+
+    status: Literal["optimal", "feasible", "failed"]
+    message: str
+    cost: float
+    names: tuple[str, ...]
+    controls: Array
+    trajectory: Trajectory
+    stationarity: float
+    violation: float
+    hamiltonian_drift: float | None
+    history: Array
+    iterations: int
+
+
+def optimal_control(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Optimum:
+    """Solve a problem of optimal control; ``request``: the fields of OptimalControlRequest.
+
+    ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
+    search. Raises InvalidDocument with pointers, and MissingValue.
+    """
+    problem = read_problem(OptimalControlRequest, model, request)
+    search = ShootingProgram(model, problem)
+    z = search.guess()
+    history = [search.progress(z)]
+
+    def note(x: Array) -> None:
+        history.append(search.progress(x))
+        if progress is not None:
+            progress(len(history) - 1, *history[-1])
+
+    found = _solve(search, z, note)
+    return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), int(found.nit))
+
+
+def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
+    """SLSQP; L-BFGS-B without conditions."""
+    problem, bounds = search.problem, Bounds(*search.limits())
+    common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": note}
+    if not search.rows:
+        options = {"maxiter": problem.iterations, "ftol": problem.tolerance, "gtol": 1e-10}
+        return minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
+    conditions = {"type": "eq", "fun": search.residual, "jac": search.jacobian}
+    options = {"maxiter": problem.iterations, "ftol": problem.tolerance}
+    return minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
+
+
+def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) -> Optimum:
+    """The necessary conditions at z."""
+    cost, gradient = search.cost(z)
+    residual, A = search.residual(z), search.jacobian(z)
+    low, high = search.limits()
+    margin = 1e-9 * (1 + np.abs(z))
+    below, above = z <= low + margin, z >= high - margin
+    free = ~(below | above)
+    nu = np.zeros(search.rows)
+    if search.rows:
+        nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
+    slope = gradient + A.T @ nu
+    slope[below] = np.minimum(slope[below], 0)
+    slope[above] = np.maximum(slope[above], 0)
+    stationarity = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
+    violation = float(np.abs(residual).max(initial=0))
+    limit = max(1e-6, 10 * search.problem.tolerance)
+    status: Literal["optimal", "feasible", "failed"] = "failed"
+    if violation <= limit and cost < BEYOND:
+        status = "optimal" if stationarity <= STATIONARY else "feasible"
+    run, _ = search.evaluated(z)
+    motion, drift = _motion(search, run, nu)
+    check = Check("end", "zero", "the end state and the joints of segments are demanded", "", violation, 1.0, limit)
+    late = replace(check, time=None if violation <= limit else float(motion.t[-1]))
+    return Optimum(
+        status,
+        ADVICE[status],
+        cost,
+        search.problem.controls,
+        run.controls,
+        replace(motion, checks=(late,)),
+        stationarity,
+        violation,
+        drift,
+        history,
+        iterations,
+    )
+
+
+def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:
+    """The trajectory with the costates of the Lagrangian, and the drift of the Hamiltonian."""
+    ends = np.zeros((search.S, search.size))
+    gaps = (search.S - 1) * search.size
+    ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
+    for k, (i, _) in enumerate(search.demands):
+        ends[-1, i] = nu[gaps + k]
+    motion = trajectory(search.shooting, run, search.shooting.pullback(run, ends[None], np.ones(1)))
+    program = search.shooting.equations.program
+    if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
+        return motion, None
+    H = motion.series["hamiltonian"]
+    return motion, float(np.ptp(H) / max(float(np.abs(H).max()), 1e-12))

@@ -1,0 +1,238 @@
+"""Motion under controls, and gradients of its cost by the discrete adjoint of the integration scheme.
+
+The classical Runge-Kutta scheme of order 4 takes x = (q, q') over ``intervals`` times ``steps`` equal steps, and the
+cost integral by the same weights. Its adjoint runs the same steps backwards with the exact derivative of each
+(W. W. Hager, Runge-Kutta methods in optimal control and the transformed adjoint system, Numerische Mathematik 87,
+2000): the gradient is that of the computed cost, exact to rounding, whatever the step size. As the steps
+become small the multipliers are the costates of substructures.analysis.control.adjoint.
+
+Time may be cut into ``segments`` of equally many intervals, each with a start of its own (multiple shooting, H. G.
+Bock and K. J. Plitt, A multiple shooting algorithm for direct solution of optimal control problems, IFAC World
+Congress 1984); all segments and all rows of a Jacobian are integrated in one batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.control.adjoint import (
+    ADJOINT,
+    MOTION,
+    TERMINAL,
+    WEIGHT,
+    AdjointEquations,
+    adjoint_equations,
+)
+from substructures.analysis.control.problem import Problem
+from substructures.analysis.equations.formulas import inputs_of
+from substructures.array import Array
+from substructures.compile import compile_program
+from substructures.errors import MissingValue
+from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.states import read_states, symbol_values
+from substructures.tree.model import Model
+
+#: c_i = a_(i, i-1) and b_i of the scheme
+NODES = (0.0, 0.5, 0.5, 1.0)
+WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """All segments S after J steps each. ``stages`` (J, 4, S, 2 n): states inside the steps, ``accelerations``
+    (J, 4, S, n) and ``metrics`` (J, 4, S, n, n) there; ``end`` (S, 2 n); ``cost``: integral of l, plus phi at
+    the last end.
+    """
+
+    controls: Array
+    stages: Array
+    accelerations: Array
+    metrics: Array
+    end: Array
+    cost: float
+
+    @property
+    def states(self) -> Array:
+        """(q, q') before every step and at the last end, (S J + 1, 2 n)."""
+        inner = self.stages[:, 0].swapaxes(0, 1)
+        return np.concatenate([inner.reshape(-1, inner.shape[-1]), self.end[-1:]])
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Derivatives of W numbers: by the ``start`` of each segment (W, S, 2 n), the ``controls`` (W, nodes, m) and the
+    varied ``parameters`` (W, r); ``costates`` (W, J + 1, S, 2 n) before every step and at the ends; ``parts``
+    (W, S, intervals/S + 1, m): what each segment adds to the derivatives by its nodes."""
+
+    start: Array
+    controls: Array
+    parts: Array
+    parameters: Array
+    costates: Array
+
+
+class Shooting:
+    """The equations of a problem as compiled code. ``segments`` must divide ``problem.intervals``.
+
+    Raises InvalidDocument (see adjoint_equations) and MissingValue for a parameter without a value.
+    """
+
+    def __init__(self, model: Model, problem: Problem, varied: Sequence[str] = (), segments: int = 1) -> None:
+        self.model, self.problem, self.segments = model, problem, segments
+        self.equations = adjoint_equations(model, problem.controls, problem.cost, varied)
+        self.values = _constants(model, problem, self.equations)
+        source = self.equations.program
+        self.motion, self.adjoint = compile_program(source, MOTION), compile_program(source, ADJOINT)
+        self.terminal = compile_program(source, TERMINAL)
+        self.hamiltonian = compile_program(source, ("hamiltonian",))
+        self.h = problem.horizon / (problem.intervals * problem.steps)
+        self.count = problem.intervals // segments * problem.steps
+        e = self.equations
+        self.state_names = [*e.names(), *e.names(primes="'")]
+        self.costate_names = [*e.names("lambda."), *e.names("lambda.", "'")]
+
+    def run(self, start: Array, controls: Array) -> Rollout:
+        """Integrate from the starts of all segments (S, 2 n) under ``controls`` (nodes, m).
+
+        Where the metric is singular or the motion leaves the range of numbers the result is not finite.
+        """
+        n, S, J = self.model.dof, self.segments, self.count
+        stages, accelerations = np.empty((J, 4, S, 2 * n)), np.empty((J, 4, S, n))
+        metrics, cost = np.empty((J, 4, S, n, n)), 0.0
+        x = np.array(start, dtype=np.float64).reshape(S, 2 * n)
+        with np.errstate(all="ignore"):
+            for j in range(J):
+                rate, total = np.zeros_like(x), np.zeros_like(x)
+                for i in range(4):
+                    stages[j, i] = X = x + (self.h * NODES[i]) * rate
+                    found = self._motion(X, controls, j, i)
+                    metrics[j, i], accelerations[j, i] = (
+                        found["metric"],
+                        cholesky_solve(found["metric"], found["force"]),
+                    )
+                    rate = np.concatenate([X[:, n:], accelerations[j, i]], axis=1)
+                    total += WEIGHTS[i] * rate
+                    cost += self.h * WEIGHTS[i] * float(found["running_cost"].sum())
+                x = x + self.h * total
+            cost += float(self._terminal(x[-1:], controls)["terminal_cost"][0])
+        return Rollout(controls, stages, accelerations, metrics, x, cost)
+
+    def pullback(self, run: Rollout, ends: Array, costs: Array) -> Slope:
+        """Derivatives of ``ends``_ws . end_s + ``costs``_w cost for (W, S, 2 n) and (W,), by one pass backwards."""
+        n, (W, S, _) = self.model.dof, ends.shape
+        last = self._terminal(run.end[-1:], run.controls)
+        lam = np.array(ends, dtype=np.float64)
+        lam[:, -1] += costs[:, None] * np.concatenate([last["terminal_q"][0], last["terminal_qd"][0]])
+        parts = np.zeros((W, S, self.problem.intervals // S + 1, run.controls.shape[1]))
+        parameters = costs[:, None] * last["terminal_parameters"][0]
+        costates = np.empty((W, self.count + 1, S, 2 * n))
+        costates[:, -1] = lam
+        with np.errstate(all="ignore"):
+            for j in reversed(range(self.count)):
+                before, total = np.zeros_like(lam), np.zeros_like(lam)
+                for i in (3, 2, 1, 0):
+                    above = self.h * NODES[i + 1] * before if i < 3 else 0.0
+                    bar = self.h * WEIGHTS[i] * lam + above
+                    found = self._adjoint(run, j, i, bar, self.h * WEIGHTS[i] * costs)
+                    before = -np.concatenate([found["adjoint_q"], found["adjoint_qd"]], axis=-1)
+                    total += before
+                    self._to_nodes(parts, found["control_gradient"], j, i)
+                    parameters = parameters + found["parameter_gradient"].sum(axis=1)
+                lam = lam + total
+                costates[:, j] = lam
+        return Slope(lam, self._joined(parts), parts, parameters, costates)
+
+    def hamiltonians(self, run: Rollout, costates: Array) -> Array:
+        """H before every step, (S J,), for the costates (J + 1, S, 2 n) of the cost."""
+        e, n = self.equations, self.model.dof
+        flat = [a.swapaxes(0, 1).reshape(-1, a.shape[-1]) for a in (run.stages[:, 0], run.accelerations[:, 0])]
+        lam = costates[:-1].swapaxes(0, 1).reshape(-1, 2 * n)
+        u, t = (np.concatenate(x) for x in zip(*self._all_controls(run.controls), strict=True))
+        columns = [(self.state_names, flat[0]), (e.names(primes="''"), flat[1]), (self.costate_names, lam)]
+        values = {**self.values, "t": t, WEIGHT: 1.0}
+        return self.hamiltonian.evaluate(values, columns=[*columns, (e.controls, u)])["hamiltonian"]
+
+    def controls_at_steps(self, controls: Array) -> Array:
+        """Controls just after the beginning of every step, and at the last end, (S J + 1, m)."""
+        last = self._controls(controls, self.count - 1, 3)[0][-1:]
+        return np.concatenate([*(u for u, _ in self._all_controls(controls)), last])
+
+    def _all_controls(self, controls: Array) -> list[tuple[Array, Array]]:
+        """(u, t) before every step, segment after segment."""
+        pairs = [self._controls(controls, j, 0) for j in range(self.count)]
+        return [(np.array([u[s] for u, _ in pairs]), np.array([t[s] for _, t in pairs])) for s in range(self.segments)]
+
+    def _place(self, j: int, i: int) -> tuple[Any, float]:
+        """The interval of every segment, and where in it the stage lies (0 to 1)."""
+        steps, per = self.problem.steps, self.problem.intervals // self.segments
+        return np.arange(self.segments) * per + j // steps, (j % steps + NODES[i]) / steps
+
+    def _controls(self, controls: Array, j: int, i: int) -> tuple[Array, Array]:
+        """u (S, m) and t (S,) of a stage."""
+        interval, inside = self._place(j, i)
+        t = self.problem.t + (interval + inside) * (self.problem.horizon / self.problem.intervals)
+        if self.problem.hold == "constant":
+            return controls[interval], t
+        return (1 - inside) * controls[interval] + inside * controls[interval + 1], t
+
+    def _to_nodes(self, parts: Array, bar: Array, j: int, i: int) -> None:
+        """The adjoint of _controls."""
+        _, inside = self._place(j, i)
+        k = j // self.problem.steps
+        if self.problem.hold == "constant":
+            parts[:, :, k] += bar
+        else:
+            parts[:, :, k] += (1 - inside) * bar
+            parts[:, :, k + 1] += inside * bar
+
+    def _joined(self, parts: Array) -> Array:
+        """Derivatives by all nodes, (W, nodes, m)."""
+        W, S, size, m = parts.shape
+        result = np.zeros((W, S * (size - 1) + 1, m))
+        for s in range(S):
+            result[:, s * (size - 1) : (s + 1) * (size - 1) + 1] += parts[:, s]
+        return result[:, : self.problem.nodes]
+
+    def _motion(self, X: Array, controls: Array, j: int, i: int) -> dict[str, Array]:
+        u, t = self._controls(controls, j, i)
+        columns = [(self.state_names, X), (self.equations.controls, u)]
+        return self.motion.evaluate({**self.values, "t": t}, columns=columns)
+
+    def _terminal(self, x: Array, controls: Array) -> dict[str, Array]:
+        t = self.problem.t + self.problem.horizon
+        columns = [(self.state_names, x), (self.equations.controls, controls[-1:])]
+        return self.terminal.evaluate({**self.values, "t": t}, columns=columns)
+
+    def _adjoint(self, run: Rollout, j: int, i: int, bar: Array, weight: Array) -> dict[str, Array]:
+        """dH/d(state, controls, parameters) at a stage for the costates ``bar`` (W, S, 2 n), with minus for states."""
+        n, (W, S, _) = self.model.dof, bar.shape
+        u, t = self._controls(run.controls, j, i)
+        flat = bar.reshape(W * S, 2 * n)
+        mu = cholesky_solve(np.tile(run.metrics[j, i], (W, 1, 1)), flat[:, n:])
+        e = self.equations
+        columns = [
+            (self.state_names, np.tile(run.stages[j, i], (W, 1))),
+            (e.names(primes="''"), np.tile(run.accelerations[j, i], (W, 1))),
+            (self.costate_names, flat),
+            (e.names("mu."), mu),
+            (e.controls, np.tile(u, (W, 1))),
+        ]
+        values = {**self.values, "t": np.tile(t, W), WEIGHT: np.repeat(weight, S)}
+        found = self.adjoint.evaluate(values, columns=columns)
+        return {name: x.reshape(W, S, *x.shape[1:]) for name, x in found.items()}
+
+
+def _constants(model: Model, problem: Problem, equations: AdjointEquations) -> dict[str, Any]:
+    """Parameters and the inputs that are not controlled. Raises MissingValue."""
+    request = {"q": [0.0] * model.dof, "parameters": problem.parameters}
+    known = symbol_values(model, request, read_states(model, request, None), ())
+    values = {name: float(known[name]) for name in model.parameters if name in known}
+    values |= {name: float(problem.inputs.get(name, 0.0)) for name in inputs_of(model)}
+    for symbol in equations.program.symbols:
+        if symbol.kind == "parameter" and symbol.name not in values:
+            raise MissingValue(symbol.name)
+    return {name: x for name, x in values.items() if name not in equations.controls}

@@ -1,0 +1,1 @@
+"""Formulas that follow from g, Gamma and Q: first integrals, perturbation, Routh, quasi-velocities."""

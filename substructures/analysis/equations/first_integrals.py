@@ -1,0 +1,219 @@
+"""First integrals of a model as formulas, each with the reason why it is constant (mathematics.md, section 7).
+
+Energy: H' = Q_a q'^a + V' is the zero formula. Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0,
+then p_c = g_cb q'^b. Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero
+formula, which is so exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
+Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
+g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0.
+What is zero is decided by the graph, where equal formulas are one node, and by :mod:`substructures.expr.vanish`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Literal
+
+from substructures.analysis.equations.energy import Rule, closures_of, depends_on, judged_energy
+from substructures.analysis.equations.formulas import Entries, ModelFormulas
+from substructures.analysis.equations.kernels import Known, known_model
+from substructures.errors import Fault, InvalidDocument
+from substructures.expr.differentiate import directional
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, Program, program
+from substructures.expr.vanish import Vanishing
+from substructures.expr.walk import transfer
+from substructures.tree.model import Model
+
+Kind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
+AXES = "xyz"
+UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
+
+
+@dataclass(frozen=True)
+class Integral:
+    """A quantity of the motion. ``name``: its output in the program.
+
+    ``rule``: ``constant``; ``falling`` (energy with dampers); ``balance`` (energy changes by the power fed in).
+    """
+
+    name: str
+    kind: Kind
+    rule: Rule
+    unit: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class FirstIntegrals:
+    """``program``: an output without axes for every integral, and ``power``: H' [W]. ``cyclic``: coordinates."""
+
+    program: Program
+    integrals: tuple[Integral, ...]
+    cyclic: tuple[str, ...]
+
+    def summary(self) -> dict[str, Any]:
+        """Names, units and reasons as plain data; the formulas are in the program."""
+        return {"integrals": [vars(i) for i in self.integrals], "cyclic": list(self.cyclic)}
+
+
+def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = ()) -> FirstIntegrals:
+    """Everything constant that follows from symmetry, with the energy (also where it is not constant).
+
+    ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
+    What the reactions of closures could change, whatever they are, is not constant.
+    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
+    """
+    known = {s.name for s in model.program.symbols if s.kind == "input"}
+    inputs, zero = list(inputs), list(zero)
+    faults = [
+        Fault(f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
+        for field, names, some in (("inputs", inputs, known), ("parameters", zero, model.parameters))
+        for name in names
+        if name not in some
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
+
+
+@lru_cache(maxsize=32)
+def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) -> FirstIntegrals:
+    model: Model = known.source
+    unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
+    f = ModelFormulas(model, unused | zero)
+    search = _Search(f)
+    search.energy(given)
+    search.momenta()
+    search.cyclic()
+    outputs = {i.name: Formulas((), {(): x}) for i, x in search.found}
+    outputs["power"] = Formulas((), {(): f.power})
+    integrals = tuple(i for i, _ in search.found)
+    return FirstIntegrals(program(f.graph, outputs, f.symbols), integrals, tuple(search.cyclic_names))
+
+
+class _Search:
+    """Integrals found so far, and the tests."""
+
+    def __init__(self, f: ModelFormulas) -> None:
+        self.f, self.zero, self.vanishes = f, f.graph.zero, Vanishing(f.graph)
+        self.found: list[tuple[Integral, Expr]] = []
+        self.cyclic_names: list[str] = []
+
+    def energy(self, given: frozenset[str]) -> None:
+        """H = T + V, unless a varying input is part of V."""
+        judged = judged_energy(self.f, self.vanishes, given)
+        if judged is not None:
+            self.found.append((Integral("energy", "energy", judged[0], "J", judged[1]), self.f.energy))
+
+    def cyclic(self) -> None:
+        """p_c for every coordinate c that neither metric nor forces depend on."""
+        f = self.f
+        gamma, forces = f.elements("christoffel"), f.vector("forces")
+        # d_c g_ab = Gamma_abc + Gamma_bac
+        varied = {c for (a, b, c), x in gamma.items() if not self.vanishes(x + gamma.get((b, a, c), self.zero))}
+        if f.model.closures:
+            varied |= {c for (_, c), x in f.elements("closure.jacobian").items() if not self.vanishes(x)}
+        for c, name in enumerate(f.model.coordinates):
+            if c not in varied and self.vanishes(forces[c]):
+                self.cyclic_names.append(name)
+                unit = "N m s" if f.model.joints[c] == "R" else "N s"
+                reason = f"the metric does not depend on '{name}' and no generalised force acts on it"
+                reason += f"; {closures_of(f.model)} do not depend on it" if f.model.closures else ""
+                self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
+
+    def _note(self, integral: Integral, value: Expr) -> None:
+        """Add an integral; of one that is known already only the reason."""
+        for k, (known, x) in enumerate(self.found):
+            if self.vanishes(x - value) or self.vanishes(x + value):
+                self.found[k] = replace(known, reason=f"{known.reason}; {integral.reason}"), x
+                return
+        self.found.append((integral, value))
+
+    def momenta(self) -> None:
+        """Of the whole system along, and about, the axes of the world and the direction of a constant force."""
+        linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
+        rates = self.f.rate([*linear, *angular])
+        pull = [self._constant(x) or self.zero for x in rates[:3]]
+        kinds: list[Kind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
+        for kind, axis, value, rate in zip(kinds, AXES + AXES, [*linear, *angular], rates, strict=True):
+            if self.vanishes(rate):
+                self._momentum_found(kind, axis, value)
+        self._across(linear, pull)
+        self._about(angular, pull)
+        if not all(self.vanishes(rate) for rate in rates):
+            self._along_axes(linear, angular)
+
+    def _momentum(self, name: str) -> list[Expr]:
+        """Components of sum_a n_a q'^a."""
+        result = [self.zero] * 3
+        for (a, i), x in self.f.elements(name).items():
+            result[i] = result[i] + x * self.f.rates[a]
+        return result
+
+    def _momentum_found(self, kind: Kind, label: str, value: Expr) -> None:
+        if self.vanishes(value):
+            return
+        word = "force along" if kind == "linear_momentum" else "moment about"
+        where = "" if kind == "linear_momentum" else " through the origin"
+        world = f"{closures_of(self.f.model)} and the world" if self.f.model.closures else "the world"
+        reason = f"gravity, loads and {world} exert no resultant {word} {label}{where}"
+        self._note(Integral(f"{kind}.{label}", kind, "constant", UNITS[kind], reason), value)
+
+    def _constant(self, expr: Expr) -> Expr | None:
+        """The value of a formula that depends on parameters only, else None."""
+        states = {s.name for s in self.f.symbols.values() if s.kind != "parameter"}
+        if not depends_on([expr], states):
+            return expr
+        seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}
+        if not self.vanishes(directional([expr], seeds)[0]):
+            return None
+        try:
+            return transfer([expr], self.f.graph, dict.fromkeys(states, self.zero))[0]
+        except ZeroDivisionError:
+            return None
+
+    def _axes(self) -> Iterator[tuple[str, list[Expr]]]:
+        """Axes of joints that keep a direction other than x, y, z in the world: coordinate and direction."""
+        f = self.f
+        rotation = f.elements("rotation")
+        for a, name in enumerate(f.model.coordinates):
+            columns = f.elements("Omega" if f.model.joints[a] == "R" else "U")
+            frame = min((k for k, b, _ in columns if b == a), default=None)
+            if frame is None:
+                continue
+            world = [self._turned(rotation, columns, frame, a, j) for j in range(3)]
+            axis = [x for x in map(self._constant, world) if x is not None]
+            if len(axis) == 3 and sum(not self.vanishes(x) for x in axis) > 1:
+                yield name, axis
+
+    def _turned(self, rotation: Entries, columns: Entries, k: int, a: int, j: int) -> Expr:
+        """Component j in the world of column a of frame k."""
+        pairs = [((k, j, i), (k, a, i)) for i in range(3)]
+        return self.f.graph.sum(rotation[r] * columns[c] for r, c in pairs if r in rotation and c in columns)
+
+    def _along_axes(self, linear: Sequence[Expr], angular: Sequence[Expr]) -> None:
+        """Along and about the axes of joints that keep their direction, through the origin."""
+        for name, axis in self._axes():
+            momenta: list[tuple[Kind, Sequence[Expr]]] = [("linear_momentum", linear), ("angular_momentum", angular)]
+            for kind, some in momenta:
+                value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))
+                if self.vanishes(self.f.rate([value])[0]):
+                    self._momentum_found(kind, f"axis-of-{name}", value)
+
+    def _across(self, linear: Sequence[Expr], pull: Sequence[Expr]) -> None:
+        """Directions in the planes of two axes that are normal to a constant force: p_i - p_j F_i/F_j."""
+        acting = [i for i in range(3) if not self.vanishes(pull[i])]
+        for i in acting[1:]:
+            j = acting[0]
+            value = linear[i] - linear[j] * (pull[i] / pull[j])
+            self._momentum_found("linear_momentum", f"{AXES[i]}-normal-to-force", value)
+
+    def _about(self, angular: Sequence[Expr], pull: Sequence[Expr]) -> None:
+        """The direction of a constant force that is along none of the axes."""
+        acting = [i for i in range(3) if not self.vanishes(pull[i])]
+        if len(acting) > 1:
+            value = self.f.graph.sum(angular[i] * (pull[i] / pull[acting[0]]) for i in acting)
+            if self.vanishes(self.f.rate([value])[0]):
+                self._momentum_found("angular_momentum", "force", value)

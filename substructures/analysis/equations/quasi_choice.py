@@ -1,0 +1,102 @@
+"""Which rows of velocity constraints are independent, and which quasi-velocities describe the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.equations.formulation import Formulation
+from substructures.analysis.equations.velocity_constraints import VelocityConstraints, VelocityRows, linear_row
+from substructures.errors import InvalidDocument
+from substructures.expr.graph import Expr
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Symbol, array, program
+
+Rows = list[list[Expr]]
+
+
+def _numbers(f: Formulation, rows: Sequence[Sequence[Expr]], near: Mapping[str, float] | None = None) -> Any:
+    """Values of rows (K, m, n) at three random states, or ``near`` the given one."""
+    p = program(f.graph, {"x": array((len(rows), f.n), lambda k, a: rows[k][a])}, f.symbols)
+    rng = np.random.default_rng(3)
+    values = {s.name: rng.uniform(0.3, 1.1, 3) for s in p.symbols}
+    if near is not None:
+        values |= {name: np.full(3, near[name]) for name in values if name in near}
+    return interpret(p, values)["x"]
+
+
+def _rank(x: Any) -> int:
+    return int(np.linalg.matrix_rank(x, rtol=1e-9).min()) if x.size else 0
+
+
+def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows, list[str]]:
+    """The rows without those that follow from earlier ones (in general position), and the names of these."""
+    result, dependent = VelocityRows(gaps=given.gaps), []
+    values = _numbers(f, given.rows) if given.rows else np.zeros((3, 0, f.n))
+    kept: list[int] = []
+    for k, label in enumerate(given.labels):
+        if _rank(values[:, [*kept, k]]) > len(kept):
+            kept.append(k)
+            result.add(label, given.rows[k])
+        else:
+            dependent.append(label)
+    return result, dependent
+
+
+def quasi_velocity_rows(
+    f: Formulation, spec: VelocityConstraints, rows: VelocityRows, near: Mapping[str, float] | None
+) -> tuple[list[str], Rows]:
+    """Names of the quasi-velocities and their rows; declares their symbols and those of their rates."""
+    p, coordinates = f.n - len(rows.rows), f.model.coordinates
+    if spec.velocities is not None:
+        names = list(spec.velocities)
+        own = [linear_row(f, text, f"/velocities/{name}") for name, text in spec.velocities.items()]
+        for name in names:
+            if name in f.symbols:
+                f.scope.fault(f"/velocities/{name}", "duplicate-name", f"'{name}' is a symbol of the model")
+        pointer = "/velocities"
+    else:
+        chosen = _chosen(f, rows.rows, near) if spec.independent is None else list(spec.independent)
+        for i, name in enumerate(chosen):
+            if name not in coordinates:
+                f.scope.fault(f"/independent/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+        f.scope.finish()
+        index = [coordinates.index(name) for name in chosen]
+        own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in index]
+        names, pointer = [f"{name}'" for name in chosen], "/independent"
+    f.scope.finish()
+    if len(names) != p:
+        message = f"{f.n} coordinates with {len(rows.rows)} constraints need {p} velocities, {len(names)} given"
+        raise InvalidDocument.at(pointer, "wrong-length", message)
+    for name in names:
+        f.symbols.setdefault(name, Symbol(name, "velocity"))
+        f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration")
+    return names, own
+
+
+def _chosen(f: Formulation, rows: Rows, near: Mapping[str, float] | None) -> list[str]:
+    """Independent coordinates: the dependent ones are taken where the constraints have the simplest coefficients,
+    if these are well conditioned.
+    """
+    if not rows:
+        return list(f.model.coordinates)
+    values = _numbers(f, rows, near)
+    least = _weakest(values)
+    effort = [sum(2 if not x.is_number else 1 for row in rows if not (x := row[a]).is_zero) for a in range(f.n)]
+    order = sorted(range(f.n), key=lambda a: (effort[a] or 99, a))
+    dependent: list[int] = []
+    for share in (0.2, 1e-9):
+        for a in order:
+            columns = [*dependent, a]
+            if a in dependent or len(dependent) == len(rows):
+                continue
+            if _weakest(values[:, :, columns]) > share * least:
+                dependent = columns
+    return [name for a, name in enumerate(f.model.coordinates) if a not in dependent]
+
+
+def _weakest(x: Any) -> float:
+    """The smallest singular value over all states."""
+    return float(np.linalg.svd(x, compute_uv=False).min())

@@ -1,0 +1,215 @@
+"""Equations of motion in quasi-velocities: Voronets and Boltzmann-Hamel (mathematics.md, section 7), as formulas.
+
+With p quasi-velocities v and m constraints, Y q' = (v, 0): the first p rows of Y define v, the others are B. The
+columns of Y^-1 are T (q' = T v) and S (B S = 1). Both forms are g* v' + bias = forces with g* = T^T g T:
+
+    Voronets          bias = T^T (g T' v + Gamma q'q')
+    Boltzmann-Hamel   bias_i = (g*' v)_i - X_i(T*) - c^k_ji v^j p_k,  p = (T S)^T g q',  X_i = T^a_i d/dq^a,
+                      [X_i, X_j] = c^k_ij X_k: the structure coefficients, formed from T
+                      (G. Hamel, Theoretische Mechanik, 1949; A. M. Bloch, J. E. Marsden, D. V. Zenkov, Dynamical
+                      Systems 24, 2009)
+
+====================  =====  ==============================================================================
+output                shape  meaning (n coordinates, p quasi-velocities, m constraints)
+====================  =====  ==============================================================================
+constraints           m n    B
+T                     n p    q' = T v
+rates                 n      T v
+metric                p p    T^T g T
+bias                  p      of Voronets' form
+hamel_bias            p      of the Boltzmann-Hamel form
+forces                p      T^T Q
+structure             n p p  c^k_ij at [k, i, j]
+multipliers           m      lambda in g q'' + Gamma q'q' = Q + B^T lambda; needs v' (``name'``): S^T (g q'' + ... - Q)
+kinetic_energy               T* = v^T g* v / 2 [J]
+potential_energy             of gravity and springs [J]
+lost_power                   power of the forces without potential [W]
+gaps                  k      constant [m, 1]: distances of rolling bodies from planes, residuals of closures
+====================  =====  ==============================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from substructures.analysis.equations.cofactors import inverse
+from substructures.analysis.equations.formulation import Elements, Formulation
+from substructures.analysis.equations.quasi_choice import Rows, independent_rows, quasi_velocity_rows
+from substructures.analysis.equations.velocity_constraints import VelocityConstraints, velocity_rows
+from substructures.errors import InvalidDocument
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.tree.model import Model
+
+DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
+
+
+@dataclass(frozen=True)
+class QuasiVelocities:
+    """The equations (the table above) with names: quasi-velocities v, constraint rows, gaps; rows left out because
+    they follow from others (``dependent``).
+    """
+
+    model: Model
+    program: Program
+    velocities: tuple[str, ...]
+    constraints: tuple[str, ...]
+    gaps: tuple[str, ...]
+    dependent: tuple[str, ...]
+
+
+def quasi_velocity_equations(
+    model: Model, document: Mapping[str, Any], near: Mapping[str, float] | None = None
+) -> QuasiVelocities:
+    """The equations of a model with velocity constraints, all formulas.
+
+    ``document``: see :class:`VelocityConstraints`; ``near``: values of coordinates and parameters at which quasi-
+    velocities that are not given should describe the motion well. Raises InvalidDocument (pointers into the document):
+    constraints that are not linear, quasi-velocities that do not determine the velocities; TooLarge.
+    """
+    return velocity_equations(model, VelocityConstraints.read(document), near)
+
+
+def velocity_equations(
+    model: Model, spec: VelocityConstraints, near: Mapping[str, float] | None = None
+) -> QuasiVelocities:
+    """quasi_velocity_equations for a document that was read."""
+    f = Formulation(model)
+    given = velocity_rows(f, spec.constraints)
+    rows, dependent = independent_rows(f, given)
+    names, own = quasi_velocity_rows(f, spec, rows, near)
+    Y = [*own, *rows.rows]
+    inverted = inverse(Y)
+    if inverted is None:
+        pointer = "/independent" if spec.velocities is None else "/velocities"
+        message = "these velocities and the constraints do not determine the velocities of all coordinates"
+        raise InvalidDocument.at(pointer, "dependent", message)
+    equations = _Equations(f, names, Y, inverted)
+    outputs = equations.outputs()
+    gaps = list(rows.gaps.values())
+    if gaps:
+        outputs["gaps"] = array((len(gaps),), lambda k: gaps[k])
+    result = program(f.graph, outputs, f.symbols)
+    return QuasiVelocities(model, result, tuple(names), tuple(rows.labels), tuple(rows.gaps), tuple(dependent))
+
+
+class _Equations:
+    """The outputs, from Y and its inverse."""
+
+    def __init__(self, f: Formulation, names: Sequence[str], Y: Rows, inverted: Rows) -> None:
+        self.f, self.n, self.p, self.Y = f, f.n, len(names), Y
+        self.T = [row[: self.p] for row in inverted]
+        self.S = [row[self.p :] for row in inverted]
+        self.v = [f.graph.symbol(name) for name in names]
+        self.dv = [f.graph.symbol(f"{name}'") for name in names]
+        self.rates = self._times(self.T, self.v)
+        bound = {f"{name}'": x for name, x in zip(f.model.coordinates, self.rates, strict=True)}
+        self.model = f.outputs(DYNAMICS, bound)
+        #: dT[a][i][b] = d T^a_i / dq^b
+        self.dT = [gradient(row, f.model.coordinates) for row in self.T]
+
+    def outputs(self) -> dict[str, Formulas]:
+        """All of the table but the gaps."""
+        n, p = self.n, self.p
+        g, Q = self.model["metric"], self._vector("forces")
+        gT = [[self._sum(g.get((a, b), 0) * self.T[b][i] for b in range(n)) for i in range(p)] for a in range(n)]
+        reduced = [[self._sum(self.T[a][i] * gT[a][j] for a in range(n)) for j in range(p)] for i in range(p)]
+        momentum = self._times(gT, self.v)
+        # T' v with T'^a_i = d_b T^a_i q'^b
+        turning = [self._sum(self._slope(a, i) * self.v[i] for i in range(p)) for a in range(n)]
+        carried = self._product(g, turning)
+        inertial = [x + y for x, y in zip(carried, self._vector("bias"), strict=True)]
+        missing = [self._sum(gT[a][i] * self.dv[i] for i in range(p)) + inertial[a] - Q[a] for a in range(n)]
+        structure = self._structure()
+        hamel = self._hamel(momentum, carried, structure)
+        B = self.Y[p:]
+        energy = self._sum(m * x for m, x in zip(momentum, self.rates, strict=True)) / 2
+        return {
+            "constraints": array((n - p, n), lambda k, a: B[k][a]),
+            "T": array((n, p), lambda a, i: self.T[a][i]),
+            "rates": array((n,), lambda a: self.rates[a]),
+            "metric": Formulas((p, p), {(i, j): reduced[i][j] for i in range(p) for j in range(i, p)}, "symmetric"),
+            "bias": array((p,), lambda i: self._column(self.T, i, inertial)),
+            "hamel_bias": array((p,), lambda i: hamel[i]),
+            "forces": array((p,), lambda i: self._column(self.T, i, Q)),
+            "structure": Formulas((n, p, p), structure),
+            "multipliers": array((n - p,), lambda k: self._column(self.S, k, missing)),
+            "kinetic_energy": array((), lambda: energy),
+            "potential_energy": Formulas((), self.model["potential_energy"]),
+            "lost_power": array((), lambda: self._lost_power(Q)),
+        }
+
+    def _hamel(self, momentum: Sequence[Expr], carried: Sequence[Expr], structure: Elements) -> list[Expr]:
+        """g*' v - X_i(T*) - c^k_ji v^j p_k; ``carried`` = g T' v."""
+        n, p, v = self.n, self.p, self.v
+        christoffel = self.model["christoffel"]
+        zero = self.f.graph.zero
+        # (g' q')_a = (Gamma_abc + Gamma_bac) q'^b q'^c and d_b T at fixed velocities = Gamma_acb q'^a q'^c
+        changing, sloping = [zero] * n, [zero] * n
+        for (a, b, c), gamma in christoffel.items():
+            changing[a] = changing[a] + gamma * (self.rates[b] * self.rates[c])
+            changing[b] = changing[b] + gamma * (self.rates[a] * self.rates[c])
+            sloping[c] = sloping[c] + gamma * (self.rates[a] * self.rates[b])
+        # p of all n quasi-velocities, the constrained ones included
+        p_all = [self._column(self.T, i, momentum) for i in range(p)]
+        p_all += [self._column(self.S, k, momentum) for k in range(n - p)]
+        result = []
+        for i in range(p):
+            growing = self._sum(self._slope(a, i) * momentum[a] for a in range(n))
+            growing = growing + self._column(self.T, i, [x + y for x, y in zip(changing, carried, strict=True)])
+            along = self._column(self.T, i, sloping)
+            along = along + self._sum(
+                self.T[b][i] * (momentum[a] * self.dT[a][j][b] * v[j])
+                for b in range(n)
+                for a in range(n)
+                for j in range(p)
+                if not self.dT[a][j][b].is_zero
+            )
+            twist = self._sum(c * v[j] * p_all[k] for (k, j, i2), c in structure.items() if i2 == i)
+            result.append(growing - along - twist)
+        return result
+
+    def _structure(self) -> Elements:
+        """c^k_ij = Y^k_a (T^b_i d_b T^a_j - T^b_j d_b T^a_i)."""
+        n, p = self.n, self.p
+        result: Elements = {}
+        for i in range(p):
+            for j in range(i + 1, p):
+                bracket = [self._along(i, a, j) - self._along(j, a, i) for a in range(n)]
+                for k in range(n):
+                    c = self._sum(self.Y[k][a] * bracket[a] for a in range(n))
+                    if not c.is_zero:
+                        result[k, i, j], result[k, j, i] = c, -c
+        return result
+
+    def _along(self, i: int, a: int, j: int) -> Expr:
+        """X_i(T^a_j)."""
+        return self._sum(self.T[b][i] * self.dT[a][j][b] for b in range(self.n))
+
+    def _slope(self, a: int, i: int) -> Expr:
+        """T'^a_i = d_b T^a_i q'^b."""
+        return self._sum(self.dT[a][i][b] * self.rates[b] for b in range(self.n))
+
+    def _lost_power(self, Q: Sequence[Expr]) -> Expr:
+        potential = self.f.graph.zero + self.model["potential_energy"].get((), 0)
+        (slopes,) = gradient([potential], self.f.model.coordinates)
+        return self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
+
+    def _sum(self, terms: Any) -> Expr:
+        return self.f.graph.sum(self.f.graph.zero + x for x in terms)
+
+    def _vector(self, name: str) -> list[Expr]:
+        return [self.f.graph.zero + self.model[name].get((a,), 0) for a in range(self.n)]
+
+    def _times(self, matrix: Rows, x: Sequence[Expr]) -> list[Expr]:
+        return [self._sum(m * y for m, y in zip(row, x, strict=True)) for row in matrix]
+
+    def _product(self, g: Elements, x: Sequence[Expr]) -> list[Expr]:
+        return [self._sum(g.get((a, b), 0) * x[b] for b in range(self.n)) for a in range(self.n)]
+
+    def _column(self, matrix: Rows, i: int, x: Sequence[Expr]) -> Expr:
+        """M^T x at i."""
+        return self._sum(row[i] * y for row, y in zip(matrix, x, strict=True))

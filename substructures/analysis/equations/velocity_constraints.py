@@ -1,0 +1,211 @@
+"""Constraints that are linear in the velocities, B(q) q' = 0: given as expressions, or as contacts.
+
+===========  =====================================================================================================
+type         rows
+===========  =====================================================================================================
+linear       ``expression`` in velocities (arm.q1'), coordinates and parameters; linear and homogeneous in velocities
+knife_edge   the origin of ``frame`` does not move along its second axis (the edge is along the first): U_a2
+rolling      the body of ``frame`` rolls without slip on a plane: U_a + Omega_a x rho in the axes of the plane, three
+             rows ``slip_1``, ``slip_2`` and ``contact``; rho leads from the origin of the frame to the contact point
+closure      the rows of a closure of the tree, differentiated by time: G q' = 0. With them the equations of a closed
+             mechanism are formulas in independent velocities; its positions must meet the closures from the start
+===========  =====================================================================================================
+
+A rolling disc has its axis along the third axis e of the frame: rho = -r (N - (N.e) e) / |N - (N.e) e|, N the normal of
+the plane; a sphere has rho = -r N. The row ``contact`` has the integral N . c + N . rho = const, the gap.
+(H. Goldstein, Classical Mechanics, 2nd ed. 1980, section 1-3; Ju. I. Neimark and N. A. Fufaev, Dynamics of Nonholonomic
+Systems, AMS 1972.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from substructures.analysis.equations.formulation import Formulation
+from substructures.documents import DocumentPart, read_model
+from substructures.documents.fields import Name, Number
+from substructures.errors import InvalidDocument
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr
+from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
+from substructures.part.frames import axis_rotation
+
+FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
+
+
+class Linear(DocumentPart):
+    """An expression that is zero, linear in the velocities."""
+
+    type: Literal["linear"]
+    name: Name
+    expression: str
+
+
+class KnifeEdge(DocumentPart):
+    """A skate: no velocity across the edge, which lies along the first axis of the frame."""
+
+    type: Literal["knife_edge"]
+    name: Name
+    frame: FrameName
+
+
+class Rolling(DocumentPart):
+    """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
+
+    type: Literal["rolling"]
+    name: Name
+    frame: FrameName
+    radius: Number = Field(description="m")
+    shape: Literal["disc", "sphere"] = "disc"
+    normal: tuple[Number, Number, Number] = Field((0, 0, 1), description="of the plane in the world (constant)")
+
+
+class Closed(DocumentPart):
+    """A closure of the tree, by its name."""
+
+    type: Literal["closure"]
+    name: Name
+
+
+Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
+
+
+class VelocityConstraints(DocumentPart):
+    """Constraints, and the quasi-velocities in which the motion is described.
+
+    ``velocities``: as many as the constraints leave free, by name, each an expression linear in the velocities; or
+    ``independent``: the coordinates whose velocities are used; default: chosen for short formulas.
+    """
+
+    constraints: tuple[Constraint, ...] = Field((), max_length=100)
+    velocities: dict[Name, str] | None = Field(None, max_length=100)
+    independent: tuple[str, ...] | None = Field(None, max_length=500)
+
+    @classmethod
+    def read(cls, data: Any) -> VelocityConstraints:
+        """From plain data. Raises InvalidDocument with a pointer to every fault."""
+        return read_model(cls, data)
+
+
+@dataclass
+class VelocityRows:
+    """Rows of B with their names (constraint, or constraint.row), and what they keep constant by name: the gaps of
+    rolling contacts and the residuals of closures.
+    """
+
+    labels: list[str] = field(default_factory=list)
+    rows: list[list[Expr]] = field(default_factory=list)
+    gaps: dict[str, Expr] = field(default_factory=dict)
+
+    def add(self, label: str, row: list[Expr]) -> None:
+        """A row, unless it is zero as a formula."""
+        if any(not x.is_zero for x in row):
+            self.labels.append(label)
+            self.rows.append(row)
+
+
+def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
+    """The rows of all constraints. Raises InvalidDocument, also for a closure of the model that is not among them."""
+    _require_closed(f, constraints)
+    result = VelocityRows()
+    framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
+    kinematics = f.kinematics() if framed else {}
+    for i, constraint in enumerate(constraints):
+        pointer = f"/constraints/{i}"
+        if isinstance(constraint, Linear):
+            result.add(constraint.name, linear_row(f, constraint.expression, f"{pointer}/expression"))
+        elif isinstance(constraint, Closed):
+            _close(f, constraint.name, f"{pointer}/name", result)
+        elif constraint.frame not in f.model.frames:
+            known = ", ".join(f.model.frames[:20])
+            message = f"unknown frame '{constraint.frame}'; there are {known}"
+            f.scope.fault(f"{pointer}/frame", "unknown-frame", message)
+        else:
+            frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
+            if isinstance(constraint, KnifeEdge):
+                result.add(constraint.name, [U[1] for U in frame.U])
+            else:
+                _roll(f, constraint, pointer, frame, result)
+    names = [c.name for c in constraints]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            f.scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
+    f.scope.finish()
+    return result
+
+
+class _Frame:
+    """Kinematics of one frame: rotation to the world, origin, U and Omega of every coordinate in its axes."""
+
+    def __init__(self, f: Formulation, kinematics: Mapping[str, Mapping[tuple[int, ...], Expr]], k: int) -> None:
+        zero = f.graph.zero
+
+        def vector(name: str, *index: int) -> Vector:
+            x, y, z = (kinematics[name].get((k, *index, i), zero) for i in range(3))
+            return x, y, z
+
+        self.R: Matrix = (vector("rotation", 0), vector("rotation", 1), vector("rotation", 2))
+        self.c = vector("position")
+        self.U = [vector("U", a) for a in range(f.n)]
+        self.Omega = [vector("Omega", a) for a in range(f.n)]
+
+
+def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
+    """Every closure of the model is among the constraints; else it would be open."""
+    given = {c.name for c in constraints if isinstance(c, Closed)}
+    for rows in f.model.closures:
+        if rows.name not in given:
+            message = f"the closure '{rows.name}' is not among them: add {{'name': '{rows.name}', 'type': 'closure'}}"
+            raise InvalidDocument.at("/constraints", "open-closure", message)
+
+
+def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:
+    names = [(rows.name, row) for rows in f.model.closures for row in rows.rows]
+    if name not in {closure for closure, _ in names}:
+        known = ", ".join(rows.name for rows in f.model.closures) or "none"
+        f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'; there are {known}")
+        return
+    found = f.outputs(["closure.jacobian", "closure.residual"])
+    zero = f.graph.zero
+    for k, (closure, row) in enumerate(names):
+        residual = found["closure.residual"].get((k,), zero)
+        if closure == name and not residual.is_zero:
+            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
+            result.gaps[f"{name}.{row}"] = residual
+
+
+def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
+    radius = f.scope.read(c.radius, f"{pointer}/radius")
+    plane = axis_rotation(f.scope, c.normal, f"{pointer}/normal")
+    normal = plane[2]
+    n = apply(transpose(frame.R), normal)
+    if c.shape == "disc":
+        across = n[0] * n[0] + n[1] * n[1]
+        if (f.graph.zero + across).is_zero:
+            f.scope.fault(f"{pointer}/frame", "flat-disc", "the axis of the disc is the normal of the plane")
+            return
+        width = f.graph.sqrt(f.graph.zero + across)
+        rho: Vector = (-(radius * n[0]) / width, -(radius * n[1]) / width, f.graph.zero)
+    else:
+        rho = (-(radius * n[0]), -(radius * n[1]), -(radius * n[2]))
+    columns = []
+    for U, Omega in zip(frame.U, frame.Omega, strict=True):
+        columns.append(apply(plane, apply(frame.R, add(U, cross(Omega, rho)))))
+    for i, row in enumerate(("slip_1", "slip_2", "contact")):
+        result.add(f"{c.name}.{row}", [f.graph.zero + column[i] for column in columns])
+    result.gaps[c.name] = f.graph.zero + dot(normal, frame.c) + dot(n, rho)
+
+
+def linear_row(f: Formulation, text: str, pointer: str) -> list[Expr]:
+    """Coefficients of the velocities in an expression that is linear and homogeneous in them; else a fault is noted."""
+    x = f.scope.read(text, pointer)
+    rates = [f"{name}'" for name in f.model.coordinates]
+    (row,) = gradient([x], rates)
+    rest = x - f.graph.sum(c * f.graph.symbol(v) for c, v in zip(row, rates, strict=True))
+    if not rest.is_zero or any(not d.is_zero for some in gradient(row, rates) for d in some):
+        f.scope.fault(pointer, "not-linear", "the expression must be linear and homogeneous in the velocities")
+    return row

@@ -1,0 +1,1 @@
+"""Which inertial parameters a motion depends on, and their values from measurements."""

@@ -1,0 +1,225 @@
+"""Base inertial parameters: the combinations of the standard ones that motion and forces depend on, exactly.
+
+Inverse dynamics is Y(q, q', q'') pi. Columns of Y are linearly dependent: with an independent set Y_B, as far left as
+possible, the others are Y_D = Y_B C with constant C, and
+
+    Y pi = Y_B beta,        beta = pi_B + C pi_D
+
+(M. Gautier and W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions
+on Robotics and Automation 6(3), 1990; H. Mayeda, K. Yoshida and K. Osuka, Base parameters of manipulator dynamic
+models, the same issue). The parts of Y that are quadratic in q' are Christoffel symbols of the parts linear in q'', so
+
+    Y c = 0 for all q, q', q''    if and only if    sum_i c_i g^i_ab(q) = 0  and  sum_i c_i G_ai(q) = 0
+
+with the metric g^i and the gravity forces G_i of parameter i put to one: functions of q alone, whose dependencies
+are found by :mod:`.dependencies`. C is a function of the kinematic parameters that are free, and these count as
+general: bind parameters to numbers where special ones (a zero, a right angle) matter.
+
+Drives add columns: ``armature`` q'' [kg m^2, kg], ``viscous`` q' [N m s, N s/m], ``coulomb`` sign(q') [N m, N] and
+``offset`` 1 [N m, N] of every joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, TypeVar
+
+from substructures.analysis.identification.dependencies import Dependencies, Functions, dependencies
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.expand import expand
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.modular import Field, NoSquareRoot
+from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.replay import replay
+from substructures.expr.walk import transfer
+from substructures.printers import entries
+from substructures.quantities.regressor import RegressorModel
+from substructures.tree.model import require_open
+
+DRIVES = ("armature", "viscous", "coulomb", "offset")
+#: unit of a drive's parameter, for revolute and prismatic joints
+DRIVE_UNITS = {
+    "armature": ("kg m^2", "kg"),
+    "viscous": ("N m s/rad", "N s/m"),
+    "coulomb": ("N m", "N"),
+    "offset": ("N m", "N"),
+}
+#: primes that are tried until one has all square roots
+MAX_FIELDS = 10_000
+#: terms of a coefficient that is written in its canonical form
+READABLE = 50
+
+#: a formula, or a value in the field
+X = TypeVar("X", Expr, int)
+
+
+@dataclass(frozen=True)
+class BaseParameters:
+    """beta, its regressor, and how it consists of the standard parameters.
+
+    ``program``: outputs ``base_regressor`` (n, b), ``grouping`` (b, p): [1 C] in the order of the standard parameters,
+    beta = grouping pi, and ``base_parameters`` (b,): beta as a function of the free parameters (drives have no formulas
+    and count as zero there). ``standard``, ``units``: names and units of all p standard parameters; ``base``: numbers
+    of those that stand for a base parameter each; ``unseen``: names of those that have no influence at all.
+    """
+
+    program: Program
+    coordinates: tuple[str, ...]
+    joints: str
+    standard: tuple[str, ...]
+    units: tuple[str, ...]
+    base: tuple[int, ...]
+    unseen: tuple[str, ...]
+    drives: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+
+    @property
+    def count(self) -> int:
+        """The number b of base parameters."""
+        return len(self.base)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The standard parameters by which the base parameters are named."""
+        return tuple(self.standard[i] for i in self.base)
+
+    def combinations(self) -> dict[str, dict[str, str]]:
+        """Every base parameter as a sum: coefficient (text) by standard parameter. Raises TooLarge for long ones."""
+        found: dict[str, dict[str, str]] = {name: {} for name in self.names}
+        for entry in entries(self.program, "grouping", "text"):
+            b, i = entry["index"]
+            found[self.names[b]][self.standard[i]] = str(entry["formula"])
+        return found
+
+
+def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:
+    """The base parameters of a tree, from its regressor; ``drives``: some of DRIVES.
+
+    Raises InvalidDocument for an unknown drive and for closures, TooLarge (size, limit).
+    """
+    require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
+    for i, name in enumerate(drives):
+        if name not in DRIVES:
+            message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}"
+            raise InvalidDocument.at(f"/drives/{i}", "unknown-drive", message)
+    columns = _Columns(Y, tuple(dict.fromkeys(drives)))
+    found = dependencies(columns.functions())
+    result = _program(Y, columns, found)
+    unseen = tuple(columns.names[j] for j, c in found.others.items() if not c)
+    used = {symbol.name for symbol in result.symbols}
+    parameters = {name: value for name, value in Y.parameters.items() if name in used}
+    return BaseParameters(
+        result, Y.coordinates, Y.joints, columns.names, columns.units, found.base, unseen, columns.drives, parameters
+    )
+
+
+class _Columns:
+    """The columns of Y and of the drives."""
+
+    def __init__(self, Y: RegressorModel, drives: tuple[str, ...]) -> None:
+        self.Y, self.drives, self.n = Y, drives, len(Y.coordinates)
+        pairs = [(kind, a) for kind in drives for a in range(self.n)]
+        self.names = (*Y.names, *(f"{Y.coordinates[a]}.{kind}" for kind, a in pairs))
+        self.units = (*Y.units, *(DRIVE_UNITS[kind][Y.joints[a] == "P"] for kind, a in pairs))
+        self.pairs = list(enumerate(pairs, len(Y.names)))
+
+    def regressor(self, graph: Graph, bindings: Mapping[str, Expr]) -> dict[tuple[int, int], Expr]:
+        """[a, i] of Y for these values of symbols."""
+        found = replay(self.Y.program, graph, bindings, ["regressor"])["regressor"].entries
+        return {(index[0], index[1]): x for index, x in found.items() if isinstance(x, Expr) and not x.is_zero}
+
+    def full(self, graph: Graph) -> dict[tuple[int, int], Expr]:
+        """[a, i] with the columns of the drives."""
+        result = self.regressor(graph, {})
+        for i, (kind, a) in self.pairs:
+            name = self.Y.coordinates[a]
+            speed = graph.symbol(f"{name}'")
+            values = {
+                "armature": graph.symbol(f"{name}''"),
+                "viscous": speed,
+                "coulomb": graph.function("sign", speed),
+                "offset": graph.one,
+            }
+            result[a, i] = values[kind]
+        return result
+
+    def functions(self) -> Functions:
+        """The functions of q alone, with a field that holds all square roots that occur."""
+        names = [s.name for s in self.Y.program.symbols if s.kind == "parameter"]
+        angular = [joint == "R" for joint in self.Y.joints]
+        for _ in range(MAX_FIELDS):
+            field = Field()
+            symbols = {name: field.draw() for name in names}
+            # a trial finds out whether the field holds the roots
+            with suppress(NoSquareRoot, ZeroDivisionError):
+                self._random(field, symbols)
+                random = partial(self._random, field, symbols)
+                return Functions(len(self.names), angular, field, random, self._exact, symbols)
+        raise TooLarge("the search for a field with all square roots (in primes)", MAX_FIELDS + 1, MAX_FIELDS)
+
+    def _random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
+        """Rows at a random point of the field."""
+        at = {**symbols, **{name: field.draw() for name in self.Y.coordinates}}
+
+        def regressor(motion: Mapping[str, int]) -> dict[tuple[int, ...], int]:
+            return field.evaluate(self.Y.program, {**at, **motion}, "regressor")
+
+        return self._rows(regressor, 0, 1)
+
+    def _exact(self, graph: Graph, q: Sequence[Expr]) -> list[dict[int, Expr]]:
+        """Rows of formulas at q."""
+        at = dict(zip(self.Y.coordinates, q, strict=True))
+        return self._rows(lambda motion: self.regressor(graph, {**at, **motion}), graph.zero, graph.one)
+
+    def _rows(self, regressor: Callable[[Mapping[str, X]], Mapping[Any, X]], zero: X, one: X) -> list[dict[int, X]]:
+        """g^i_ab (a <= b) and G_ai, and one row for each friction."""
+        still = {f"{name}{primes}": zero for name in self.Y.coordinates for primes in ("'", "''")}
+        static = regressor(still)
+        rows: dict[tuple[str, int, int], dict[int, X]] = {}
+        for (a, i), x in static.items():
+            rows.setdefault(("static", a, a), {})[i] = x
+        for b, name in enumerate(self.Y.coordinates):
+            for (a, i), x in regressor(still | {f"{name}''": one}).items():
+                if a <= b:
+                    rows.setdefault(("metric", a, b), {})[i] = x - static.get((a, i), zero)
+        kinds = {"armature": "metric", "offset": "static"}
+        for i, (kind, a) in self.pairs:
+            rows.setdefault((kinds.get(kind, kind), a, a), {})[i] = one
+        return list(rows.values())
+
+
+def _program(Y: RegressorModel, columns: _Columns, found: Dependencies) -> Program:
+    """The three outputs, with coefficients in their canonical form."""
+    # constants first: no coefficient may be written in the coordinates of an equal node of Y
+    graph, place = Graph(), {b: k for k, b in enumerate(found.base)}
+    grouping: dict[tuple[int, ...], Expr | int] = {(k, b): graph.one for b, k in place.items()}
+    for j, coefficients in found.others.items():
+        grouping |= {(place[b], j): _readable(c, graph) for b, c in coefficients.items()}
+    pi = replay(Y.program, graph, {}, ["inertial_parameters"])["inertial_parameters"].entries
+    beta = [graph.zero] * len(place)
+    for (k, i), c in grouping.items():
+        beta[k] = beta[k] + c * (pi.get((i,), 0) + graph.zero)
+    full = columns.full(graph).items()
+    Y_B: dict[tuple[int, ...], Expr | int] = {(a, place[i]): x for (a, i), x in full if i in place}
+    symbols = {s.name: s for s in Y.program.symbols}
+    for name, joint in zip(Y.coordinates, Y.joints, strict=True):
+        unit = "m" if joint == "P" else "rad"
+        symbols[f"{name}'"] = Symbol(f"{name}'", "velocity", f"{unit}/s")
+        symbols[f"{name}''"] = Symbol(f"{name}''", "acceleration", f"{unit}/s^2")
+    outputs = {
+        "base_regressor": Formulas((columns.n, len(place)), Y_B),
+        "grouping": Formulas((len(place), len(columns.names)), grouping),
+        "base_parameters": array((len(place),), lambda k: beta[k]),
+    }
+    return program(graph, outputs, symbols)
+
+
+def _readable(x: Expr, graph: Graph) -> Expr:
+    """The canonical form where it is small."""
+    try:
+        return expand(x, READABLE).to_expr(graph)
+    except TooLarge:
+        return transfer([x], graph, {})[0]

@@ -1,0 +1,202 @@
+"""Base parameters from measured motion: excitation, least squares, standard deviations.
+
+With the base regressor of N samples stacked to W (N n, b), and the actuator forces to the vector tau
+
+    beta = argmin |D^-1 (W beta - tau + known)|^2,        cov(beta) = (W^T D^-2 W)^-1
+
+where D holds the standard deviation of every joint's force, estimated from its residual and used as weight in a second
+pass (M. Gautier, Dynamic identification of robots with power model, IEEE ICRA 1997; J. Swevers et al., Optimal robot
+excitation and identification, IEEE Transactions on Robotics and Automation 13(5), 1997). ``known`` are forces that are
+no inertial forces: springs, dampers, loads and armature of a model with known values, where one is given.
+
+Excitation is judged by the singular values of W with columns scaled to length one: a motion excites a combination of
+parameters well when its singular value is not small beside the largest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.array import Array
+from substructures.errors import InvalidDocument
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.states import numeric, read_states, symbol_values
+from substructures.tree.model import Model
+
+#: a scaled regressor of a larger condition number is badly excited
+LIMIT = 1e3
+#: relative size of a singular value that counts as zero
+RANK = 1e-10
+REGRESSOR, OWN = "base_regressor", "base_parameters"
+FIELDS = frozenset(("q", "qd", "qdd", "tau", "parameters"))
+
+
+@dataclass(frozen=True)
+class _Data:
+    """A motion (N, n each), and outputs of the program along it."""
+
+    q: Array
+    qd: Array
+    qdd: Array
+    outputs: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """How well given motion excites the base parameters ``names`` (b).
+
+    ``singular_values`` (b,) and ``condition`` of the stacked base regressor with columns of length one; ``rank``;
+    ``weak``: those that take part in badly excited combinations (their share in singular vectors below the limit), the
+    worst first; ``is_good``; ``advice``.
+    """
+
+    names: tuple[str, ...]
+    singular_values: Array
+    condition: float
+    rank: int
+    weak: tuple[str, ...]
+
+    @property
+    def is_good(self) -> bool:
+        """Every base parameter is excited, and the condition number is moderate."""
+        return self.rank == len(self.names) and self.condition <= LIMIT
+
+    @property
+    def advice(self) -> str:
+        """What to change."""
+        if self.is_good:
+            return ""
+        return "move more joints at a time, faster and farther, so that these parameters show: " + ", ".join(self.weak)
+
+
+@dataclass(frozen=True)
+class Identification:
+    """``values`` (b,) in ``units``, their ``deviations`` (b,) (standard), ``residual`` (n,): root mean square of the
+    force that is not explained, by joint [N m, N]; ``excitation``. ``status``: identified; failed where the motion does
+    not excite all base parameters (``values`` is then the solution of least length)."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: Array
+    deviations: Array
+    residual: Array
+    excitation: Excitation
+    status: Literal["identified", "failed"]
+    message: str
+
+
+def excitation(base: BaseParameters, request: Mapping[str, Any]) -> Excitation:
+    """How well motion q, qd, qdd (N, n each) excites the base parameters. Raises InvalidDocument, MissingValue."""
+    return _excitation(base.names, _stacked(base, request).outputs[REGRESSOR])
+
+
+def identify(base: BaseParameters, request: Mapping[str, Any], model: Model | None = None) -> Identification:
+    """Base parameters from q, qd, qdd and tau (N, n each), and ``parameters`` for kinematic parameters.
+
+    ``model``: whose springs, dampers, loads and armature are known (its masses do not matter, drives are found as
+    differences to its own); without one ``tau`` is explained by the base parameters alone. Raises InvalidDocument with
+    pointers, and MissingValue.
+    """
+    data = _stacked(base, request, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
+    W, tau, b = data.outputs[REGRESSOR], _forces(request, data), base.count
+    if model is not None:
+        tau = tau - _known(model, request, data)
+    judged = _excitation(base.names, W)
+    if W.shape[0] * W.shape[1] <= b:
+        message = f"{len(W)} samples of {W.shape[1]} joints cannot determine {b} parameters: give more"
+        raise InvalidDocument.at("/q", "too-few", message)
+    flat, force = W.reshape(-1, b), tau.reshape(-1)
+    first = _solved(flat, force)
+    sigma = np.sqrt(np.mean((tau - W @ first) ** 2, axis=0))
+    # a joint that is explained to rounding must not take all the weight
+    least = 1e-12 * float(np.abs(tau).max(initial=0)) or 1.0
+    weight = np.tile(1 / np.maximum(sigma, least), len(W))
+    values = _solved(flat * weight[:, None], force * weight)
+    residual = tau - W @ values
+    spread = _deviations(flat * weight[:, None], residual.reshape(-1) * weight)
+    full = judged.rank == b
+    return Identification(
+        base.names,
+        tuple(base.units[i] for i in base.base),
+        values,
+        spread,
+        np.sqrt(np.mean(residual**2, axis=0)),
+        judged,
+        "identified" if full else "failed",
+        "" if full else judged.advice,
+    )
+
+
+def _stacked(base: BaseParameters, request: Mapping[str, Any], names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
+    """Outputs of the program for the motion of a request."""
+    for key in request:
+        if key not in FIELDS:
+            raise InvalidDocument.at(f"/{key}", "unknown-field", f"unknown field '{key}'")
+    view = Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+    states = read_states(view, request, None)
+    if states.qdd is None:
+        raise InvalidDocument.at("/qdd", "missing", "accelerations 'qdd' are needed")
+    values = symbol_values(view, request, states, ())
+    values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(base.coordinates)}
+    return _Data(states.q, states.qd, states.qdd, interpret_in_blocks(base.program, values, names, len(states.q)))
+
+
+def _forces(request: Mapping[str, Any], data: _Data) -> Array:
+    given = request.get("tau")
+    if given is None:
+        raise InvalidDocument.at("/tau", "missing", "actuator forces 'tau' are needed")
+    tau = np.atleast_2d(numeric(given, "/tau"))
+    if tau.shape != data.q.shape:
+        message = f"shape {tau.shape} found, {data.q.shape} expected"
+        raise InvalidDocument.at("/tau", "wrong-length", message)
+    return tau
+
+
+def _known(model: Model, request: Mapping[str, Any], data: _Data) -> Array:
+    """Inverse dynamics of the model without its inertial forces: less Y_B beta of its own values."""
+    given = (request.get("parameters") or {}).items()
+    common = {"q": data.q, "qd": data.qd, "qdd": data.qdd, "quantities": ["inverse_dynamics"]}
+    answer = evaluate(model, {**common, "parameters": {name: x for name, x in given if name in model.parameters}})
+    inertial = np.einsum("nab,nb->na", data.outputs[REGRESSOR], data.outputs[OWN])
+    return np.asarray(answer["inverse_dynamics"] - inertial, dtype=np.float64)
+
+
+def _excitation(names: tuple[str, ...], W: Array) -> Excitation:
+    flat = W.reshape(-1, len(names))
+    length = np.linalg.norm(flat, axis=0)
+    scaled = flat / np.where(length > 0, length, 1.0)
+    _, s, V = np.linalg.svd(scaled, full_matrices=len(scaled) < len(names))
+    values = np.zeros(len(names))
+    values[: len(s)] = s
+    top = float(values.max(initial=0))
+    bad = values * LIMIT < top if top else np.ones(len(names), dtype=bool)
+    # the share of every parameter in the badly excited combinations
+    share = np.sqrt(np.sum(V[bad] ** 2, axis=0)) if bad.any() else np.zeros(len(names))
+    worst = [int(i) for i in np.argsort(-share, kind="stable") if share[i] > 0.3]
+    least = float(values.min(initial=np.inf))
+    condition = top / least if least > RANK * top else float("inf")
+    return Excitation(names, values, condition, int(np.sum(values > RANK * top)), tuple(names[i] for i in worst))
+
+
+def _solved(W: Array, tau: Array) -> Array:
+    """Least squares with columns of length one."""
+    length = np.linalg.norm(W, axis=0)
+    scale = np.where(length > 0, length, 1.0)
+    return np.asarray(np.linalg.lstsq(W / scale, tau, rcond=RANK)[0] / scale, dtype=np.float64)
+
+
+def _deviations(W: Array, residual: Array) -> Array:
+    """Square roots of the diagonal of sigma^2 (W^T W)^-1; infinite where W has not full rank."""
+    length = np.linalg.norm(W, axis=0)
+    scale = np.where(length > 0, length, 1.0)
+    _, s, V = np.linalg.svd(W / scale, full_matrices=False)
+    if s.min(initial=np.inf) <= RANK * s.max(initial=0):
+        return np.full(W.shape[1], np.inf)
+    variance = float(residual @ residual) / (len(W) - W.shape[1])
+    return np.asarray(np.sqrt(variance * np.sum((V / s[:, None]) ** 2, axis=0)) / scale, dtype=np.float64)

@@ -1,0 +1,91 @@
+"""Real-time mode: steps of a fixed size with a known number of evaluations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from substructures.analysis.motion.integration import Function, Motion, Progress
+from substructures.analysis.motion.request_fields import FixedStep
+from substructures.array import Array
+
+Step = Callable[[Function, float, Array, float], Array]
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Measured: seconds of motion in a second of computing, and the longest computing time of a step [s]."""
+
+    factor: float
+    longest: float
+
+
+def rk4(f: Function, t: float, x: Array, h: float) -> Array:
+    """The classical Runge-Kutta method of fourth order; four evaluations."""
+    k1 = f(t, x)
+    k2 = f(t + h / 2, x + h / 2 * k1)
+    k3 = f(t + h / 2, x + h / 2 * k2)
+    k4 = f(t + h, x + h * k3)
+    return x + h / 6 * (k1 + 2 * (k2 + k3) + k4)
+
+
+def semi_implicit_euler(n: int) -> Step:
+    """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
+
+    def step(f: Function, t: float, x: Array, h: float) -> Array:
+        new = x + h * f(t, x)
+        new[:n] = x[:n] + h * new[n : 2 * n]
+        return new
+
+    return step
+
+
+def march(
+    f: Function,
+    n: int,
+    x: Array,
+    span: tuple[float, float],
+    outputs: Array,
+    fixed: FixedStep,
+    max_steps: int,
+    progress: Progress | None = None,
+) -> tuple[Motion, Pace]:
+    """Steps of size ``fixed.step`` over the span (the last one may be shorter).
+
+    Outputs within a step are the ends of shorter steps from its start.
+    """
+    step = rk4 if fixed.method == "rk4" else semi_implicit_euler(n)
+    motion, wanted = Motion(step_t=[span[0]], step_x=[x]), outputs.tolist()
+    count = max(1, math.ceil((span[1] - span[0]) / fixed.step * (1 - 1e-12)))
+    longest, t, k, begin = 0.0, span[0], 0, perf_counter()
+    with np.errstate(all="ignore"):
+        while motion.status == "finished" and motion.steps < count:
+            before = perf_counter()
+            end = span[1] if motion.steps == count - 1 else span[0] + (motion.steps + 1) * fixed.step
+            new = step(f, t, x, end - t)
+            longest = max(longest, perf_counter() - before)
+            while k < len(wanted) and wanted[k] <= end:
+                motion.t.append(wanted[k])
+                motion.x.append(new if wanted[k] == end else step(f, t, x, wanted[k] - t))
+                k += 1
+            t, x = end, new
+            _accepted(motion, t, x, max_steps, count, progress)
+    pace = Pace((t - span[0]) / max(perf_counter() - begin, 1e-9), longest)
+    motion.evaluations = motion.steps * (4 if fixed.method == "rk4" else 1)
+    return motion, pace
+
+
+def _accepted(motion: Motion, t: float, x: Array, max_steps: int, count: int, progress: Progress | None) -> None:
+    if not np.isfinite(x).all():
+        advice = "take a smaller 'fixed_step', or leave it out for an integrator that chooses its steps"
+        motion.end("failed", f"the motion is not finite at t = {t:.9g} s: {advice}")
+        return
+    motion.keep(t, x)
+    if motion.steps >= max_steps and motion.steps < count:
+        motion.end("failed", f"{motion.steps:,} steps reached only t = {t:.9g} s: raise 'max_steps'")
+    elif progress is not None and progress(t) is False:
+        motion.end("stopped", f"cancelled at t = {t:.9g} s")

@@ -1,0 +1,250 @@
+"""Integration over a span by SciPy's steppers: outputs, events, breaks, limits; what goes wrong is a value.
+
+E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I (DOP853); II (Radau IIA, BDF).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from substructures.analysis.motion.steppers import Stepper, within
+from substructures.array import Array
+
+Function = Callable[[float, Array], Array]
+#: told the time reached; False stops
+Progress = Callable[[float], bool | None]
+
+#: accepted steps that are kept for the judges
+KEPT = 20_000
+#: so many steps in a row of less than this share of the span mean that the integrator is stuck
+PATIENCE, TINY = 200, 1e-12
+STIFF = "try the method 'Radau' for stiff equations"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """``advice``: what to change when the integrator gives up, beside state, span and tolerances."""
+
+    stepper: Stepper
+    max_steps: int
+    advice: str = STIFF
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Zeros of g(t, x) that are looked for: ``direction`` +1 rising, -1 falling, 0 both."""
+
+    name: str
+    function: Callable[[float, Array], float]
+    direction: int = 0
+    stops: bool = True
+
+
+@dataclass
+class Motion:
+    """Results at the wanted times, accepted steps for the judges, and (watch, t, x) of the zeros found."""
+
+    t: list[float] = field(default_factory=list)
+    x: list[Array] = field(default_factory=list)
+    step_t: list[float] = field(default_factory=list)
+    step_x: list[Array] = field(default_factory=list)
+    found: list[tuple[int, float, Array]] = field(default_factory=list)
+    status: Literal["finished", "stopped", "failed"] = "finished"
+    message: str = ""
+    steps: int = 0
+    evaluations: int = 0
+    stride: int = 1
+
+    def judged(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Times (J,) and states (J, N), in order, of all that the judges see: steps that were kept, results and zeros;
+        and which of them are the results (K,).
+        """
+        t = np.array([*self.step_t, *self.t, *(t for _, t, _ in self.found)], dtype=np.float64)
+        x = np.array([*self.step_x, *self.x, *(x for _, _, x in self.found)], dtype=np.float64)
+        order = np.argsort(t, kind="stable")
+        results = np.argsort(order)[len(self.step_t) : len(self.step_t) + len(self.t)]
+        return t[order], x[order], results
+
+    def end(self, status: Literal["stopped", "failed"], message: str) -> None:
+        """No further steps."""
+        self.status, self.message = status, message
+
+    def keep(self, t: float, x: Array) -> None:
+        """Note an accepted step; every second one is dropped when there are too many."""
+        self.steps += 1
+        if self.steps % self.stride == 0:
+            self.step_t.append(t)
+            self.step_x.append(x)
+        if len(self.step_t) > KEPT:
+            self.step_t, self.step_x, self.stride = self.step_t[::2], self.step_x[::2], 2 * self.stride
+
+
+def integrate(
+    f: Function,
+    x: Array,
+    span: tuple[float, float],
+    outputs: Array,
+    settings: Settings,
+    watches: Sequence[Watch] = (),
+    breaks: Sequence[float] = (),
+    progress: Progress | None = None,
+    enter: Callable[[float, float], None] | None = None,
+) -> Motion:
+    """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``.
+
+    A motion that ends early has the last state that was reached, too.
+
+    ``enter``: told the times between which f is called next, from break to break.
+    """
+    run = _Run(f, span, outputs, settings, watches, progress)
+    motion = run.motion
+    motion.step_t.append(span[0])
+    motion.step_x.append(x)
+    run.last = span[0], x
+    run.collect(span[0], lambda _: x)
+    run.levels = [w.function(span[0], x) for w in watches]
+    ends = [*breaks, span[1]]
+    start = span[0]
+    with np.errstate(all="ignore"):
+        for end in ends:
+            if enter is not None:
+                enter(start, end)
+            x = run.segment(start, x, end)
+            if motion.status != "finished":
+                break
+            start = end
+    if motion.status != "finished":
+        run.keep_last()
+    return motion
+
+
+class _Run:
+    def __init__(
+        self,
+        f: Function,
+        span: tuple[float, float],
+        outputs: Array,
+        settings: Settings,
+        watches: Sequence[Watch],
+        progress: Progress | None,
+    ) -> None:
+        self.f, self.settings, self.watches, self.progress = f, settings, watches, progress
+        self.outputs = outputs.tolist()
+        self.next = 0
+        self.levels: list[float] = []
+        self.span, self.tiny = span[1] - span[0], 0
+        self.motion = Motion()
+        self.last: tuple[float, Array] | None = None
+
+    def keep_last(self) -> None:
+        """The last state that was reached, as a result."""
+        motion = self.motion
+        if self.last is not None and (not motion.t or motion.t[-1] < self.last[0]):
+            motion.t.append(self.last[0])
+            motion.x.append(self.last[1])
+
+    def segment(self, start: float, x: Array, end: float) -> Array:
+        """Integrate from start to end; the last state."""
+        s, motion, solver = self.settings, self.motion, None
+        try:
+            solver = s.stepper(self.f, start, x, end)
+            while solver.status == "running" and motion.status == "finished":
+                message = solver.step()
+                if solver.status == "failed":
+                    motion.end("failed", self._advice(solver.t, str(message)))
+                    break
+                self._accepted(solver)
+        except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
+            motion.end("failed", self._advice(start if self.last is None else self.last[0], str(error)))
+            return x
+        finally:
+            motion.evaluations += 0 if solver is None else solver.nfev
+        return np.asarray(solver.y, dtype=np.float64)
+
+    def _advice(self, t: float, message: str) -> str:
+        return (
+            f"the integrator could not go on at t = {t:.9g} s ({message.strip()}): the motion may be singular there; "
+            f"look at the state, end the span before it, loosen 'relative_tolerance', or {self.settings.advice}"
+        )
+
+    def _accepted(self, solver: Any) -> None:
+        motion = self.motion
+        if not np.isfinite(solver.y).all():
+            motion.end("failed", self._advice(solver.t_old, "the state is not finite"))
+            return
+        motion.keep(solver.t, solver.y.copy())
+        self.last = float(solver.t), solver.y.copy()
+        self.tiny = self.tiny + 1 if solver.t - solver.t_old < TINY * self.span else 0
+        if self.tiny > PATIENCE:
+            motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
+            return
+        dense = _Dense(solver, self.settings.stepper)
+        last = self._watch(solver, dense)
+        self.collect(last, dense)
+        if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
+            advice = f"raise 'max_steps', loosen the tolerances, or {self.settings.advice}"
+            motion.end("failed", f"{motion.steps:,} steps reached only t = {solver.t:.9g} s: {advice}")
+        if self.progress is not None and self.progress(solver.t) is False and motion.status == "finished":
+            motion.end("stopped", f"cancelled at t = {solver.t:.9g} s")
+
+    def collect(self, last: float, dense: Callable[[float], Array]) -> None:
+        """Results at the wanted times up to ``last``."""
+        while self.next < len(self.outputs) and self.outputs[self.next] <= last:
+            t = self.outputs[self.next]
+            self.motion.t.append(t)
+            self.motion.x.append(np.array(dense(t), dtype=np.float64))
+            self.next += 1
+
+    def _watch(self, solver: Any, dense: _Dense) -> float:
+        """Zeros in the last step, in the order of time, up to the first that stops; how far the motion goes."""
+        zeros = []
+        for k, watch in enumerate(self.watches):
+            before, after = self.levels[k], watch.function(solver.t, solver.y)
+            self.levels[k] = after
+            rising = before < 0 <= after
+            falling = before > 0 >= after
+            if (rising and watch.direction >= 0) or (falling and watch.direction <= 0):
+                zeros.append((self._zero(watch, solver, dense), k))
+        for t, k in sorted(zeros):
+            x = np.array(dense(t), dtype=np.float64)
+            self.motion.found.append((k, t, x))
+            if self.watches[k].stops:
+                self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
+                self.collect(t, dense)
+                self.last = t, x
+                if self.motion.step_t[-1] > t:
+                    del self.motion.step_t[-1], self.motion.step_x[-1]
+                return t
+        return float(solver.t)
+
+    @staticmethod
+    def _zero(watch: Watch, solver: Any, dense: _Dense) -> float:
+        a, b = float(solver.t_old), float(solver.t)
+
+        def g(t: float) -> float:
+            return watch.function(t, np.asarray(dense(t), dtype=np.float64))
+
+        if g(a) * g(b) > 0:
+            return b  # the zero is within rounding of an end
+        return float(brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
+
+
+class _Dense:
+    """Dense output of the last step, made when it is first needed; exact at its end."""
+
+    def __init__(self, solver: Any, make: Stepper) -> None:
+        self.solver, self.make = solver, make
+        self.output: Any = None
+
+    def __call__(self, t: float) -> Array:
+        if t == self.solver.t:
+            return np.asarray(self.solver.y)
+        if self.output is None:
+            self.output = within(self.solver, self.make)
+        return np.asarray(self.output(t))

@@ -1,0 +1,194 @@
+"""Sensitivities to parameters: of g, Gamma and Q as formulas, and of trajectories by their variational equations.
+
+With x = (q, q') and x' = f(x, p, t): S = dx/dp obeys S' = f_x S + f_p, S(0) = 0; the columns of S that belong to the
+start, dx/dx_0, obey S' = f_x S, S(0) = 1. f_x S + f_p is one directional derivative of the accelerations, a formula.
+(E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I, section I.14.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.equations.formulas import ModelFormulas, require_tree
+from substructures.analysis.equations.kernels import Known, program_kernel
+from substructures.analysis.equations.perturbation import require_smooth
+from substructures.analysis.motion.inputs import Along, VaryingInputs, state_names
+from substructures.analysis.motion.integration import Settings, integrate
+from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.requests import TAYLOR, SimulationRequest
+from substructures.analysis.motion.simulation import read_tree
+from substructures.analysis.motion.steppers import scipy_stepper
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.array import Array
+from substructures.errors import Fault, InvalidDocument
+from substructures.expr.differentiate import directional
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.replay import replay
+from substructures.tree.model import Model
+
+QUANTITIES = ("metric", "christoffel", "forces")
+
+
+def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Sequence[str] = QUANTITIES) -> Program:
+    """Partial derivatives of outputs of the model by parameters: an output ``<quantity>:<parameter>`` for every pair,
+    with shape and symmetry of the quantity.
+
+    Raises InvalidDocument for unknown parameters (``/parameters/i``) and quantities, and forces without derivative.
+    """
+    require_parameters(model, parameters)
+    faults = [
+        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity '{str(name)[:80]}'")
+        for i, name in enumerate(quantities)
+        if name not in model.program.outputs
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    require_smooth(model)
+    f = ModelFormulas(model)
+    outputs = {}
+    for quantity, formulas in replay(model.program, f.graph, {}, list(quantities)).items():
+        roots = [x for x in formulas.entries.values() if isinstance(x, Expr)]
+        for name in parameters:
+            slopes = directional(roots, {name: f.graph.one})
+            entries = dict(zip(formulas.entries, slopes, strict=True))
+            outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
+    return program(f.graph, outputs, f.symbols)
+
+
+def require_parameters(model: Model, names: Sequence[str]) -> None:
+    """Raises InvalidDocument for names that are no parameters of the model."""
+    faults = [
+        Fault(f"/parameters/{i}", "unknown-parameter", f"unknown parameter '{str(name)[:80]}'")
+        for i, name in enumerate(names)
+        if name not in model.parameters
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+
+
+def variational(model: Model, parameters: Sequence[str]) -> Program:
+    """``acceleration`` (n,) and its ``variation`` (n,) along the symbols ``d.<name>`` of coordinates, velocities and
+    the given parameters. Raises InvalidDocument for closures and for a metric that is always singular.
+    """
+    require_tree(model)
+    return _variational(Known(model.program.digest, model), tuple(parameters))
+
+
+@lru_cache(maxsize=32)
+def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
+    f = ModelFormulas(known.source)
+    names = [*(str(x.value) for x in (*f.q, *f.rates)), *parameters]
+    seeds = {name: f.graph.symbol(f"d.{name}") for name in names}
+    acceleration = f.acceleration
+    variation = directional(acceleration, seeds)
+    symbols = f.symbols | {f"d.{name}": replace(f.symbols[name], name=f"d.{name}") for name in names}
+    outputs = {
+        "acceleration": array((f.n,), lambda a: acceleration[a]),
+        "variation": array((f.n,), lambda a: variation[a]),
+    }
+    return program(f.graph, outputs, symbols)
+
+
+def sensitivities(
+    model: Model,
+    request: Mapping[str, Any],
+    parameters: Sequence[str],
+    of_start: bool = False,
+    progress: Report | None = None,
+    folder: Path | None = None,
+) -> Trajectory:
+    """A trajectory and its derivatives by parameters: series ``d.<parameter>`` (K, 2n), of (q, q').
+
+    ``request``: as for ``simulate``, without events and fixed steps; inputs are numbers, tables or expressions in t.
+    ``of_start``: also the series ``d.start`` (K, 2n, 2n), dx/dx_0. Raises InvalidDocument and MissingValue.
+    """
+    require_parameters(model, parameters)
+    require_smooth(model)
+    asked = SimulationRequest.read(request)
+    along = read_tree(model, asked)
+    _require_plain(along, asked)
+    f = _Variation(along, parameters, of_start, folder)
+    stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
+    motion = integrate(
+        f,
+        f.start(),
+        asked.span,
+        asked.outputs(),
+        Settings(stepper, asked.max_steps),
+        breaks=along.breaks(asked.span),
+        progress=share_of(asked.span, progress),
+        enter=f.inputs.enter,
+    )
+    n, k = model.dof, len(parameters)
+    x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
+    series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(parameters)}
+    if of_start:
+        series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
+    status, message = motion.status, motion.message
+    return Trajectory(
+        model.coordinates, np.array(motion.t), x[:, 0, :n], x[:, 0, n:], series, (), status, message, motion.steps
+    )
+
+
+def _require_plain(along: Along, request: SimulationRequest) -> None:
+    """Raises InvalidDocument for what has no place in the variational equations."""
+    faults = [
+        Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
+        for name in ("events", "fixed_step", "series")
+        if getattr(request, name)
+    ]
+    if request.method == TAYLOR:
+        faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
+    named = {s.name for s in along.source.symbols if s.kind != "time"}
+    if named:
+        culprits = ", ".join(f"'{name}'" for name in sorted(named))
+        faults.append(Fault("/inputs", "not-supported", f"inputs may depend on t only here, not on {culprits}"))
+    if faults:
+        raise InvalidDocument(faults)
+
+
+class _Variation:
+    """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel."""
+
+    def __init__(self, along: Along, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
+        model, n = along.model, along.model.dof
+        self.along, self.n, self.of_start = along, n, of_start
+        self.columns = len(parameters) + (2 * n if of_start else 0)
+        batch = max(self.columns, 1)
+        self.t, self.x = np.zeros(1), np.zeros((1, 2 * n))
+        self.d = np.zeros((batch, 2 * n))
+        self.out = {"acceleration": np.zeros((batch, n)), "variation": np.zeros((batch, n))}
+        names = state_names(model)
+        self.inputs = VaryingInputs(along, self.t, self.x, folder)
+        columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
+        seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}
+        kernel = program_kernel(variational(model, parameters), folder)
+        self.run = kernel.bind(self.out, along.values | {"t": self.t} | seeds, columns=columns)
+
+    def start(self) -> Array:
+        """The start, S = 0 for parameters and S = 1 for the start itself."""
+        rows = np.zeros((self.columns + 1, 2 * self.n))
+        rows[0] = self.along.start
+        if self.of_start:
+            rows[-2 * self.n :] = np.eye(2 * self.n)
+        return rows.ravel()
+
+    def __call__(self, t: float, flat: Array) -> Array:
+        rows = flat.reshape(self.columns + 1, 2 * self.n)
+        n = self.n
+        self.t[0], self.x[0] = t, rows[0]
+        self.d[: self.columns] = rows[1:]
+        self.inputs.fill()
+        self.run()
+        result = np.empty_like(rows)
+        result[:, :n] = rows[:, n:]
+        result[0, n:] = self.out["acceleration"][0]
+        result[1:, n:] = self.out["variation"][: self.columns]
+        return result.ravel()

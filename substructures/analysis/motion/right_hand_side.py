@@ -1,0 +1,114 @@
+"""The equations of motion as one compiled function x' = f(t, x), x = (q, q', W), a few microseconds a call.
+
+q'' = g^-1 (Q - Gamma q' q') is a formula: g = L^T D L is factored in the graph, so that the kernel needs no linear
+algebra. W' is the power of the forces without potential; H - W is constant for every model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.kernels import Known
+from substructures.analysis.motion.inputs import Along, VaryingInputs, state_names
+from substructures.array import Array
+from substructures.compile import Kernel, compile_program
+from substructures.expr.program import Program, array, program
+from substructures.tree.model import Model
+
+ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
+
+
+def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
+    """Accelerations as formulas: outputs ``forward_dynamics`` (n,), ``pivots`` (n,): D of g = L^T D L, and ``power``.
+
+    ``zero``: symbols that are 0. Raises InvalidDocument for a coordinate without inertia and for a division by zero.
+    """
+    f = ModelFormulas(model, zero)
+    acceleration, power = f.acceleration, f.power
+    outputs = {
+        ACCELERATION: array((f.n,), lambda a: acceleration[a]),
+        PIVOTS: array((f.n,), lambda a: f.factors.D[a]),
+        POWER: array((), lambda: power),
+    }
+    return program(f.graph, outputs, f.symbols)
+
+
+@lru_cache(maxsize=32)
+def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
+    return compile_program(forward_dynamics(model.source, zero), (ACCELERATION, PIVOTS, POWER), folder)
+
+
+def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None) -> Kernel:
+    """The compiled forward_dynamics(model, zero); the same object for the same model. Raises as forward_dynamics."""
+    return _forward_kernel(Known(model.program.digest, model), frozenset(zero), folder)
+
+
+class RightHandSide:
+    """x' = f(t, x). ``values``: numbers of parameters and constant inputs; ``zero``: symbols that are 0.
+
+    ``along``: inputs that vary. Not for several threads at a time. Raises InvalidDocument as forward_dynamics, and
+    MissingValue.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        values: Mapping[str, float],
+        zero: Iterable[str] = (),
+        along: Along | None = None,
+        folder: Path | None = None,
+    ) -> None:
+        self.n = n = model.dof
+        self.kernel = forward_kernel(model, zero, folder)
+        self.has_power = bool(self.kernel.outputs[POWER].entries)
+        self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
+        self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
+        self.inputs = None if along is None else VaryingInputs(along, self._t, self._x, folder)
+        columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
+        outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
+        self._run = self.kernel.bind(outputs, dict(values) | {"t": self._t}, columns=columns)
+
+    @property
+    def size(self) -> int:
+        """Length of x: 2 n, and one for W where there is any power."""
+        return 2 * self.n + self.has_power
+
+    def enter(self, start: float, end: float) -> None:
+        """Times are between two breaks of the inputs until the next call."""
+        if self.inputs is not None:
+            self.inputs.enter(start, end)
+
+    def leave(self) -> None:
+        """Any time again."""
+        if self.inputs is not None:
+            self.inputs.leave()
+
+    def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
+        """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""
+        self._t[0] = t
+        self._x[0] = x[: 2 * self.n]
+        if self.inputs is not None:
+            self.inputs.fill()
+        self._run()
+        return self._out[0][0], self._out[1][0], float(self._out[2][0])
+
+    def __call__(self, t: float, x: Array) -> Array:
+        acceleration, _, power = self.evaluate(t, x)
+        n = self.n
+        result = np.empty(len(x))
+        result[:n] = x[n : 2 * n]
+        result[n : 2 * n] = acceleration
+        if self.has_power:
+            result[2 * n] = power
+        return result
+
+
+def is_definite(pivots: Sequence[float] | Array) -> bool:
+    """Whether g is positive definite, by the pivots D of g = L^T D L."""
+    d = np.asarray(pivots)
+    return bool(np.isfinite(d).all() and (d > 1e-14 * np.abs(d).max(initial=0)).all())

@@ -1,0 +1,195 @@
+"""Motion with velocity constraints (rolling, knife edges) in quasi-velocities, judged by energy and constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.linalg import lapack
+
+from substructures.analysis.equations.quasi_velocities import QuasiVelocities, velocity_equations
+from substructures.analysis.motion.inputs import Along, VaryingInputs, read_along
+from substructures.analysis.motion.integration import Motion, Settings, integrate
+from substructures.analysis.motion.judges import energy_balance, spread
+from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.requests import RollingRequest
+from substructures.analysis.motion.steppers import scipy_stepper
+from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory, crossings
+from substructures.array import Array
+from substructures.compile import compile_program
+from substructures.errors import InvalidDocument
+from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.quantities.states import numeric
+from substructures.tree.model import Model
+
+FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
+NEEDS = ("metric", "forces", "potential_energy")
+#: largest constrained velocity [m/s] and change of a gap [m] along a right motion
+RESIDUAL = 1e-9
+ADVICE = "the quasi-velocities may not describe the motion there (take others), or a body may lie flat"
+
+
+class _Rolling:
+    """The right-hand side in compiled form. y = (q, v, work)."""
+
+    def __init__(self, equations: QuasiVelocities, along: Along, form: str, folder: Path | None) -> None:
+        model, self.along, self.form = equations.model, along, FORMS[form]
+        self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
+        self.columns = [*model.coordinates, *equations.velocities]
+        self._t, self._y, self._x = np.zeros(1), np.zeros((1, self.n + self.p)), np.zeros((1, 2 * self.n))
+        self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
+        wanted = ("metric", self.form, "forces", "lost_power")
+        self._rates = np.zeros((1, self.n))
+        self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
+        values = self.along.values | {"t": self._t}
+        columns = [(self.columns, self._y)]
+        rates = compile_program(equations.program, ["rates"], folder)
+        self._move = rates.bind({"rates": self._rates}, values, columns=columns)
+        kernel = compile_program(equations.program, wanted, folder)
+        self._run = kernel.bind(self._out, values, columns=[*columns, *self.inputs.columns])
+
+    def state(self, t: float, y: Array) -> Array:
+        """(q, q') of y (a new array)."""
+        self._t[0], self._y[0] = t, y[:-1]
+        self._move()
+        return np.concatenate((y[: self.n], self._rates[0]))
+
+    def rates(self, t: float, y: Array) -> Array:
+        """y'; not finite where the reduced metric is singular."""
+        self._x[0] = self.state(t, y)
+        self.inputs.fill()
+        self._run()
+        out, result = self._out, np.empty(len(y))
+        force = out["forces"][0] - out[self.form][0]
+        _, acceleration, info = lapack.dposv(out["metric"][0], force)
+        result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
+        result[self.n : -1] = acceleration if not info else np.nan
+        return result
+
+
+def simulate_rolling(
+    model: Model, request: Mapping[str, Any], progress: Report | None = None, folder: Path | None = None
+) -> Trajectory:
+    """Integrate the equations of motion with velocity constraints.
+
+    ``request``: see RollingRequest. ``progress`` is told the finished share of the span and cancels by False.
+    ``folder``: a cache of compiled kernels. Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter
+    B q'), ``gaps``, ``kinetic_energy``, ``potential_energy``, ``work``, varying inputs, and what the request asks for.
+    Checks: B q' is zero, gaps and T + V - work are constant. A span that cannot be finished is ``failed``. Raises
+    InvalidDocument (also for closures of the model that are not among the constraints), MissingValue and TooLarge.
+    """
+    asked = RollingRequest.read(request)
+    along = read_along(model, asked, asked.span, NEEDS)
+    place = dict(zip(model.coordinates, along.q.tolist(), strict=True))
+    rolling = _Rolling(velocity_equations(model, asked, place), along, asked.form, folder)
+    rolling.inputs.enter(*asked.span)
+    y = np.concatenate((*_start(rolling, asked), (0.0,)))
+    if not np.isfinite(rolling.rates(asked.span[0], y)).all():
+        advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
+        motion = Motion([asked.span[0]], [y], [asked.span[0]], [y], status="failed", message=advice)
+    else:
+        motion = _moved(rolling, asked, y, progress, folder)
+    return _judged(rolling, asked, motion)
+
+
+def _moved(rolling: _Rolling, asked: RollingRequest, y: Array, progress: Report | None, folder: Path | None) -> Motion:
+    stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
+    motion = integrate(
+        rolling.rates,
+        y,
+        asked.span,
+        asked.outputs(),
+        Settings(stepper, asked.max_steps, ADVICE),
+        rolling.along.watches(rolling.state, folder),
+        rolling.along.breaks(asked.span),
+        share_of(asked.span, progress),
+        rolling.inputs.enter,
+    )
+    rolling.inputs.leave()
+    return motion
+
+
+def _start(rolling: _Rolling, request: RollingRequest) -> tuple[Array, Array]:
+    """q and v at the start."""
+    model, names = rolling.equations.model, rolling.equations.velocities
+    q, qd = rolling.along.q, rolling.along.qd
+    if request.v is not None and request.qd is not None:
+        raise InvalidDocument.at("/v", "two-velocities", "give either 'v' or 'qd'")
+    place = rolling.along.values | dict(zip(model.coordinates, q, strict=True))
+    T = interpret(rolling.equations.program, place, ["T"])["T"]
+    if not np.isfinite(T).all():
+        message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
+        raise InvalidDocument.at("/q", "singular-start", message)
+    if request.qd is None:
+        return q, _by_name(request.v, names)
+    v = np.asarray(np.linalg.lstsq(T, qd)[0], dtype=np.float64)
+    left = np.abs(T @ v - qd).max(initial=0)
+    if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
+        message = f"these velocities violate the constraints by {left:.3g}; give 'v' ({', '.join(names)}) instead"
+        raise InvalidDocument.at("/qd", "violated", message)
+    return q, v
+
+
+def _by_name(given: Any, names: tuple[str, ...]) -> Array:
+    if given is None:
+        return np.zeros(len(names))
+    if isinstance(given, Mapping):
+        unknown = [name for name in given if name not in names]
+        if unknown:
+            message = f"unknown velocity '{str(unknown[0])[:80]}'; there are {', '.join(names)}"
+            raise InvalidDocument.at("/v", "unknown-velocity", message)
+        given = [given.get(name, 0) for name in names]
+    v = numeric(given, "/v")
+    if v.shape != (len(names),):
+        message = f"shape {v.shape} found, ({len(names)},) expected: {', '.join(names)}"
+        raise InvalidDocument.at("/v", "wrong-length", message)
+    return v
+
+
+def _judged(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> Trajectory:
+    equations, n = rolling.equations, rolling.n
+    t, y, results = motion.judged()
+    slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
+    x = np.concatenate([y[:, :n], slopes[:, :n]], axis=1)
+    values: dict[str, Any] = rolling.along.values | rolling.along.inputs_at(t, x) | {"t": t}
+    values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
+    values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
+    names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
+    found = interpret_in_blocks(equations.program, values, names, len(t))
+    series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
+    series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
+    checks = _checks(t, series, asked.drift_limit)
+    t, x = t[results], x[results]
+    return Trajectory(
+        equations.model.coordinates,
+        t,
+        x[:, :n],
+        x[:, n:],
+        {name: column[results] for name, column in series.items()} | rolling.along.series_at(t, x),
+        checks,
+        motion.status,
+        motion.message,
+        motion.steps,
+        _events(rolling, asked, motion),
+        {"evaluations": float(motion.evaluations)},
+    )
+
+
+def _events(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> tuple[Crossing, ...]:
+    found = [(k, t, rolling.state(t, y)) for k, t, y in motion.found]
+    return crossings(asked.events, found, rolling.n)
+
+
+def _checks(t: Array, series: Mapping[str, Array], limit: float) -> tuple[Check, ...]:
+    slips = np.abs(series["constraints"]).max(axis=1, initial=0)
+    checks = [
+        energy_balance(t, series, not series["work"].any(), limit),
+        Check.of(("constraints", "zero", "B q' = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
+    ]
+    if "gaps" in series:
+        drift = spread(series["gaps"]).max(axis=1)
+        reason = "integrals of constraints: rolling bodies keep their distance from the plane, loops stay closed"
+        checks.append(Check.of(("gaps", "constant", reason, "m"), drift, t, 1.0, RESIDUAL))
+    return tuple(checks)

@@ -1,0 +1,35 @@
+"""Trajectories as files: npz (numpy arrays, no pickled objects) and CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.array import Array
+
+
+def to_npz(trajectory: Trajectory) -> bytes:
+    """Arrays t, q, qd and all series by name, and ``coordinates``."""
+    buffer = io.BytesIO()
+    names = np.array(trajectory.coordinates, dtype=np.str_)
+    np.savez_compressed(buffer, allow_pickle=False, coordinates=names, **trajectory.arrays())
+    return buffer.getvalue()
+
+
+def to_csv(trajectory: Trajectory) -> str:
+    """One row for every time: t, coordinates, velocities (q'), series (components numbered from 1); 17 digits."""
+    columns: list[tuple[str, Array]] = [("t", trajectory.t)]
+    columns += [(name, trajectory.q[:, a]) for a, name in enumerate(trajectory.coordinates)]
+    columns += [(f"{name}'", trajectory.qd[:, a]) for a, name in enumerate(trajectory.coordinates)]
+    for name, values in trajectory.series.items():
+        flat = values.reshape(len(trajectory.t), -1)
+        many = values.ndim > 1
+        columns += [(f"{name}.{k + 1}" if many else name, flat[:, k]) for k in range(flat.shape[1])]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(name for name, _ in columns)
+    writer.writerows(np.stack([values for _, values in columns], axis=1).tolist())
+    return text.getvalue()

@@ -1,0 +1,149 @@
+"""Small vibrations of M x'' + D x' + K x = 0: eigenvalues, mode shapes, damping, and what they say about stability.
+
+P. C. Mueller, Stabilitaet und Matrizen, 1977; K. Magnus, Schwingungen, 1961.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig, eigh
+
+from substructures.array import Array
+
+ComplexArray = NDArray[np.complex128]
+Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
+
+#: real parts of this size, relative to the largest eigenvalue, cannot be told from zero (double eigenvalues)
+NEUTRAL = 1e-7
+SYMMETRIC = 1e-12
+
+
+@dataclass(frozen=True)
+class Mode:
+    """x = Re(shape e^(eigenvalue t)). Of a pair of complex eigenvalues the one with positive imaginary part.
+
+    ``frequency``: absolute value [rad/s]; ``damping_ratio``: -Re/|.|, 1 for aperiodic, 0 for undamped; ``shape`` (n,):
+    largest element 1.
+    """
+
+    eigenvalue: complex
+    shape: ComplexArray
+
+    @property
+    def frequency(self) -> float:
+        """|eigenvalue| [rad/s]."""
+        return abs(self.eigenvalue)
+
+    @property
+    def damping_ratio(self) -> float:
+        """-Re/|eigenvalue|; 0 for the eigenvalue 0."""
+        return -self.eigenvalue.real / abs(self.eigenvalue) if self.eigenvalue else 0.0
+
+    def plain(self) -> dict[str, Any]:
+        """As numbers for JSON; complex numbers are pairs."""
+        return {
+            "eigenvalue": [self.eigenvalue.real, self.eigenvalue.imag],
+            "frequency": self.frequency,
+            "hertz": abs(self.eigenvalue.imag) / (2 * np.pi),
+            "damping_ratio": self.damping_ratio,
+            "shape": [[z.real, z.imag] for z in self.shape.tolist()],
+        }
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The verdict of the linearisation, and why."""
+
+    verdict: Verdict
+    reason: str
+
+
+def modes(M: Array, D: Array, K: Array) -> tuple[Mode, ...]:
+    """Modes by frequency, slowest first. Without dampers and with symmetric K from the symmetric problem K x = w^2 M x.
+
+    A double eigenvalue 0 of the second case (motion without restoring force) is exactly 0 here, listed once.
+    """
+    if not len(M):
+        return ()
+    undamped = np.abs(D).max() == 0 and is_symmetric(K)
+    found = _undamped(M, K) if undamped else _general(M, D, K)
+    return tuple(sorted(found, key=lambda mode: (mode.frequency, mode.eigenvalue.real)))
+
+
+def is_symmetric(K: Array) -> bool:
+    """Up to rounding."""
+    return bool(np.abs(K - K.T).max() <= SYMMETRIC * np.abs(K).max())
+
+
+def _undamped(M: Array, K: Array) -> list[Mode]:
+    squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    floor = 1e-13 * np.abs(squares).max()
+    found = []
+    for square, shape in zip(squares.tolist(), shapes.T, strict=True):
+        if abs(square) <= floor:
+            values = [0j]
+        elif square > 0:
+            values = [1j * np.sqrt(square)]
+        else:
+            values = [complex(np.sqrt(-square)), complex(-np.sqrt(-square))]
+        found += [Mode(complex(value), normed(shape)) for value in values]
+    return found
+
+
+def _general(M: Array, D: Array, K: Array) -> list[Mode]:
+    n = len(M)
+    values, vectors = eig(first_order(M, D, K))
+    scale = np.abs(values).max()
+    found = []
+    for value, vector in zip(values.tolist(), vectors.T, strict=True):
+        if value.imag >= -1e-13 * scale:
+            found.append(Mode(complex(value), normed(vector[:n])))
+    return found
+
+
+def first_order(M: Array, D: Array, K: Array) -> Array:
+    """A of x' = A x, x = (q, q')."""
+    n = len(M)
+    lower = -np.linalg.solve(M, np.hstack([K, D]))
+    return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
+
+
+def normed(shape: Any) -> ComplexArray:
+    """Largest element 1."""
+    z = np.asarray(shape, dtype=np.complex128)
+    k = int(np.abs(z).argmax()) if len(z) else 0
+    return z / z[k] if len(z) and z[k] != 0 else z
+
+
+def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool) -> Stability:
+    """What the eigenvalues of an equilibrium say about the motion near it.
+
+    ``has_potential``: forces without potential are linear in the velocities, or there are none: then a positive
+    definite K decides where the linearisation does not, if D nowhere feeds energy in (Lagrange and Dirichlet).
+    """
+    if not found:
+        return Stability("stable", "there is nothing that moves")
+    scale = max(mode.frequency for mode in found)
+    worst = max(found, key=lambda mode: mode.eigenvalue.real)
+    if worst.eigenvalue.real > NEUTRAL * scale:
+        return Stability("unstable", f"the eigenvalue {_text(worst.eigenvalue)} 1/s has a positive real part")
+    if worst.eigenvalue.real < -NEUTRAL * scale:
+        return Stability("asymptotically stable", "all eigenvalues have negative real parts")
+    if has_potential and is_symmetric(K) and _least(K) > NEUTRAL and _least(D) >= -SYMMETRIC:
+        return Stability("stable", "the potential energy has a strict minimum (Lagrange, Dirichlet)")
+    where = "0" if abs(worst.eigenvalue) <= NEUTRAL * scale else f"{_text(worst.eigenvalue)} 1/s on the imaginary axis"
+    return Stability("undecided", f"the eigenvalue {where} leaves the decision to terms of higher order")
+
+
+def _least(x: Array) -> float:
+    """The least eigenvalue of the symmetric part, over the largest element."""
+    size = np.abs(x).max()
+    return float(np.linalg.eigvalsh((x + x.T) / 2).min() / size) if size else 0.0
+
+
+def _text(z: complex) -> str:
+    return f"{z.real:.6g}" if z.imag == 0 else f"{z.real:.6g}{z.imag:+.6g}i"

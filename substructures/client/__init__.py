@@ -1,0 +1,5 @@
+"""A client of the HTTP interface, for Python programs; it knows nothing of how the service is made."""
+
+from substructures.client.client import Client, ProblemError, ServerLost
+
+__all__ = ["Client", "ProblemError", "ServerLost"]

@@ -1,0 +1,103 @@
+"""Plain data to frozen values: pydantic models, their faults with pointers, and the identity of whole documents."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from substructures.documents.text import escape
+from substructures.documents.to_json import write_json
+from substructures.errors import Fault, InvalidDocument
+
+#: so many characters of a value are shown in a message
+SHOWN = 80
+
+
+class DocumentPart(BaseModel):
+    """Base of all parts of documents: frozen, unknown fields refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Document(DocumentPart):
+    """Base of documents that stand for themselves; the digest of the canonical bytes is the identity."""
+
+    @classmethod
+    def read(cls, data: Any) -> Self:
+        """The document from plain data. Raises InvalidDocument with a pointer to every fault."""
+        return read_model(cls, data)
+
+    @cached_property
+    def _canonical(self) -> bytes:
+        return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
+
+    def canonical(self) -> bytes:
+        """Canonical bytes of what was given: RFC 8785, numbers as their decimal text, defaults left out."""
+        return self._canonical
+
+    @property
+    def digest(self) -> str:
+        """``sha256:`` and 64 hex digits of the canonical bytes (references of a tree should be pinned before)."""
+        return "sha256:" + hashlib.sha256(self._canonical).hexdigest()
+
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def read_model(model: type[M], data: Any) -> M:
+    """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers."""
+    if not isinstance(data, Mapping):
+        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise InvalidDocument(_faults(error, data)) from None
+
+
+def _faults(error: ValidationError, data: Any) -> list[Fault]:
+    return [
+        Fault(
+            _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]),
+            e["type"].replace("_", "-"),
+            message_of(e),
+        )
+        for e in error.errors(include_url=False)
+    ]
+
+
+def _tag(kind: str) -> str:
+    """A union chosen by its field 'type' complains about the object as a whole."""
+    return "/type" if kind.startswith("union_tag") else ""
+
+
+def message_of(error: Mapping[str, Any]) -> str:
+    """What pydantic's error says, with the name of what is missing or unknown, and otherwise with what was found."""
+    name = error["loc"][-1] if error["loc"] else ""
+    if error["type"] == "missing":
+        return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
+    if error["type"] == "extra_forbidden":
+        return f"unknown field '{str(name)[:80]}'"
+    return str(error["msg"]) + _found(error["input"])
+
+
+def _found(given: Any) -> str:
+    """What was found, as JSON and not longer than a line; nothing where it is no plain data."""
+    try:
+        shown = write_json(given).decode()
+    except InvalidDocument:
+        return ""
+    return f", found {shown if len(shown) <= SHOWN else shown[:SHOWN] + '...'}"
+
+
+def _pointer(loc: tuple[int | str, ...], missing: bool, data: Any) -> str:
+    """The pointer of a pydantic location, without the steps that pydantic adds for unions and map keys."""
+    pointer, here = "", data
+    for step in loc[:-1] if missing else loc:
+        known = step in here if isinstance(here, Mapping) else isinstance(here, (list, tuple)) and isinstance(step, int)
+        if known:
+            pointer, here = f"{pointer}/{escape(step)}", here[step]
+    return f"{pointer}/{escape(loc[-1])}" if missing else pointer

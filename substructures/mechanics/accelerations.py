@@ -1,0 +1,73 @@
+"""Linear equations with the metric, for many states at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from substructures.array import Array
+
+#: outputs of a model that accelerations with closures need beside those without
+CLOSED = ("closure.residual", "closure.jacobian", "closure.acceleration")
+#: singular values of the Jacobian below this part of the largest one count as zero
+RANK = 1e-8
+#: residuals of positions of a state that counts as closed, over its largest number or 1: below RANK, because rows that
+#: depend on each other in closed positions do so only there
+MET = 1e-9
+#: the same for velocities
+MET_RATE = 1e-6
+
+
+def cholesky_solve(g: Array, f: Array) -> Array:
+    """x with g x = f for (N, n, n) and (N, n), by g = L L^T; NaN in states where g is not positive definite."""
+    try:
+        L = np.linalg.cholesky(g)
+    except np.linalg.LinAlgError:
+        half = len(f) // 2
+        if not half:
+            return np.full_like(f, np.nan)
+        return np.concatenate([cholesky_solve(g[:half], f[:half]), cholesky_solve(g[half:], f[half:])])
+    x = np.array(f, dtype=np.float64)
+    n = x.shape[1]
+    for k in range(n):
+        x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k, :k], x[:, :k])) / L[:, k, k]
+    for k in reversed(range(n)):
+        x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k + 1 :, k], x[:, k + 1 :])) / L[:, k, k]
+    return x
+
+
+def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callable[[Array], Array]) -> Array:
+    """q'' (N, n) with g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G'q' = 0; the rows of G may depend on each other.
+
+    ``found``: metric, bias, forces and CLOSED at states (N, n); ``second``: G'q' for other velocities (N, n). NaN where
+    a state does not meet the closures (also their velocities), where they lose rank, so that the motion is not
+    determined, and where no free motion has inertia.
+
+    With an orthonormal basis N of the velocities that G leaves free: q'' = -G^+ G'q' + N z and N^T (g q'' - f) = 0. Of
+    rows that depend on each other, mu^T G = 0, always, also mu^T G'v = 0 for every such velocity v; where the rank is
+    lower than nearby this fails.
+    """
+    G, c = found["closure.jacobian"], found["closure.acceleration"]
+    f = found["forces"] - found["bias"]
+    result = np.full(np.broadcast_shapes(q.shape, qd.shape, f.shape), np.nan)
+    left, sizes, rows = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
+    ranks = (sizes > RANK * sizes[:, :1]).sum(axis=1)
+    probe = np.random.default_rng(5).standard_normal(G.shape[2])
+    free = np.arange(G.shape[2]) >= ranks[:, None]
+    along = np.einsum("nka,nk->na", rows, np.where(free, rows @ probe, 0))
+    across = np.arange(G.shape[1]) >= ranks[:, None]
+    curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along)), 0)
+    speed = np.abs(qd).max(axis=1, initial=1)
+    opening = np.abs(np.einsum("nka,na->nk", G, np.broadcast_to(qd, result.shape))).max(axis=1, initial=0)
+    good = np.abs(found["closure.residual"]).max(axis=1, initial=0) <= MET * np.abs(q).max(axis=1, initial=1)
+    good = good & (opening <= MET_RATE * speed) & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
+    for rank in np.unique(ranks):
+        some = np.flatnonzero(good & (ranks == rank))
+        N = rows[some, rank:].swapaxes(1, 2)
+        U, V = left[some, :, :rank], rows[some, :rank]
+        solved = np.einsum("nka,nk->na", V, np.einsum("njk,nj->nk", U, c[some]) / sizes[some, :rank])
+        right = f[some] + np.einsum("nab,nb->na", found["metric"][some], solved)
+        z = cholesky_solve(N.swapaxes(1, 2) @ found["metric"][some] @ N, np.einsum("nak,na->nk", N, right))
+        result[some] = np.einsum("nak,nk->na", N, z) - solved
+    return result

@@ -1,0 +1,162 @@
+"""The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
+
+Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.part.topology`,
+:mod:`substructures.part.scope` and :mod:`substructures.part.loads`, physics by :mod:`substructures.part.physics`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from substructures.documents import Document, DocumentPart
+from substructures.documents.fields import LibraryName, Name, Number, Vector
+
+MAX_BODIES = 500
+
+
+class Parameter(DocumentPart):
+    """A named constant; without a value it has to be given with every evaluation."""
+
+    value: Number | None = Field(None, description="default, in the unit given; a number or a constant expression")
+    unit: str = Field("", max_length=64, description="SI unit")
+    description: str = Field("", max_length=2000)
+
+
+class Placement(DocumentPart):
+    """A constant offset: position of the origin, then fixed-axis roll, pitch, yaw (URDF)."""
+
+    position: Vector = Field((0, 0, 0), description="m")
+    rpy: Vector = Field((0, 0, 0), description="rad")
+
+
+class PortRotation(DocumentPart):
+    """Rotation of a port by fixed-axis roll, pitch, yaw."""
+
+    rpy: Vector = Field((0, 0, 0), description="rad")
+
+
+class Joint(DocumentPart):
+    """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg), or a placement."""
+
+    type: Literal["revolute", "prismatic", "fixed", "universal", "spherical", "cylindrical", "planar", "free"]
+    coordinate: Name | tuple[Name, ...] | None = Field(None, description="coordinate name(s); rad or m")
+    psi: Number = Field(0, description="rad")
+    theta: Number = Field(0, description="rad")
+    d: Number = Field(0, description="m")
+    sigma: Number = Field(0, description="m")
+    phi: Number = Field(0, description="rad; offset (revolute) or constant (prismatic)")
+    tau: Number = Field(0, description="m; constant (revolute) or offset (prismatic)")
+    placement: Placement | None = None
+    axis: tuple[Number, Number, Number] | None = Field(None, description="joint axis in the placed frame (constant)")
+    stiffness: Number | tuple[Number, ...] = Field(0, description="N m/rad or N/m")
+    rest: Number | tuple[Number, ...] = Field(0, description="rad or m; where the joint spring is at rest")
+    damping: Number | tuple[Number, ...] = Field(0, description="N m s/rad or N s/m")
+    armature: Number | tuple[Number, ...] = Field(0, description="kg m^2 or kg; rotor inertia seen at the joint")
+    limits: tuple[Number, Number] | tuple[tuple[Number, Number], ...] | None = Field(None, description="rad or m")
+
+
+class InertiaTensor(DocumentPart):
+    """Entries of the inertia tensor; xy = -integral of x y dm."""
+
+    xx: Number = Field(0, description="kg m^2")
+    yy: Number = Field(0, description="kg m^2")
+    zz: Number = Field(0, description="kg m^2")
+    xy: Number = Field(0, description="kg m^2")
+    xz: Number = Field(0, description="kg m^2")
+    yz: Number = Field(0, description="kg m^2")
+    about: Literal["com", "origin"] = "com"
+
+
+class Body(DocumentPart):
+    """A rigid body and the joint that carries it; mass centre and inertia in the body frame."""
+
+    name: Name
+    parent: Name
+    joint: Joint
+    mass: Number = Field(0, description="kg")
+    com: Vector = Field((0, 0, 0), description="m")
+    inertia: InertiaTensor = InertiaTensor()
+
+
+class Port(DocumentPart):
+    """A frame fixed in a body, on which other substructures may be mounted."""
+
+    name: Name
+    body: Name
+    position: Vector = Field((0, 0, 0), description="m")
+    rotation: PortRotation = PortRotation()
+
+
+class Point(DocumentPart):
+    """A point fixed in a body."""
+
+    body: Name
+    at: Vector = Field((0, 0, 0), description="m")
+
+
+class ForceLoad(DocumentPart):
+    """A force at a point of a body."""
+
+    type: Literal["force"]
+    body: Name
+    at: Vector = Field((0, 0, 0), description="m")
+    vector: Vector = Field(description="N")
+    frame: Literal["body", "world"] = "body"
+
+
+class TorqueLoad(DocumentPart):
+    """A free moment on a body."""
+
+    type: Literal["torque"]
+    body: Name
+    vector: Vector = Field(description="N m")
+    frame: Literal["body", "world"] = "body"
+
+
+class SpringLoad(DocumentPart):
+    """A linear spring and damper between two points."""
+
+    type: Literal["spring"]
+    from_: Point = Field(alias="from")
+    to: Point
+    stiffness: Number = Field(0, description="N/m")
+    damping: Number = Field(0, description="N s/m")
+    length: Number = Field(0, description="m; unstretched")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+
+class JointLoad(DocumentPart):
+    """A generalised force on a coordinate."""
+
+    type: Literal["joint"]
+    coordinate: Name
+    force: Number = Field(description="N m or N")
+
+
+Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad, Field(discriminator="type")]
+
+
+class Input(DocumentPart):
+    """A named input of the loads; 0 when not given."""
+
+    unit: str = Field("", max_length=64)
+    description: str = Field("", max_length=2000)
+
+
+class Definition(Document):
+    """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
+
+    name: LibraryName
+    title: str = Field("", max_length=200)
+    description: str = Field("", max_length=20_000)
+    tags: tuple[Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")], ...] = Field((), max_length=32)
+    license: str = Field("", max_length=200)
+    source: str = Field("", max_length=4000)
+    parameters: dict[Name, Parameter] = Field({}, max_length=5000)
+    inputs: dict[Name, Input] = Field({}, max_length=500)
+    bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
+    ports: tuple[Port, ...] = Field((), max_length=500)
+    loads: tuple[Load, ...] = Field((), max_length=1000)

@@ -1,0 +1,243 @@
+"""What is stored of a substructure, as formulas of its own coordinates and parameters (mathematics.md, section 6).
+
+The inertia (m, s, J) of every moving part enters as ten symbols, to which its own values and whatever a host mounts on
+it are bound later; binding the own values alone folds the program to its lean form.
+
+=================  ==========  ===========================================================================
+output             shape       meaning (n joints c; own a, b <= c; I: interface frame)
+=================  ==========  ===========================================================================
+E                  n 3 3       rotation: components in frame L(c) -> frame c (E.tilt, E.turn, E.full: its factors)
+Z, tau             n 3, n      from O_L(c) to O_c in frame L(c); body frame origin = O_c + tau e3
+R, r               n 3 3, n 3  rotation I -> frame c, and O_c in I
+U, Omega           n n 3       kinematic base functions U_ca, Omega_ca in frame c
+subtree.m, .s, .J  n ...       mass and moments of everything carried by joint c, about O_c in frame c
+f, n               n 3         linear and angular momentum of joint c's unit velocity, in I about its origin
+K                  n 3 3       K_c^I
+kappa              n n 3       kappa_ac at [a, c]
+F, N               n n 3       F_bc, N_bc at [b, c]
+metric             n n         own metric (armature included)
+christoffel        n n n       own Christoffel symbols
+composite.m .s .J              mass and moments of the whole about the origin of I
+base.m .s .J                   own values of what is fixed to the interface, about its origin
+armature           n           rotor inertia of every joint (part of the metric)
+applied            n           joint springs and dampers, actuators, joint loads, springs
+potential                      potential energy of all springs
+inertia.m .s .J    n ...       own values for the inertia symbols, about the body frame origins
+frame.E .position  frames ...  constant placement of bodies and ports in their carrier's body frame
+port.R .r .U .Omega ports ...  ports with respect to I; own base functions in port axes
+load.at, .vector   loads 3     point (carrier's body frame) and vector of forces and torques
+=================  ==========  ===========================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from substructures.expr.program import Formulas, array
+from substructures.mechanics.base_functions import Columns, base_functions, carried
+from substructures.mechanics.inertia import Inertia, composites
+from substructures.mechanics.joints import Link, links
+from substructures.mechanics.linear3 import (
+    E3,
+    IDENTITY,
+    SYMMETRIC_INDEX,
+    ZERO,
+    Matrix,
+    Planar,
+    Rotation,
+    Turn,
+    Vector,
+    add,
+    apply,
+    cross,
+    multiply,
+    skew,
+    subtract,
+    transpose,
+)
+from substructures.mechanics.metric import JointMomentum, christoffel_block, joint_momentum, metric_column
+from substructures.part.frames import Frame
+from substructures.part.inertia_symbols import inertia_symbols
+from substructures.part.loads import Loads, PointKinematics, applied_forces
+from substructures.part.mechanism import Mechanism
+from substructures.part.topology import INTERFACE
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Recursion results: links, columns, rotations I -> c and positions in I."""
+
+    links: tuple[Link, ...]
+    columns: list[Columns]
+    R: list[Matrix]
+    r: list[Vector]
+
+
+def kinematics(chain: tuple[Link, ...], columns: list[Columns]) -> Kinematics:
+    """R_c = E_c R_p, r_c = r_p + R_p^T Z_c beside the base functions."""
+    R: list[Matrix] = []
+    r: list[Vector] = []
+    for link in chain:
+        R_p, r_p = (R[link.parent], r[link.parent]) if link.parent >= 0 else (IDENTITY, ZERO)
+        x, y, z = (link.rotation.forward(column) for column in transpose(R_p))
+        R.append(transpose((x, y, z)))
+        r.append(add(r_p, apply(transpose(R_p), link.Z)))
+    return Kinematics(chain, columns, R, r)
+
+
+def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
+    """All outputs of the table above.
+
+    Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
+    """
+    chain = links(m.joints)
+    columns = base_functions(chain)
+    subtree, base = composites(m.joints, inertia_symbols(m))
+    momenta = [joint_momentum(joint.s, composite) for joint, composite in zip(m.joints, subtree, strict=True)]
+    outputs = _own_dynamics(m, columns, momenta)
+    k = kinematics(chain, columns)
+    outputs |= _joint_outputs(m, k)
+    outputs |= _inertia_outputs("subtree", subtree) | _inertia_outputs("inertia", list(m.own))
+    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True)
+    outputs |= _inertia_outputs("base", [m.base], scalar=True)
+    outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
+    outputs |= _interface_outputs(k, momenta)
+    forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(m, k, carrier, at))
+    outputs["applied"] = array((len(forces),), lambda c: forces[c])
+    outputs["potential"] = array((), lambda: potential)
+    outputs |= _frame_outputs(m, k)
+    outputs["load.at"] = array((len(loads.wrenches), 3), lambda i, x: loads.wrenches[i].at[x])
+    outputs["load.vector"] = array((len(loads.wrenches), 3), lambda i, x: loads.wrenches[i].vector[x])
+    return outputs
+
+
+def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
+    n = len(m.joints)
+    E = [link.rotation.matrix() for link in k.links]
+    factors: dict[str, dict[tuple[int, ...], Any]] = {"tilt": {}, "turn": {}, "full": {}}
+    for c, link in enumerate(k.links):
+        for factor in link.rotation.factors:
+            if isinstance(factor, Planar):
+                key = "tilt" if factor.axis == 0 else "turn"
+                factors[key] |= {(c, 0): factor.c, (c, 1): factor.s}
+            else:
+                factors["full"] |= {(c, i, j): factor.e[i][j] for i in range(3) for j in range(3)}
+    own = {(c, a): twist for c, columns in enumerate(k.columns) for a, twist in columns.items()}
+    return {
+        "E": array((n, 3, 3), lambda c, i, j: E[c][i][j]),
+        "E.tilt": Formulas((n, 2), factors["tilt"]),
+        "E.turn": Formulas((n, 2), factors["turn"]),
+        "E.full": Formulas((n, 3, 3), factors["full"]),
+        "Z": array((n, 3), lambda c, i: k.links[c].Z[i]),
+        "tau": array((n,), lambda c: m.joints[c].tau),
+        "R": array((n, 3, 3), lambda c, i, j: k.R[c][i][j]),
+        "r": array((n, 3), lambda c, i: k.r[c][i]),
+        "U": _sparse((n, n, 3), {i: twist.U for i, twist in own.items()}),
+        "Omega": _sparse((n, n, 3), {i: twist.Omega for i, twist in own.items()}),
+    }
+
+
+def _sparse(shape: tuple[int, ...], vectors: dict[tuple[int, int], Vector]) -> Formulas:
+    return Formulas(shape, {(*i, x): v[x] for i, v in vectors.items() for x in range(3)})
+
+
+def _inertia_outputs(prefix: str, values: list[Inertia], scalar: bool = False) -> dict[str, Formulas]:
+    """m, s and J of a list of inertias (or of one, without the leading axis)."""
+    shape = () if scalar else (len(values),)
+    index = [()] if scalar else [(k,) for k in range(len(values))]
+    pairs = list(zip(index, values, strict=True))
+    return {
+        f"{prefix}.m": Formulas(shape, {k: v.m for k, v in pairs}),
+        f"{prefix}.s": Formulas((*shape, 3), {(*k, i): v.s[i] for k, v in pairs for i in range(3)}),
+        f"{prefix}.J": Formulas(
+            (*shape, 3, 3),
+            {(*k, i, j): v.J[SYMMETRIC_INDEX[i][j]] for k, v in pairs for i in range(3) for j in range(3)},
+        ),
+    }
+
+
+def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    n = len(momenta)
+    values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in ("f", "n", "kappa", "F", "N")}
+    K: list[Matrix] = []
+    for c, momentum in enumerate(momenta):
+        back, r = transpose(k.R[c]), k.r[c]
+        f = apply(back, momentum.p)
+        K_c = momentum.matrix()
+        values["f"][(c,)] = f
+        values["n"][(c,)] = add(apply(back, momentum.H), cross(r, f))
+        K.append(subtract(multiply(back, multiply(K_c, k.R[c])), multiply(skew(r), skew(f))))
+        for a, twist in k.columns[c].items():
+            F = apply(back, cross(twist.Omega, momentum.p))
+            values["F"][a, c] = F
+            values["N"][a, c] = add(apply(back, momentum.moment(twist.Omega)), cross(r, F))
+            if a != c:
+                moment = add(cross(momentum.p, twist.U), apply(transpose(K_c), twist.Omega))
+                values["kappa"][a, c] = apply(back, moment)
+    outputs = {
+        name: Formulas(
+            (n, 3) if name in "fn" else (n, n, 3), {(*i, x): v[x] for i, v in some.items() for x in range(3)}
+        )
+        for name, some in values.items()
+    }
+    return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
+
+
+def _own_dynamics(m: Mechanism, columns: list[Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    n = len(momenta)
+    g: dict[tuple[int, ...], Any] = {}
+    gamma: dict[tuple[int, ...], Any] = {}
+    for c, momentum in enumerate(momenta):
+        g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
+        g[c, c] = g[c, c] + m.laws[c].armature
+        gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
+    return {"metric": Formulas((n, n), g, "symmetric"), "christoffel": Formulas((n, n, n), gamma, "christoffel")}
+
+
+def _frame_link(m: Mechanism, frame: Frame) -> Link:
+    """A frame as a link without degree of freedom, from O of its carrier."""
+    if frame.carrier == INTERFACE:
+        return Link(INTERFACE, 0, Rotation((Turn(frame.E),)), frame.position)
+    x, y, z = frame.position
+    return Link(frame.carrier, 0, Rotation((Turn(frame.E),)), (x, y, z + m.joints[frame.carrier].tau))
+
+
+def point_kinematics(m: Mechanism, k: Kinematics, carrier: int, at: Vector) -> PointKinematics:
+    """Position and own partial velocities of a point (carrier's body frame) in the interface frame."""
+    if carrier == INTERFACE:
+        return PointKinematics(at, {})
+    link = _frame_link(m, Frame(carrier, IDENTITY, at))
+    back = transpose(k.R[carrier])
+    u = {}
+    for a, twist in k.columns[carrier].items():
+        start = add(twist.U, E3) if a == carrier and m.joints[a].s else twist.U
+        u[a] = apply(back, add(start, cross(twist.Omega, link.Z)))
+    return PointKinematics(add(k.r[carrier], apply(back, link.Z)), u)
+
+
+def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
+    frames = [*m.bodies.values(), *m.ports.values()]
+    n = len(m.joints)
+    outputs = {
+        "frame.E": array((len(frames), 3, 3), lambda i, x, y: frames[i].E[x][y]),
+        "frame.position": array((len(frames), 3), lambda i, x: frames[i].position[x]),
+    }
+    U: dict[tuple[int, int], Vector] = {}
+    Omega: dict[tuple[int, int], Vector] = {}
+    R, r = [], []
+    for i, frame in enumerate(m.ports.values()):
+        link = _frame_link(m, frame)
+        R_c, r_c = (k.R[frame.carrier], k.r[frame.carrier]) if frame.carrier >= 0 else (IDENTITY, ZERO)
+        R.append(multiply(frame.E, R_c))
+        r.append(add(r_c, apply(transpose(R_c), link.Z)))
+        for a, twist in (k.columns[frame.carrier] if frame.carrier >= 0 else {}).items():
+            moved = carried(twist, link, a == frame.carrier and bool(m.joints[a].s))
+            U[i, a], Omega[i, a] = moved.U, moved.Omega
+    ports = len(m.ports)
+    return outputs | {
+        "port.R": array((ports, 3, 3), lambda i, x, y: R[i][x][y]),
+        "port.r": array((ports, 3), lambda i, x: r[i][x]),
+        "port.U": _sparse((ports, n, 3), U),
+        "port.Omega": _sparse((ports, n, 3), Omega),
+    }

@@ -1,0 +1,71 @@
+"""Constant frames: rotation matrices that fold to as few operations as possible, joint axes, mounted placements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from substructures.expr.graph import Expr
+from substructures.expr.interpret import interpret
+from substructures.expr.program import array, program
+from substructures.mechanics.linear3 import IDENTITY, Matrix, Vector, add, apply, cross, multiply, negate, transpose
+from substructures.part.scope import Scope, no_names
+
+#: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
+AXES: tuple[Matrix, Matrix, Matrix] = (
+    ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
+    ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    IDENTITY,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A frame fixed in a carrier: ``E`` (components in the carrier's body frame -> components here), position [m]."""
+
+    carrier: int
+    E: Matrix
+    position: Vector
+
+    def mounted(self, E: Matrix, position: Vector) -> Frame:
+        """A frame placed in this one."""
+        return Frame(self.carrier, multiply(E, self.E), self.point(position))
+
+    def point(self, position: Vector) -> Vector:
+        """A point given in this frame, in the carrier's body frame."""
+        return add(self.position, apply(transpose(self.E), position))
+
+
+def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
+    """E of a frame whose third axis is the given constant direction (any length but zero)."""
+    x, y, z = scope.vector(axis, pointer, no_names)
+    given = [i for i, component in enumerate((x, y, z)) if not component.is_zero]
+    if not given:
+        scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
+        return IDENTITY
+    numbers = constants((x, y, z))
+    if len(given) == 1:
+        return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
+    return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
+
+
+def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:
+    """The values of three constant expressions, roots and pi included."""
+    p = program(v[0].graph, {"v": array((3,), lambda i: v[i])}, {})
+    return [float(x) for x in interpret(p, {})["v"]]
+
+
+def _reversed(e: Matrix) -> Matrix:
+    """The same axis in the opposite direction: a half turn about the first axis of the frame."""
+    return e[0], negate(e[1]), negate(e[2])
+
+
+def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Matrix:
+    """Rows: a unit vector across n and the frame axis least aligned with it, its complement, n."""
+    graph = scope.graph
+    length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2]
+    root = graph.sqrt(length2)
+    unit: Vector = (n[0] / root, n[1] / root, n[2] / root)
+    across = cross(IDENTITY[smallest], n)
+    length = graph.sqrt(length2 - n[smallest] * n[smallest])
+    first: Vector = (across[0] / length, across[1] / length, across[2] / length)
+    return first, cross(unit, first), unit

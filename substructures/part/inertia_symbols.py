@@ -1,0 +1,31 @@
+"""The ten inertial parameters (m, s, J) of a body as symbols, to which values are bound when the part is coupled."""
+
+from __future__ import annotations
+
+from substructures.expr.program import Symbol
+from substructures.mechanics.inertia import Inertia
+from substructures.part.mechanism import Mechanism
+
+UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
+
+
+def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
+    """Ten symbols for every carrier of a named body; nothing for the massless bodies inside compound joints."""
+    graph, bodies = m.graph, m.skeleton.carrier
+    name = {carrier: body for body, carrier in reversed(bodies.items())}
+    result = []
+    for k in range(len(m.joints)):
+        if k not in name:
+            result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
+            continue
+        for symbol, unit in inertia_names(name[k]):
+            m.scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
+        mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(symbol) for symbol, _ in inertia_names(name[k]))
+        result.append(Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
+    return tuple(result)
+
+
+def inertia_names(body: str) -> list[tuple[str, str]]:
+    """(symbol, unit): m, s and J of a body, in the order m, sx, sy, sz, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz."""
+    names = ["m", *(f"s{x}" for x in "xyz"), *(f"J{e}" for e in ("xx", "yy", "zz", "xy", "xz", "yz"))]
+    return [(f"{body}.{n}", UNITS[n[0]]) for n in names]

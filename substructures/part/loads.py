@@ -1,0 +1,206 @@
+"""Applied forces of a substructure: wrenches on bodies, point-to-point springs, joint laws (HTTP contract, section 1).
+
+Springs and joint laws act between parts of the substructure, so that they do no work in a motion of the interface:
+their generalised forces are complete without a host. Forces and torques act on the host, too: kept as wrenches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from substructures.expr.graph import Expr
+from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub, transpose
+from substructures.part.definition import Definition, ForceLoad, JointLoad, SpringLoad, TorqueLoad
+from substructures.part.frames import Frame
+from substructures.part.mechanism import Mechanism
+from substructures.part.scope import Scope
+
+Lookup = Callable[[str], Expr | None]
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """A force at a point, or a moment: ``at`` [m] in the carrier's body frame, vector in its axes or in the world's."""
+
+    carrier: int
+    moment: bool
+    world: bool
+    at: Vector
+    vector: Vector
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Linear spring and damper between two points fixed in carriers (body frames)."""
+
+    ends: tuple[tuple[int, Vector], tuple[int, Vector]]
+    stiffness: Expr
+    damping: Expr
+    length: Expr
+    pointer: str
+
+
+@dataclass(frozen=True)
+class Loads:
+    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index."""
+
+    wrenches: tuple[Wrench, ...]
+    springs: tuple[Spring, ...]
+    joint_forces: dict[int, Expr]
+
+
+def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[tuple[int, bool, bool], ...]:
+    """(carrier, moment, world) of every force and torque: what coupling has to know beside the formulas."""
+    return tuple(
+        (carrier[load.body], isinstance(load, TorqueLoad), load.frame == "world")
+        for load in definition.loads
+        if isinstance(load, (ForceLoad, TorqueLoad))
+    )
+
+
+def read_loads(m: Mechanism) -> Loads:
+    """Read the loads; expressions may name parameters, coordinates, velocities (q'), inputs and the time t."""
+    lookup = load_names(m.scope, m)
+    wrenches: list[Wrench] = []
+    springs: list[Spring] = []
+    forces: dict[int, Expr] = {}
+    for i, load in enumerate(m.definition.loads):
+        pointer = f"/loads/{i}"
+        if isinstance(load, (ForceLoad, TorqueLoad)):
+            wrenches += _wrench(m, load, pointer, lookup)
+        elif isinstance(load, SpringLoad):
+            springs += _spring(m, load, pointer, lookup)
+        else:
+            _joint_force(m, load, pointer, lookup, forces)
+    m.scope.finish()
+    return Loads(tuple(wrenches), tuple(springs), forces)
+
+
+def load_names(scope: Scope, m: Mechanism) -> Lookup:
+    """Names for load expressions; a symbol is declared when it is first used."""
+    coordinates = set(m.skeleton.coordinates)
+
+    def lookup(name: str) -> Expr | None:
+        if name in scope.names:
+            return scope.names[name]
+        if name == "t":
+            return scope.declare("t", "time", "s")
+        if name in m.definition.inputs:
+            return scope.declare(name, "input", m.definition.inputs[name].unit)
+        if name in coordinates:
+            return scope.graph.symbol(name)
+        if name.endswith("'") and name[:-1] in coordinates:
+            return velocity(m, m.skeleton.coordinates.index(name[:-1]))
+        return None
+
+    return lookup
+
+
+def velocity(m: Mechanism, a: int) -> Expr:
+    """The symbol of q'^a."""
+    joint = m.skeleton.joints[a]
+    return m.scope.declare(f"{joint.coordinate}'", "velocity", "m/s" if joint.s else "rad/s")
+
+
+def _frame(m: Mechanism, body: str, pointer: str) -> Frame | None:
+    frame = m.bodies.get(body)
+    if frame is None:
+        m.scope.fault(pointer, "unknown-body", f"unknown body '{body}'")
+    return frame
+
+
+def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lookup) -> list[Wrench]:
+    frame = _frame(m, load.body, f"{pointer}/body")
+    if frame is None:
+        return []
+    vector = m.scope.vector(load.vector, f"{pointer}/vector", lookup)
+    at = ZERO
+    if isinstance(load, ForceLoad):
+        at = frame.point(m.scope.vector(load.at, f"{pointer}/at"))
+    world = load.frame == "world"
+    if not world:
+        vector = apply(transpose(frame.E), vector)
+    return [Wrench(frame.carrier, isinstance(load, TorqueLoad), world, at, vector)]
+
+
+def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> list[Spring]:
+    ends = []
+    for key, end in (("from", load.from_), ("to", load.to)):
+        frame = _frame(m, end.body, f"{pointer}/{key}/body")
+        if frame is None:
+            return []
+        ends.append((frame.carrier, frame.point(m.scope.vector(end.at, f"{pointer}/{key}/at"))))
+    names = ("stiffness", "damping", "length")
+    stiffness, damping, length = (m.scope.read(getattr(load, name), f"{pointer}/{name}", lookup) for name in names)
+    return [Spring((ends[0], ends[1]), stiffness, damping, length, pointer)]
+
+
+def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
+    if load.coordinate not in m.skeleton.coordinates:
+        m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
+        return
+    a = m.skeleton.coordinates.index(load.coordinate)
+    forces[a] = forces.get(a, m.graph.zero) + m.scope.read(load.force, f"{pointer}/force", lookup)
+
+
+@dataclass(frozen=True)
+class PointKinematics:
+    """Position and own partial velocities of a point, in the interface frame."""
+
+    position: Vector
+    u: Mapping[int, Vector]
+
+
+def applied_forces(
+    m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]
+) -> tuple[list[Expr], Expr]:
+    """(generalised forces of joint laws, actuators and springs; potential energy of all springs)."""
+    zero = m.graph.zero
+    forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
+    potential = zero
+    for a, (law, entry) in enumerate(zip(m.laws, m.skeleton.joints, strict=True)):
+        q = m.graph.symbol(entry.coordinate)
+        stretch = q - law.rest
+        tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
+        forces[a] = forces[a] + tau - law.stiffness * stretch
+        if not law.damping.is_zero:
+            forces[a] = forces[a] - law.damping * velocity(m, a)
+        potential = potential + law.stiffness * Fraction(1, 2) * (stretch * stretch)
+    for spring in loads.springs:
+        potential = potential + _spring_force(m, spring, point, forces)
+    m.scope.finish()
+    return forces, potential
+
+
+def _spring_force(
+    m: Mechanism, spring: Spring, point: Callable[[int, Vector], PointKinematics], forces: list[Expr]
+) -> Expr:
+    """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
+    start, end = (point(*e) for e in spring.ends)
+    x = sub(end.position, start.position)
+    reach = {a: dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO))) for a in {**start.u, **end.u}}
+    length2: Expr = m.graph.zero + dot(x, x)
+    if length2.is_zero:
+        m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
+        return m.graph.zero
+    factor: Expr = spring.stiffness
+    energy: Expr = spring.stiffness * length2
+    if not spring.length.is_zero:
+        length = m.graph.sqrt(length2)
+        factor = factor - spring.stiffness * spring.length / length
+        energy = spring.stiffness * (length - spring.length) ** 2
+    if not spring.damping.is_zero:
+        speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
+        factor = factor + spring.damping * speed / length2
+    for a, w in reach.items():
+        forces[a] = forces[a] - factor * w
+    return energy * Fraction(1, 2)
+
+
+def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> tuple[Vector, Vector]:
+    """(force, moment about the carrier's body frame origin)."""
+    if moment:
+        return ZERO, vector
+    return vector, cross(at, vector)

@@ -1,0 +1,233 @@
+"""A definition with all its formulas in a graph: joints, inertias, frames and loads (mathematics.md, section 2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Symbol
+from substructures.expr.trigonometry import cos_sin
+from substructures.mechanics.inertia import Inertia, binet
+from substructures.mechanics.joints import Joint, lean_rotation
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Planar,
+    Rotation,
+    Symmetric,
+    Turn,
+    multiply,
+    scale,
+    transpose,
+)
+from substructures.part.definition import Body, Definition
+from substructures.part.frames import AXES, Frame, axis_rotation
+from substructures.part.scope import Scope, no_names
+from substructures.part.topology import BASE, INTERFACE, JointEntry, Skeleton, skeleton
+
+UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """Spring, damper and rotor of a coordinate; expressions."""
+
+    stiffness: Expr
+    rest: Expr
+    damping: Expr
+    armature: Expr
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Joints with the inertia of everything fixed to them; frames of bodies and ports."""
+
+    definition: Definition
+    skeleton: Skeleton
+    scope: Scope
+    joints: tuple[Joint, ...]
+    own: tuple[Inertia, ...]  #: own inertia of carrier k about its body frame origin
+    base: Inertia  #: what is fixed to the interface
+    laws: tuple[JointLaw, ...]
+    bodies: dict[str, Frame]
+    ports: dict[str, Frame]
+    central: dict[int, tuple[Expr, Symmetric]]  #: mass and Binet tensor about the mass centre, by body index
+
+    @property
+    def graph(self) -> Graph:
+        """The graph of all formulas."""
+        return self.scope.graph
+
+
+def mechanism(definition: Definition) -> Mechanism:
+    """Read all expressions of a definition. Raises InvalidDocument with a pointer to every fault."""
+    bones = skeleton(definition)
+    scope = _scope(definition, bones)
+    builder = _Builder(definition, bones, scope)
+    for i in bones.order:
+        builder.add(i, definition.bodies[i])
+    ports = {}
+    for i, port in enumerate(definition.ports):
+        pointer = f"/ports/{i}"
+        E = scope.rpy(port.rotation.rpy, f"{pointer}/rotation/rpy").matrix()
+        ports[port.name] = builder.bodies[port.body].mounted(E, scope.vector(port.position, f"{pointer}/position"))
+    scope.finish()
+    return Mechanism(
+        definition,
+        bones,
+        scope,
+        tuple(builder.joints),
+        tuple(builder.own),
+        builder.base,
+        tuple(builder.laws),
+        builder.bodies,
+        ports,
+        builder.central,
+    )
+
+
+def _scope(definition: Definition, bones: Skeleton) -> Scope:
+    scope = Scope(Graph())
+    for name, parameter in sorted(definition.parameters.items()):
+        scope.declare(name, "parameter", parameter.unit)
+        if parameter.value is not None:
+            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
+    for joint in bones.joints:
+        scope.symbols[joint.coordinate] = _coordinate(joint)
+    return scope
+
+
+def _coordinate(joint: JointEntry) -> Symbol:
+    return Symbol(joint.coordinate, "coordinate", UNITS[joint.s])
+
+
+class _Builder:
+    """Adds bodies one by one, parents first."""
+
+    def __init__(self, definition: Definition, bones: Skeleton, scope: Scope) -> None:
+        self.definition, self.scope = definition, scope
+        self.entries: dict[int, list[JointEntry]] = {}
+        for entry in bones.joints:
+            self.entries.setdefault(entry.body, []).append(entry)
+        self.joints: list[Joint] = []
+        self.own: list[Inertia] = []
+        self.base = Inertia()
+        self.laws: list[JointLaw] = []
+        self.central: dict[int, tuple[Expr, Symmetric]] = {}
+        self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
+
+    def add(self, i: int, body: Body) -> None:
+        """Place the joint(s) of a body, then give its inertia to the carrier."""
+        pointer = f"/bodies/{i}"
+        frame = self._placed(self.bodies[body.parent], body, f"{pointer}/joint")
+        axis = self._axis(body, f"{pointer}/joint")
+        for entry in self.entries.get(i, []):
+            frame = self._joint(frame, entry, body, axis, f"{pointer}/joint")
+        if body.joint.type == "fixed":
+            frame = self._fixed(frame, body, f"{pointer}/joint")
+        self.bodies[body.name] = frame
+        self._inertia(frame, i, body, pointer)
+
+    def _placed(self, parent: Frame, body: Body, pointer: str) -> Frame:
+        """The frame before the joint moves: by the row psi, theta, d, sigma or by a placement."""
+        joint, read = body.joint, self.scope.read
+        psi, theta = (read(getattr(joint, name), f"{pointer}/{name}") for name in ("psi", "theta"))
+        d, sigma = (read(getattr(joint, name), f"{pointer}/{name}") for name in ("d", "sigma"))
+        if joint.placement is not None:
+            if any(not x.is_zero for x in (psi, theta, d, sigma)):
+                message = "give either psi, theta, d, sigma or a placement, not both"
+                self.scope.fault(f"{pointer}/placement", "row-and-placement", message)
+            rotation = self.scope.rpy(joint.placement.rpy, f"{pointer}/placement/rpy")
+            return parent.mounted(
+                rotation.matrix(), self.scope.vector(joint.placement.position, f"{pointer}/placement/position")
+            )
+        c, s = cos_sin(psi)
+        E = Rotation((Planar(2, c, s), Planar(0, *cos_sin(theta)))).matrix()
+        return parent.mounted(E, (d * c, d * s, sigma))
+
+    def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
+        """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
+        for name in ("stiffness", "rest", "damping", "armature", "limits"):
+            if getattr(body.joint, name) not in (0, None):
+                self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
+        phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
+        return frame.mounted(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
+
+    def _axis(self, body: Body, pointer: str) -> Matrix:
+        """E from the placed frame to the frame whose third axis is the joint axis."""
+        joint = body.joint
+        if joint.axis is None:
+            return IDENTITY
+        if joint.placement is None or joint.type not in ("revolute", "prismatic"):
+            message = "'axis' goes with a placement and a revolute or prismatic joint"
+            self.scope.fault(f"{pointer}/axis", "axis-without-placement", message)
+            return IDENTITY
+        return axis_rotation(self.scope, joint.axis, f"{pointer}/axis")
+
+    def _joint(self, frame: Frame, entry: JointEntry, body: Body, axis: Matrix, pointer: str) -> Frame:
+        """One degree of freedom; returns the frame that moves with it, turned back from the joint axis."""
+        turned = multiply(AXES[entry.axis], axis) if body.joint.axis is not None else AXES[entry.axis]
+        q = self.scope.graph.symbol(entry.coordinate)
+        phi, tau = self._offsets(entry, body, pointer)
+        constant = multiply(turned, frame.E)
+        phi, tau = (phi, q + tau) if entry.s else (q + phi, tau)
+        rotation = lean_rotation(constant, *cos_sin(phi))
+        self.joints.append(Joint(frame.carrier, entry.s, rotation, frame.position, tau))
+        self.own.append(Inertia())
+        self.laws.append(self._law(entry, body, pointer))
+        self._limits(entry, body, pointer)
+        return Frame(len(self.joints) - 1, transpose(turned), ZERO)
+
+    def _offsets(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr]:
+        """phi and tau: constants of the joint (compound joints have none)."""
+        phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
+        for name, offset in (("phi", phi), ("tau", tau)):
+            if len(self.entries[entry.body]) > 1 and not offset.is_zero:
+                message = f"{name} does not go with a {body.joint.type} joint"
+                self.scope.fault(f"{pointer}/{name}", "offset-of-compound", message)
+        return phi, tau
+
+    def _law(self, entry: JointEntry, body: Body, pointer: str) -> JointLaw:
+        values = []
+        for name in ("stiffness", "rest", "damping", "armature"):
+            given, place = getattr(body.joint, name), f"{pointer}/{name}"
+            if isinstance(given, tuple):
+                if len(given) != len(self.entries[entry.body]):
+                    self.scope.fault(place, "wrong-length", "one number for each of the joint's coordinates expected")
+                    given = (0,) * len(self.entries[entry.body])
+                given, place = given[entry.step], f"{place}/{entry.step}"
+            values.append(self.scope.read(given, place))
+        return JointLaw(*values)
+
+    def _limits(self, entry: JointEntry, body: Body, pointer: str) -> None:
+        """Limits are kept as given; here they only have to be readable."""
+        given, place = body.joint.limits, f"{pointer}/limits"
+        if given and isinstance(given[0], tuple):
+            if entry.step >= len(given):
+                self.scope.fault(
+                    place, "wrong-length", "one pair of limits for each of the joint's coordinates expected"
+                )
+                return
+            given, place = given[entry.step], f"{place}/{entry.step}"
+        for i, value in enumerate(given or ()):
+            self.scope.read(value, f"{place}/{i}")
+
+    def _inertia(self, frame: Frame, i: int, body: Body, pointer: str) -> None:
+        scope, tensor = self.scope, body.inertia
+        mass = scope.read(body.mass, f"{pointer}/mass")
+        com = scope.vector(body.com, f"{pointer}/com")
+        xx, yy, zz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz"))
+        xy, xz, yz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xy", "xz", "yz"))
+        J = binet((xx, yy, zz, xy, xz, yz))
+        if tensor.about == "com":
+            inertia = Inertia(mass, ZERO, J).shifted(com)
+        else:
+            inertia = Inertia(mass, scale(mass, com), J)
+            J = Inertia(-mass, ZERO, J).shifted(com).J  # J about the mass centre: J - m h h^T
+        self.central[i] = mass, J
+        moved = inertia.turned_back(Rotation((Turn(frame.E),))).shifted(frame.position)
+        if frame.carrier == INTERFACE:
+            self.base = self.base + moved
+        else:
+            self.own[frame.carrier] = self.own[frame.carrier] + moved

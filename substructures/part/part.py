@@ -1,0 +1,205 @@
+"""A substructure with its derived formulas: what the library stores and what coupling works from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import Any
+
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.program import Output, Program, program
+from substructures.part.certificate import certify_part
+from substructures.part.definition import Definition
+from substructures.part.formulas import formulas
+from substructures.part.inertia_symbols import inertia_names
+from substructures.part.loads import read_loads, wrench_places
+from substructures.part.mechanism import mechanism
+from substructures.part.topology import BASE, Skeleton, christoffel_entries, skeleton
+
+#: outputs that are bookkeeping for coupling rather than formulas to read
+INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
+
+#: most operations of a program by default
+MAX_NODES = 1_000_000
+#: most Christoffel symbols; known before anything is derived
+MAX_ENTRIES = 100_000
+
+
+@dataclass(frozen=True)
+class Formula:
+    """An addressable formula of the store: one vector, tensor or scalar of a quantity."""
+
+    quantity: str
+    output: str
+    body: str | None
+    coordinate: str | None
+    index: tuple[int, ...]
+    shape: tuple[int, ...]
+    symmetry: str
+    operations: int
+
+
+@dataclass(frozen=True)
+class Part:
+    """A definition, the program of its formulas (see :mod:`substructures.part.formulas`) and the certificate."""
+
+    definition: Definition
+    program: Program
+    certificate: Mapping[str, Any] = field(hash=False)
+
+    @classmethod
+    def load(cls, definition: Definition, program_bytes: bytes, certificate: Mapping[str, Any]) -> Part:
+        """A stored part. Raises InvalidProgram when the bytes are damaged."""
+        return cls(definition, Program.from_bytes(program_bytes), certificate)
+
+    @cached_property
+    def skeleton(self) -> Skeleton:
+        """Names and topology."""
+        return skeleton(self.definition)
+
+    @property
+    def name(self) -> str:
+        """Name in the library."""
+        return self.definition.name
+
+    @property
+    def dof(self) -> int:
+        """Number of coordinates."""
+        return len(self.skeleton.joints)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Coordinate names."""
+        return self.skeleton.coordinates
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies, the interface frame ``base`` not included."""
+        return tuple(name for name in self.skeleton.carrier if name != BASE)
+
+    @property
+    def joints(self) -> str:
+        """'R' or 'P' for every coordinate."""
+        return self.skeleton.kinds
+
+    @property
+    def ports(self) -> tuple[str, ...]:
+        """Names of the ports."""
+        return tuple(port.name for port in self.definition.ports)
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """All frames something can be mounted on, in the order of the outputs ``frame.*``: bodies, then ports."""
+        return (*self.skeleton.carrier, *self.ports)
+
+    @cached_property
+    def frame_carriers(self) -> tuple[int, ...]:
+        """The carrier of every frame."""
+        carrier = self.skeleton.carrier
+        return (*carrier.values(), *(carrier[port.body] for port in self.definition.ports))
+
+    @cached_property
+    def wrenches(self) -> tuple[tuple[int, bool, bool], ...]:
+        """(carrier, is a moment, in world axes) of every force and torque load."""
+        return wrench_places(self.definition, self.skeleton.carrier)
+
+    @cached_property
+    def inertia_symbols(self) -> dict[int, tuple[str, ...]]:
+        """The ten inertia symbols of every carrier that has them."""
+        name = {carrier: body for body, carrier in reversed(self.skeleton.carrier.items()) if carrier >= 0}
+        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in name.items()}
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Parameters with default value, unit and description."""
+        return {name: p.model_dump() for name, p in self.definition.parameters.items()}
+
+    @cached_property
+    def operations(self) -> dict[str, int]:
+        """Additions, multiplications and divisions of every quantity, and of the whole program."""
+        counts = {name: n for name, n in self.program.totals().items() if name not in INTERNAL}
+        return counts | {"total": self.program.count()["total"]}
+
+    def formulas(self) -> list[Formula]:
+        """The index of the store: every formula with its place, shape and operation count."""
+        groups = {
+            (name, lead): entries
+            for name, output in self.program.outputs.items()
+            if name not in INTERNAL
+            for lead, entries in _grouped(output, len(LEADING.get(name, ()))).items()
+        }
+        counts = self.program.totals_of(list(groups.values()))
+        return [self._formula(*place, count) for place, count in zip(groups, counts, strict=True)]
+
+    def _formula(self, name: str, lead: tuple[int, ...], count: int) -> Formula:
+        """Leading axes are joints, coordinates or ports; a formula is what remains for one such index."""
+        output, axes = self.program.outputs[name], LEADING.get(name, ())
+        labels = dict(zip(axes, lead, strict=True))
+        body = self._label(labels, "joint", self._joint_bodies) or self._label(labels, "port", self.ports)
+        coordinate = self._label(labels, "coordinate", self.coordinates)
+        shape = output.shape[len(axes) :]
+        return Formula(name.split(".")[0], name, body, coordinate, lead, shape, output.symmetry, count)
+
+    @staticmethod
+    def _label(labels: Mapping[str, int], axis: str, names: tuple[str, ...]) -> str | None:
+        return names[labels[axis]] if axis in labels else None
+
+    @cached_property
+    def _joint_bodies(self) -> tuple[str, ...]:
+        """For every joint the body it carries (the next named one for the links inside a compound joint)."""
+        return tuple(self.definition.bodies[j.body].name for j in self.skeleton.joints)
+
+
+#: what the leading axes of an output mean; the remaining axes are components (or coordinate indices) of one formula
+LEADING: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("E", "Z", "tau", "R", "r", "f", "n", "K", "applied", "armature"), ("joint",)),
+    **dict.fromkeys(("subtree.m", "subtree.s", "subtree.J", "inertia.m", "inertia.s", "inertia.J"), ("joint",)),
+    **dict.fromkeys(("U", "Omega"), ("joint", "coordinate")),
+    **dict.fromkeys(("kappa", "F", "N"), ("coordinate", "joint")),
+    **dict.fromkeys(("port.R", "port.r"), ("port",)),
+    **dict.fromkeys(("port.U", "port.Omega"), ("port", "coordinate")),
+    "metric": ("coordinate", "b"),
+    "christoffel": ("coordinate", "b", "c"),
+}
+
+
+def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
+    """The entries of an output by their index along the leading axes."""
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for index, entry in zip(output.index, output.entries, strict=True):
+        groups.setdefault(index[:axes], []).append(entry)
+    return groups
+
+
+def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
+    """Derive, verify and certify the formulas of a substructure.
+
+    Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
+    """
+    start = perf_counter()
+    m = mechanism(definition)
+    entries = christoffel_entries([(j.parent, j.s) for j in m.skeleton.joints])
+    if entries > MAX_ENTRIES:
+        raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)
+    loads = read_loads(m)
+    try:
+        outputs = formulas(m, loads)
+    except ZeroDivisionError:
+        raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
+    result = program(m.graph, outputs, m.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
+    seconds = perf_counter() - start
+    return Part(definition, result, certify_part(m, result, seconds))
+
+
+def recheck(part: Part) -> dict[str, Any]:
+    """The certificate of a stored part made anew, of the program as it is stored.
+
+    Raises VerificationFailed when the program disagrees with the definition, InvalidDocument as :func:`derive`.
+    """
+    m = mechanism(part.definition)
+    m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
+    return certify_part(m, part.program, 0.0)

@@ -1,0 +1,92 @@
+"""Masses, inertia tensors and rotors that no rigid body can have: faults for numbers, warnings for default values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Formulas, array, program
+from substructures.mechanics.linear3 import dense
+from substructures.part.mechanism import Mechanism
+from substructures.part.scope import Scope, no_names
+
+Problem = tuple[str, str]  #: code, message
+
+
+@dataclass(frozen=True)
+class _Check:
+    """A value of a body, with the place of its numbers in the definition."""
+
+    body: int
+    field: str
+    formulas: Formulas
+
+
+def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
+    """Warnings about default values. Raises InvalidDocument for impossible numbers."""
+    checks = {f"x{k}": check for k, check in enumerate(_checks(m))}
+    p = program(m.graph, {name: check.formulas for name, check in checks.items()}, m.scope.symbols)
+    defaults = default_values(m)
+    warnings = []
+    for name, check in checks.items():
+        needed = {p.symbols[p.operations[k][1]].name for k in p.reachable([name]) if p.operations[k][0] == "sym"}
+        if not needed <= defaults.keys():
+            continue
+        problem = _problem(check.field, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
+        if problem is None:
+            continue
+        pointer = f"/bodies/{check.body}/{check.field}"
+        text = f"body '{m.definition.bodies[check.body].name}': {problem[1]}"
+        if needed:
+            warnings.append({"pointer": pointer, "code": problem[0], "message": f"{text} at the default values"})
+        else:
+            m.scope.fault(pointer, problem[0], text)
+    m.scope.finish()
+    return warnings
+
+
+def _checks(m: Mechanism) -> Iterator[_Check]:
+    for i, (mass, J) in m.central.items():
+        full = dense(J)
+        yield _Check(i, "mass", array((), lambda mass=mass: mass))
+        yield _Check(i, "inertia", array((3, 3), lambda a, b, full=full: full[a][b]))
+    for entry, law in zip(m.skeleton.joints, m.laws, strict=True):
+        yield _Check(entry.body, "joint/armature", array((), lambda law=law: law.armature))
+
+
+def default_values(m: Mechanism) -> dict[str, float]:
+    """The parameters that have a default, as doubles."""
+    return constants(m.scope, {name: p.value for name, p in m.definition.parameters.items()})
+
+
+def constants(scope: Scope, given: Mapping[str, Any]) -> dict[str, float]:
+    """Numbers and constant expressions as doubles; None is left out."""
+    read = {n: scope.read(v, f"/parameters/{n}/value", no_names) for n, v in given.items() if v is not None}
+    numbers = interpret(program(scope.graph, {n: array((), lambda v=v: v) for n, v in read.items()}, {}), {})
+    return {name: float(v) for name, v in numbers.items()}
+
+
+def _problem(field: str, value: Array) -> Problem | None:
+    if not np.isfinite(value).all():
+        return "number-not-finite", "a value is beyond the range of floating point numbers"
+    if field == "inertia":
+        return _impossible_tensor(value)
+    quantity, unit = ("mass", "kg") if field == "mass" else ("armature", "kg m^2")
+    return (f"negative-{quantity}", f"the {quantity} {float(value):g} {unit} is negative") if value < 0 else None
+
+
+def _impossible_tensor(binet: Array) -> Problem | None:
+    """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
+    eigenvalues = np.linalg.eigvalsh(binet)
+    if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
+        return None
+    moments: Iterable[float] = np.sort(eigenvalues.sum() - eigenvalues)
+    shown = ", ".join(f"{x:.6g}" for x in moments)
+    return "impossible-inertia", (
+        f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre (triangle inequality)"
+    )

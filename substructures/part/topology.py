@@ -1,0 +1,185 @@
+"""The names and the topology of a definition: chains of one degree of freedom joints, frames and loads, no formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from substructures.errors import Fault, InvalidDocument
+from substructures.expr.parse import RESERVED
+from substructures.part.definition import Body, Definition
+
+BASE = "base"
+INTERFACE = -1  #: carrier index of everything that is fixed to the interface frame
+
+#: (kind, axis of the frame before the joint) of every one degree of freedom joint in a joint type, in order.
+#: ``spherical`` is yaw, pitch, roll (about the third, the new second, the new first axis); singular at pitch = +-pi/2.
+CHAINS: dict[str, tuple[tuple[int, int], ...]] = {
+    "revolute": ((0, 2),),
+    "prismatic": ((1, 2),),
+    "fixed": (),
+    "universal": ((0, 2), (0, 1)),
+    "spherical": ((0, 2), (0, 1), (0, 0)),
+    "cylindrical": ((0, 2), (1, 2)),
+    "planar": ((1, 0), (1, 1), (0, 2)),
+    "free": ((1, 0), (1, 1), (1, 2), (0, 2), (0, 1), (0, 0)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class JointEntry:
+    """One degree of freedom: coordinate, parent carrier, 1 prismatic / 0 revolute, axis, place in the definition."""
+
+    coordinate: str
+    parent: int
+    s: int
+    axis: int
+    body: int  #: index of the body in the definition
+    step: int  #: place in the chain of a compound joint
+    last: bool  #: carries the named body
+
+
+@dataclass(frozen=True, slots=True)
+class Skeleton:
+    """Joints in order (parents first), the carrier of every named body (-1: interface) and the order of the bodies."""
+
+    joints: tuple[JointEntry, ...]
+    carrier: dict[str, int]
+    order: tuple[int, ...]  #: indices of the bodies in the definition, parents first
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Coordinate names in order."""
+        return tuple(j.coordinate for j in self.joints)
+
+    @property
+    def kinds(self) -> str:
+        """'R' or 'P' for every joint."""
+        return "".join("P" if j.s else "R" for j in self.joints)
+
+
+def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
+    """Independent Christoffel symbols of joints (parent, kind), at most: a and revolute b on the path to every joint c.
+
+    Known before anything is derived, and what the size of a program grows with.
+    """
+    paths: list[tuple[int, int]] = []
+    for parent, s in joints:
+        length, turning = paths[parent] if parent >= 0 else (0, 0)
+        paths.append((length + 1, turning + 1 - s))
+    return sum(length * turning for length, turning in paths)
+
+
+def skeleton(definition: Definition) -> Skeleton:
+    """Names and topology. Raises InvalidDocument: unknown parents, cycles, duplicate, reserved or missing names."""
+    faults = _name_faults(definition)
+    order, more = _order(definition)
+    faults += more
+    joints: list[JointEntry] = []
+    carrier = {BASE: INTERFACE}
+    for i in order:
+        body = definition.bodies[i]
+        names = _coordinates(body, i, faults)
+        k = carrier.get(body.parent, INTERFACE)
+        chain = CHAINS[body.joint.type]
+        for step, ((s, axis), name) in enumerate(zip(chain, names, strict=True)):
+            joints.append(JointEntry(name, k, s, axis, i, step, step == len(chain) - 1))
+            k = len(joints) - 1
+        carrier[body.name] = k
+    faults += _coordinate_faults(definition, joints)
+    if faults:
+        raise InvalidDocument(faults)
+    return Skeleton(tuple(joints), carrier, tuple(order))
+
+
+def _name_faults(definition: Definition) -> list[Fault]:
+    faults = []
+    seen = {BASE}
+    for i, body in enumerate(definition.bodies):
+        if body.name in seen:
+            message = f"'{BASE}' is the interface frame" if body.name == BASE else f"duplicate body '{body.name}'"
+            faults.append(Fault(f"/bodies/{i}/name", "duplicate-name", message))
+        seen.add(body.name)
+    ports = set()
+    for i, port in enumerate(definition.ports):
+        if port.name in ports or port.name in seen:
+            faults.append(Fault(f"/ports/{i}/name", "duplicate-name", f"duplicate port or body name '{port.name}'"))
+        ports.add(port.name)
+        if port.body not in seen:
+            faults.append(Fault(f"/ports/{i}/body", "unknown-body", f"unknown body '{port.body}'"))
+    for kind, names in (("parameters", definition.parameters), ("inputs", definition.inputs)):
+        for name in names:
+            if name in RESERVED:
+                faults.append(Fault(f"/{kind}/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions"))
+            if kind == "inputs" and name in definition.parameters:
+                faults.append(Fault(f"/inputs/{name}", "duplicate-name", f"'{name}' is a parameter, too"))
+    return faults
+
+
+def _order(definition: Definition) -> tuple[list[int], list[Fault]]:
+    """Bodies with parents first, otherwise in the order given; faults for unknown parents and cycles."""
+    names = {body.name for body in definition.bodies}
+    faults = [
+        Fault(f"/bodies/{i}/parent", "unknown-parent", f"unknown parent '{body.parent}' of body '{body.name}'")
+        for i, body in enumerate(definition.bodies)
+        if body.parent != BASE and body.parent not in names
+    ]
+    children: dict[str, list[int]] = {}
+    for i, body in enumerate(definition.bodies):
+        children.setdefault(body.parent, []).append(i)
+    if _in_order(definition):
+        return list(range(len(definition.bodies))), faults
+    order: list[int] = []
+    ready = list(children.get(BASE, []))
+    while ready:
+        i = ready.pop(0)
+        if i in order:
+            break
+        order.append(i)
+        ready += children.get(definition.bodies[i].name, [])
+    if not faults:
+        left = [i for i in range(len(definition.bodies)) if i not in order]
+        faults += [
+            Fault(
+                f"/bodies/{i}/parent", "cycle", f"body '{definition.bodies[i].name}' is on or behind a cycle of parents"
+            )
+            for i in left
+        ]
+    return order, faults
+
+
+def _in_order(definition: Definition) -> bool:
+    seen = {BASE}
+    for body in definition.bodies:
+        if body.parent not in seen:
+            return False
+        seen.add(body.name)
+    return True
+
+
+def _coordinates(body: Body, i: int, faults: list[Fault]) -> list[str]:
+    """The coordinate names of a body's joint; q_<body> (with a number) by default."""
+    given, n = body.joint.coordinate, len(CHAINS[body.joint.type])
+    if given is None:
+        return [f"q_{body.name}"] if n == 1 else [f"q_{body.name}_{j + 1}" for j in range(n)]
+    names = [given] if isinstance(given, str) else list(given)
+    if len(names) != n:
+        message = f"joint type '{body.joint.type}' has {n} coordinate(s), {len(names)} given"
+        faults.append(Fault(f"/bodies/{i}/joint/coordinate", "wrong-length", message))
+        return [f"q_{body.name}_{j + 1}" for j in range(n)]
+    return names
+
+
+def _coordinate_faults(definition: Definition, joints: list[JointEntry]) -> list[Fault]:
+    faults = []
+    seen: set[str] = set()
+    for joint in joints:
+        name, pointer = joint.coordinate, f"/bodies/{joint.body}/joint/coordinate"
+        if name in seen or name in definition.parameters or name in definition.inputs:
+            faults.append(
+                Fault(pointer, "duplicate-name", f"coordinate '{name}' is used twice (coordinates, parameters, inputs)")
+            )
+        if name in RESERVED:
+            faults.append(Fault(pointer, "reserved-name", f"'{name}' has a fixed meaning in expressions"))
+        seen.add(name)
+    return faults

@@ -1,0 +1,128 @@
+"""Exact derivatives of inverse and forward dynamics as formulas, forward mode on the graph.
+
+With ID_a(q, q', q'', tau) = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a(q, q', tau, t) one walk over the nodes of ID gives
+
+    dID = dID/dq dq + dID/dq' dq' + dID/dq'' dq'' + dID/dtau dtau,        dID/dq'' = g,        dID/dtau_a = -e_a
+
+as formulas again, for a small multiple of the operations of ID. The direction is a symbol beside every coordinate,
+velocity, acceleration and input, with the same kind and unit and ``d.`` before its name: ``d.arm.q1`` [rad, m],
+``d.arm.q1'`` [rad/s, m/s], ``d.arm.q1''`` [rad/s^2, m/s^2], ``d.tau.arm.q1`` [N m, N], ``d.arm.u`` for an input u.
+Forward dynamics q'' = FD(q, q', tau) satisfies ID(q, q', FD, tau) = 0, hence g d(FD) = -dID at q'' = FD with dq'' = 0.
+(mathematics.md, section 7: the perturbation equations.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.differentiate import directional
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, Program, array
+from substructures.expr.replay import replay
+from substructures.mechanics.factorisation import Factors, factor_operations, factorised
+from substructures.part.part import MAX_NODES
+from substructures.quantities.workspace import ID, Replayed, vector
+from substructures.tree.model import Model, require_open
+
+FD = "forward_dynamics"
+#: kinds of symbols that have a direction
+VARIED = frozenset(("coordinate", "velocity", "acceleration", "input"))
+BY_STATE = "evaluate it at states (numbers take closures), or use velocity equations with constraints of type 'closure'"
+SINGULAR = "the metric is singular or not positive definite: check masses, inertias and coordinates"
+
+
+class SingularMetric(InvalidDocument):
+    """A metric that is singular in every state."""
+
+
+def direction(name: str) -> str:
+    """The symbol of the variation of ``name``."""
+    return f"d.{name}"
+
+
+def _along(r: Replayed, rows: Sequence[Expr], fixed: frozenset[str] = frozenset()) -> list[Expr]:
+    """d(row) along the symbols ``d.*``, which are declared; ``fixed`` kinds of symbols are not varied."""
+    varied = [s for s in r.symbols.values() if s.kind in VARIED - fixed]
+    r.symbols |= {direction(s.name): replace(s, name=direction(s.name)) for s in varied}
+    return directional(rows, {s.name: r.graph.symbol(direction(s.name)) for s in varied})
+
+
+def inverse_dynamics_derivative(model: Model) -> Program:
+    """Inverse dynamics and its directional derivative, one program with two outputs.
+
+    ``inverse_dynamics`` (n,) [N m, N]; ``inverse_dynamics_derivative`` (n,): its derivative along the symbols ``d.*``
+    of the module's table (only those appear that the dynamics depend on). Where a load has an infinite derivative its
+    value is not finite.
+    """
+    r = Replayed(model)
+    rows = r.inverse_dynamics()
+    return r.program({ID: vector(rows), f"{ID}_derivative": vector(_along(r, rows))})
+
+
+def inverse_dynamics_jacobians(model: Model) -> Program:
+    """Partial derivatives of inverse dynamics by the state, one program with three outputs.
+
+    ``inverse_dynamics`` (n,); ``inverse_dynamics_q`` (n, n): dID_a/dq^b [N m/rad, N/m, ...] and
+    ``inverse_dynamics_qd`` (n, n): dID_a/dq'^b = 2 Gamma_abc q'^c - dQ_a/dq'^b, both at [a, b]. The derivative by q''
+    is the metric. One walk for every column, each over what depends on it.
+    """
+    r = Replayed(model)
+    rows = r.inverse_dynamics()
+
+    def matrix(names: Sequence[str]) -> Formulas:
+        columns = [directional(rows, {name: r.graph.one}) for name in names]
+        return array((r.n, r.n), lambda a, b: columns[b][a])
+
+    rates = [f"{name}'" for name in model.coordinates]
+    return r.program({ID: vector(rows), f"{ID}_q": matrix(model.coordinates), f"{ID}_qd": matrix(rates)})
+
+
+def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
+    """q''^a from g q'' = Q - Gamma q' q', by g = L^T D L without exchange of rows: one program with two outputs.
+
+    ``forward_dynamics`` (n,) [rad/s^2, m/s^2]; ``pivots`` (n,): D_k / |g_kk|, between 0 (singular metric) and 1, all
+    positive where the metric is positive definite. In a state with a singular metric the division by zero gives
+    infinities and NaN. Raises TooLarge for more than ``max_nodes`` operations, SingularMetric where no state has
+    accelerations, InvalidDocument for closures.
+    """
+    require_open(model.closures, BY_STATE)
+    r = Replayed(model)
+    factors, pivots = _factors(r, max_nodes)
+    return r.program({FD: vector(_accelerations(r, factors)), "pivots": vector(pivots)})
+
+
+def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Program:
+    """Forward dynamics and its directional derivative: ``forward_dynamics``, ``pivots``, both as above, and
+
+    ``forward_dynamics_derivative`` (n,): g d(q'') = -dID at q'' = FD with dq'' = 0, along the symbols ``d.*`` of
+    coordinates, velocities and inputs. Raises as forward_dynamics.
+    """
+    require_open(model.closures, "use linearisations")
+    r = Replayed(model)
+    factors, pivots = _factors(r, max_nodes)
+    found = _accelerations(r, factors)
+    slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
+    bindings = {f"{name}''": x for name, x in zip(model.coordinates, found, strict=True)}
+    at_found = replay(slopes, r.graph, bindings)["slopes"].entries
+    result = factors.solve([-at_found.get((a,), r.graph.zero) for a in range(r.n)])
+    return r.program({FD: vector(found), "pivots": vector(pivots), f"{FD}_derivative": vector(result)})
+
+
+def _factors(r: Replayed, max_nodes: int) -> tuple[Factors, list[Expr]]:
+    """L and D of the metric, and D_k / |g_kk|."""
+    size = factor_operations(r.n, r.model.program.outputs["metric"].index)
+    if size > max_nodes:
+        raise TooLarge("forward dynamics (in operations)", size, max_nodes)
+    metric = r.independent("metric")
+    try:
+        factors = factorised(r.n, metric)
+    except ZeroDivisionError:
+        raise SingularMetric.at("", "singular-metric", SINGULAR) from None
+    return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
+
+
+def _accelerations(r: Replayed, factors: Factors) -> list[Expr]:
+    """g x = -ID at q'' = 0."""
+    return factors.solve([-x for x in r.inverse_dynamics([r.graph.zero] * r.n)])

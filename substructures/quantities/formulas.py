@@ -1,0 +1,84 @@
+"""Formulas that follow from those of a model: Coriolis matrix, energy, momentum, dynamics and its derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from substructures.errors import TooLarge
+from substructures.expr.program import Formulas, Program
+from substructures.part.part import MAX_NODES
+from substructures.quantities import derivatives
+from substructures.quantities.workspace import ID, Entries, Replayed, vector
+from substructures.tree.model import Model
+
+
+def _coriolis(model: Model, max_nodes: int) -> Program:
+    """C_ab = Gamma_abc q'^c."""
+    products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
+    if products > max_nodes:
+        raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
+    r, entries = Replayed(model), Entries()
+    for (a, b, c), gamma in r.elements("christoffel").items():
+        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.rate(c, "'")
+    return r.program({"coriolis": Formulas((r.n, r.n), entries)})
+
+
+def _inverse_dynamics(model: Model, _: int) -> Program:
+    r = Replayed(model)
+    return r.program({ID: vector(r.inverse_dynamics())})
+
+
+def _kinetic_energy(model: Model, _: int) -> Program:
+    """1/2 g_ab q'^a q'^b."""
+    r = Replayed(model)
+    momentum = r.product(r.elements("metric"), "'")
+    twice = r.graph.sum(p * r.rate(a, "'") for (a,), p in momentum.items())
+    return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
+
+
+def _total_momentum(model: Model, _: int) -> Program:
+    """p_a q'^a for the momenta p_a of unit velocities."""
+    r, outputs = Replayed(model), dict[str, Formulas]()
+    for kind in ("linear", "angular"):
+        entries = Entries()
+        for (a, i), p in r.elements(f"{kind}_momentum").items():
+            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.rate(a, "'")
+        outputs[kind] = Formulas((3,), entries)
+    return r.program(outputs)
+
+
+_FORMULAS: dict[str, Callable[[Model, int], Program]] = {
+    "coriolis": _coriolis,
+    "inverse_dynamics": _inverse_dynamics,
+    "forward_dynamics": derivatives.forward_dynamics,
+    "kinetic_energy": _kinetic_energy,
+    "total_momentum": _total_momentum,
+    "inverse_dynamics_derivative": lambda model, _: derivatives.inverse_dynamics_derivative(model),
+    "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
+}
+DERIVED = tuple(_FORMULAS)
+
+
+def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
+    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7).
+
+    coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
+    inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
+    forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
+    total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
+    inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
+    see :mod:`substructures.quantities.derivatives`.
+    Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
+    ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
+    """
+    result = _FORMULAS[quantity](model, max_nodes)
+    if len(result) > max_nodes:
+        raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
+    return result
+
+
+def kept(model: Model, quantity: str) -> Program:
+    """:func:`derived`, once for every model."""
+    if quantity not in model.derived:
+        model.derived[quantity] = derived(model, quantity)
+    return model.derived[quantity]

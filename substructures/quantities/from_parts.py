@@ -1,0 +1,243 @@
+"""Numbers of a tree straight from its parts: coupling of evaluated formulas instead of evaluation of coupled ones.
+
+The same coupling code runs over floats (one state) or arrays (a batch), so a tree that was put together a moment ago
+answers without a symbolic model and without compiling anything: what is compiled are the stored programs of its parts,
+once for all trees. The evaluated square commutes with the symbolic one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.compile import Kernel, compile_program
+from substructures.errors import MissingValue
+from substructures.expr.interpret import interpret_entries
+from substructures.expr.program import Formulas, Output, Program, array, program
+from substructures.mechanics.linear3 import S
+from substructures.part.outputs import Stored
+from substructures.part.part import Part
+from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
+from substructures.quantities.states import default_number
+from substructures.tree.assembly import assemble
+from substructures.tree.coupling import ASKED, Run, couple_parts
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import model_outputs
+from substructures.tree.mounted_part import Mounted
+
+Scalars = list[Any]
+#: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
+Engine = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[str, Scalars]]
+EQUATIONS = ("metric", "christoffel", "gravity", "forces", "bias", "inverse_dynamics", "potential_energy")
+#: states that are coupled at a time: their numbers stay in the second-level cache
+BLOCK = 2048
+
+
+class CompiledParts:
+    """An engine of kernels of stored programs, each compiled when it is first needed, and kept.
+
+    ``folder``: a cache of compiled kernels, see :func:`substructures.compile.compile_program`.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder
+        self._kernels: dict[tuple[str, tuple[str, ...]], Kernel] = {}
+
+    def __call__(self, program: Program, values: Mapping[str, Any], names: Sequence[str]) -> dict[str, Scalars]:
+        """Elements by the kernel for these outputs."""
+        key = program.digest, tuple(names)
+        if key not in self._kernels:
+            self._kernels[key] = compile_program(program, names, self.folder)
+        return kernel_entries(self._kernels[key], values)
+
+    def warm(self, part: Part) -> None:
+        """Compile all that coupling can ask of a part."""
+        for names in ASKED:
+            key = part.program.digest, names
+            self._kernels[key] = compile_program(part.program, names, self.folder)
+
+
+def kernel_entries(kernel: Kernel, values: Mapping[str, Any]) -> dict[str, Scalars]:
+    """The independent elements of all outputs of a kernel as an engine gives them."""
+    return {name: _scalars(x) for name, x in kernel.evaluate(values, packed=True).items()}
+
+
+class NumericTree:
+    """A tree of parts, ready for numbers. ``engine`` evaluates stored programs (default: the reference interpreter).
+
+    Raises InvalidDocument when the tree cannot be put together.
+    """
+
+    def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], engine: Engine = interpret_entries) -> None:
+        self.assembly, self.engine = assemble(spec, parts), engine
+        pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
+        self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)
+        self._constants = self._constant_program()
+        # where nothing is given: parameters have their defaults, inputs, velocities and accelerations are zero
+        self._rest = {name: 0.0 for name, s in self.assembly.scope.symbols.items() if s.kind == "input"} | {"t": 0.0}
+        defaults = {name: p["value"] for name, p in self.assembly.parameters.items() if p["value"] is not None}
+        self._rest |= {name: default_number(value) for name, value in defaults.items()}
+        self._rest |= {f"{name}{primes}": 0.0 for name in self.coordinates for primes in ("'", "''")}
+        self._layouts: dict[str, _Layout] = {}
+        self._supports: dict[str, Supports] = {}
+
+    def weight(self) -> int:
+        """Operations of the programs that are kept with it."""
+        return len(self._constants) + sum(len(m.part.program) for m in self.assembly.mounted)
+
+    def _constant_program(self) -> Program:
+        """Placements, gravity and bindings of the tree as one small program of its parameters."""
+        outputs = {"gravity": array((3,), lambda i: self.assembly.gravity[i])}
+        for k, m in enumerate(self.assembly.mounted):
+            outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
+            outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
+            bound = {name: x for name, x in m.bindings.items() if getattr(x, "op", "") != "sym"}
+            outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in bound.items()}
+        return program(self.assembly.scope.graph, outputs, self.assembly.scope.symbols)
+
+    def evaluate(self, values: Mapping[str, Any], quantities: Sequence[str] = EQUATIONS) -> dict[str, Array]:
+        """Outputs of the model (see :mod:`substructures.tree.model`) for values of all symbols: floats, or
+        arrays of one length N, in blocks of states. Arrays with the axis N first, without it for floats.
+        Raises MissingValue.
+        """
+        batch = np.broadcast_shapes(*(np.shape(x) for x in values.values())) if values else ()
+        result: dict[str, Array] = {}
+        if not batch:
+            self._block(values, batch, slice(None), quantities, result)
+            return result
+        arrays = {name: np.asarray(x) for name, x in values.items()}
+        for start in range(0, max(1, batch[0]), BLOCK):
+            part = slice(start, start + BLOCK)
+            some = {name: x[part] if x.shape == batch else x for name, x in arrays.items()}
+            self._block(some, batch, part, quantities, result)
+        return result
+
+    def answer(self, values: Mapping[str, Any], names: Sequence[str], states: int) -> dict[str, Array]:
+        """:meth:`evaluate` with the axis of states always first; values are numbers or arrays (states,)."""
+        if states == 1:
+            values = {name: float(np.asarray(x).reshape(())) for name, x in values.items()}
+        found = self.evaluate(values, names)
+        return {name: x[None] for name, x in found.items()} if states == 1 else found
+
+    def _block(
+        self,
+        values: Mapping[str, Any],
+        batch: tuple[int, ...],
+        part: slice,
+        quantities: Sequence[str],
+        result: dict[str, Array],
+    ) -> None:
+        """Fills a part of the batch in the results, which are made by the first one."""
+        given = {**self._rest, **values}
+        found = interpret_entries(self._constants, given, self._constants.outputs)
+        numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
+        mounted = [_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted)]
+        assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]))
+        coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
+        qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
+        outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
+        for name in quantities:
+            if name not in result:
+                result[name] = np.zeros((*batch, *outputs[name].shape))
+            out = result[name][part] if batch else result[name]
+            self._layout(name, outputs[name]).fill(list(outputs[name].entries.values()), out)
+
+    def _run(self) -> Run:
+        def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+            values = {name: plain(x) for name, x in bindings.items()}
+            found, outputs = self.engine(part.program, values, names), part.program.outputs
+            if any(map(is_array, values.values())):
+                found = self._in_lanes(part.program, values, found)
+            return Stored({n: _formulas(outputs[n], found[n]) for n in names})
+
+        return run
+
+    def _in_lanes(
+        self, program: Program, values: Mapping[str, Any], found: Mapping[str, Scalars]
+    ) -> dict[str, Scalars]:
+        """Elements that are the same for all states as numbers, the others as lanes."""
+        supports = self._supports.get(program.digest)
+        if supports is None:
+            supports = self._supports[program.digest] = Supports(program)
+        varying = supports.varying(values)
+        return {
+            name: [
+                Lanes(x) if varies else lanes(x.item(0) if is_array(x) and x.size else x)
+                for x, varies in zip(some, varying(name), strict=True)
+            ]
+            for name, some in found.items()
+        }
+
+    def _layout(self, name: str, formulas: Formulas) -> _Layout:
+        """Where the elements of an output come from; remembered."""
+        layout, index = self._layouts.get(name), tuple(formulas.entries)
+        if layout is None or layout.index != index:
+            layout = self._layouts[name] = _Layout(index, formulas)
+        return layout
+
+
+class _Layout:
+    """Where the elements of a dense output come from."""
+
+    def __init__(self, index: tuple[tuple[int, ...], ...], formulas: Formulas) -> None:
+        self.index, self.shape = index, formulas.shape
+        output = Output(formulas.shape, index, tuple(range(len(index))), formulas.symmetry)
+        rows = list(output.expanded())
+        places = np.array([i for i, _, _ in rows], dtype=np.int64).reshape(len(rows), len(self.shape))
+        self.place = np.ravel_multi_index(places.T, self.shape) if self.shape else np.zeros(len(rows), dtype=np.int64)
+        self.source = np.array([k for _, k, _ in rows], dtype=np.int64)
+        self.sign = np.array([sign for _, _, sign in rows], dtype=np.float64)
+
+    def fill(self, values: Scalars, out: Array) -> None:
+        """Writes the non-zero elements of an array batch + shape."""
+        batch = out.shape[: out.ndim - len(self.shape)]
+        elements = np.empty((*batch, len(values)))
+        for k, value in enumerate(values):
+            elements[..., k] = plain(value)
+        if out.size:
+            # a view: the array is contiguous
+            out.reshape((*batch, -1))[..., self.place] = elements[..., self.source] * self.sign
+
+
+def _scalars(x: Array) -> Scalars:
+    """The elements along the last axis: floats, or contiguous arrays of shape (N,)."""
+    return x.tolist() if x.ndim == 1 else list(np.ascontiguousarray(x.T))
+
+
+def _formulas(output: Output, values: Scalars) -> Formulas:
+    return Formulas(output.shape, dict(zip(output.index, values, strict=True)), output.symmetry)
+
+
+def _filled(output: Output, values: Scalars) -> Scalars:
+    """All elements of a vector, matrix or scalar in a row, zeros included."""
+    if not output.shape:
+        return [lanes(x) for x in values] or [0]
+    known = {index: lanes(x) for index, x in zip(output.index, values, strict=True)}
+    return [known.get(index, 0) for index in product(*map(range, output.shape))]
+
+
+def _numeric(m: Mounted, k: int, numbers: Mapping[str, Scalars], given: Mapping[str, Any]) -> Mounted:
+    """A mounted part with numbers in place of the expressions of the tree; exact integers stay what they are."""
+    E = [_kept(x, number) for x, number in zip(sum(m.E, ()), numbers[f"E.{k}"], strict=True)]
+    x, y, z = (_kept(*pair) for pair in zip(m.position, numbers[f"position.{k}"], strict=True))
+    try:
+        bindings = {
+            name: numbers[f"{k}:{name}"][0] if f"{k}:{name}" in numbers else lanes(given[x.value])
+            for name, x in m.bindings.items()
+        }
+    except KeyError as error:
+        raise MissingValue(str(error.args[0])) from None
+    return Mounted(
+        m.part, m.host, m.frame, ((E[0], E[1], E[2]), (E[3], E[4], E[5]), (E[6], E[7], E[8])), (x, y, z), bindings
+    )
+
+
+def _kept(x: Any, number: Any) -> Any:
+    value = getattr(x, "value", x)
+    return value if isinstance(value, int) else number

@@ -1,0 +1,186 @@
+"""The regressor: what a tree's inverse dynamics is linear in (mathematics.md, section 7).
+
+    Y(q, q', q'')_ai pi_i = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a(gravity)
+
+exactly, with the ten inertial parameters (m, s, J) of every rigid link in ``pi``. Armature, joint springs, dampers,
+actuators and loads are not linear in them and not included.
+
+One motion is carried outwards: omega, alpha and the acceleration a (with the interface of the tree accelerated by
+-gravity) of the origin B of every body frame. By A = skew(alpha) + skew(omega)^2 each parameter, put to one alone,
+gives a force f and a moment n about B: f = a for m; f = A e_i, n = e_i x a for s_i; f = 0, n = axial(A J) for J. The
+load is linear, so these are its derivatives, and their virtual power is the column of Y:
+
+    Y_ai = U_ka . f_i + Omega_ka . n_i           (U_ka: partial velocity of B; i: the parameters of the link k)
+
+which is structurally zero where joint a does not carry k, and where the formula is the zero function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.array import Array
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.mechanics.base_functions import Columns, carried
+from substructures.mechanics.inertia import Inertia
+from substructures.mechanics.joints import lean_rotation
+from substructures.mechanics.linear3 import S, negate, transpose
+from substructures.mechanics.metric import pairing
+from substructures.mechanics.newton_euler import Motion, inertial_load
+from substructures.part.inertia_symbols import inertia_names
+from substructures.part.outputs import Stored
+from substructures.part.part import MAX_NODES, Part
+from substructures.part.topology import BASE, INTERFACE
+from substructures.quantities.states import read_states, symbol_values
+from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.closures import Rows
+from substructures.tree.coupling import OWN, Run, couple_parts, over_formulas
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.inverse_dynamics import body_motions, from_body
+from substructures.tree.model import Model, rate_symbols
+from substructures.tree.mounted_part import Mounted, State, frame_link
+
+OUTPUTS = ("regressor", "inertial_parameters")
+
+#: outputs that do not take part in kinematics; emptied before coupling
+DYNAMIC = (
+    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("subtree.m", "subtree.s", "subtree.J", "load.at", "load.vector", *OWN),
+)
+
+
+@dataclass(frozen=True)
+class RegressorModel:
+    """Y and pi of a tree.
+
+    ``program``: outputs ``regressor`` (n, 10 links) [SI units per unit of the parameter], a function of q, q', q'' and
+    the free parameters, and ``inertial_parameters`` (10 links,), pi as a function of the free parameters.
+    ``names`` and ``units``: of the columns, ``instance.body.m`` [kg], ``.sx .sy .sz`` = m times the mass centre [kg m],
+    ``.Jxx .Jyy .Jzz .Jxy .Jxz .Jyz`` = integral of x x^T dm [kg m^2] (Theta = tr(J) 1 - J), about the origin of the
+    body frame in its axes. A link is a moving body with all that is fixed to it in the same part; ``instance.base``
+    is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
+    joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
+    tree; their forces, which Y pi has to balance with the actuators, are not part of it.
+    """
+
+    program: Program
+    coordinates: tuple[str, ...]
+    joints: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    closures: tuple[Rows, ...] = ()
+
+    def evaluate(self, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Array]:
+        """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
+
+        ``request``: q, qd, qdd and parameters as for ``substructures.quantities.evaluation``; the axis N is dropped for
+        one state with ``q`` (n,). Raises InvalidDocument (with pointers; ``qdd`` is needed) and MissingValue.
+        """
+        model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {})
+        states = read_states(model, request, limit)
+        if states.qdd is None and model.dof:
+            raise InvalidDocument.at("/qdd", "missing", "the regressor needs accelerations 'qdd'")
+        values = symbol_values(model, request, states, OUTPUTS)
+        results = interpret_in_blocks(self.program, values, OUTPUTS, states.count)
+        return {name: x[0] if states.single else x for name, x in results.items()}
+
+
+@dataclass(frozen=True)
+class _Link:
+    """A rigid link, in its body frame: own inertia, motion of B, partial velocities of B by coordinate of the tree."""
+
+    name: str
+    inertia: Inertia
+    motion: Motion
+    columns: Columns
+
+
+def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> RegressorModel:
+    """The regressor of a tree of stored parts (by instance name); nothing is derived again.
+
+    Links come in the order of instances (hosts first) and bodies, what is fixed to the interface last; pi is what the
+    parts hold, bound to the tree's parameters. Raises InvalidDocument with pointers into the tree document, or TooLarge
+    for more than ``max_nodes`` operations.
+    """
+    assembly = assemble(spec, parts)
+    n = sum(m.part.dof for m in assembly.mounted)
+    try:
+        links = _links(over_formulas(assembly.scope.graph), assembly)
+        Y: dict[tuple[int, ...], S] = {
+            (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
+        }
+        pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
+    except ZeroDivisionError:
+        raise division_by_zero(spec, assembly) from None
+    outputs = {"regressor": Formulas((n, len(pi)), Y), "inertial_parameters": array((len(pi),), lambda i: pi[i])}
+    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge("the regressor (in operations)", len(result), max_nodes)
+    named = [pair for link in links for pair in inertia_names(link.name)]
+    used = {symbol.name for symbol in result.symbols}
+    return RegressorModel(
+        result,
+        tuple(f"{i.name}.{c}" for i, m in _pairs(assembly) for c in m.part.coordinates),
+        "".join(m.part.joints for m in assembly.mounted),
+        tuple(name for name, _ in named),
+        tuple(unit for _, unit in named),
+        {name: value for name, value in assembly.parameters.items() if name in used},
+        tuple(cut.rows for cut in assembly.cuts),
+    )
+
+
+def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, Mounted]]:
+    return zip(assembly.instances, assembly.mounted, strict=True)
+
+
+def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
+    """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
+    for i in range(10):
+        m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
+        load = inertial_load(link.motion, Inertia(m, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
+        yield i, [(a, pairing(twist, load.f, load.n)) for a, twist in link.columns.items()]
+
+
+def _links(run: Run, assembly: Assembly) -> list[_Link]:
+    """All links, and their motion in one pass outwards."""
+    states = couple_parts(_bare(run), assembly.mounted, assembly.gravity).states
+    motions = body_motions(assembly.mounted, states, *rate_symbols(assembly))
+    result: list[_Link] = []
+    for (instance, m), state, own_motions in zip(_pairs(assembly), states, motions, strict=True):
+        own = run(m.part, m.bindings, OWN)
+        frames = list(m.part.skeleton.carrier)
+        named = {c: symbols[0].removesuffix(".m") for c, symbols in sorted(m.part.inertia_symbols.items())}
+        if state.outside and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
+            named[INTERFACE] = BASE
+        result += [
+            _link(f"{instance.name}.{body}", m, state, frames.index(body), own, own_motions) for body in named.values()
+        ]
+    return result
+
+
+def _link(name: str, m: Mounted, state: State, frame: int, own: Stored, motions: Sequence[Motion]) -> _Link:
+    """Inertia, motion and partial velocities of a carrier, in the frame of the body it is named by."""
+    link = frame_link(m, state, frame)
+    c = link.parent
+    inertia = own.inertia("base") if c == INTERFACE else own.inertia("inertia", c)
+    E, r = state.stored.matrix("frame.E", frame), state.stored.vector("frame.position", frame)
+    inertia = inertia.shifted(negate(r)).turned_back(lean_rotation(transpose(E), 1, 0))
+    source = state.outside if c == INTERFACE else state.columns[c]
+    slides = m.first + c if c != INTERFACE and state.links[c].s else None
+    columns = {a: carried(twist, link, a == slides) for a, twist in source.items()}
+    return _Link(name, inertia, motions[c].at(from_body(state, c, link.Z), link.rotation), columns)
+
+
+def _bare(run: Run) -> Run:
+    """Parts without mass and loads: coupling them gives the kinematics, and the rest is zero at once."""
+
+    def massless(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+        found = run(part, bindings, [name for name in names if name not in DYNAMIC])
+        return Stored({**found.outputs, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
+
+    return massless

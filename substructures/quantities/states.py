@@ -1,0 +1,213 @@
+"""States and values of a request as arrays: shapes, names and numbers are checked, faults carry pointers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.documents import escape
+from substructures.errors import Fault, InvalidDocument, MissingValue, listed
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.program import Program, array, program
+from substructures.part.scope import no_names
+from substructures.tree.model import Model
+
+
+@dataclass(frozen=True)
+class States:
+    """``count`` = N states by coordinate: (N, n), or (1, n) where all are alike; ``single``: one state was given
+    without the leading axis.
+    """
+
+    q: Array
+    qd: Array
+    qdd: Array | None
+    count: int
+    single: bool
+
+
+def read_states(model: Model, request: Mapping[str, Any], limit: int | None) -> States:
+    """q, qd, qdd of a request. One q holds for all velocities, times, inputs, ... Raises InvalidDocument."""
+    q = _state(model, request.get("q"), "q")
+    if q is None:
+        if model.dof:
+            raise InvalidDocument.at("/q", "missing", "states 'q' are needed")
+        q = np.zeros((1, 0)), True
+    count = longest(request) if len(q[0]) == 1 else len(q[0])
+    if limit is not None and count > limit:
+        raise InvalidDocument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
+    others = []
+    for name in ("qd", "qdd"):
+        given = _state(model, request.get(name), name)
+        if given is not None and len(given[0]) not in (1, count):
+            message = f"{len(given[0])} states where there are {count}"
+            raise InvalidDocument.at(f"/{name}", "wrong-length", message)
+        others.append(None if given is None else given[0])
+    qd = np.zeros((1, model.dof)) if others[0] is None else others[0]
+    return States(q[0], qd, others[1], count, q[1] and count == 1)
+
+
+def longest(request: Mapping[str, Any]) -> int:
+    """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
+    lengths = [1, _entries(request.get("t"))]
+    for name in ("q", "qd", "qdd"):
+        given = request.get(name)
+        if isinstance(given, list | tuple | np.ndarray) and _entries(given) and _entries(given[0]):
+            lengths.append(len(given))
+    for name in ("q", "qd", "qdd", "inputs", "parameters"):
+        given = request.get(name)
+        lengths += map(_entries, given.values()) if isinstance(given, Mapping) else ()
+    return max(lengths)
+
+
+def _entries(given: Any) -> int:
+    """The length of a list, 0 if it is none."""
+    return len(given) if isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim) else 0
+
+
+def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
+    """(N, n) array of a state, and whether it was (n,)."""
+    if given is None:
+        return None
+    if isinstance(given, Mapping):
+        given = _by_name(model, given, name)
+    values = numeric(given, f"/{name}")
+    if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
+        expected = f"(N, {model.dof}) or ({model.dof},)"
+        raise InvalidDocument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")
+    return np.atleast_2d(values), values.ndim == 1
+
+
+def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
+    unknown = f"unknown coordinate '{{}}'; there are {listed(model.coordinates)}"
+    faults = [
+        Fault(f"/{name}/{escape(key)}", "unknown-coordinate", unknown.format(str(key)[:80]))
+        for key in given
+        if key not in model.coordinates
+    ]
+    faults += [
+        Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in model.coordinates if c not in given
+    ]
+    if faults:
+        raise InvalidDocument(faults)
+    columns = {c: numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates}
+    for c, column in columns.items():
+        first = columns[model.coordinates[0]]
+        if column.shape != first.shape:
+            message = f"shape {column.shape} found, but {first.shape} of '{model.coordinates[0]}'"
+            raise InvalidDocument.at(f"/{name}/{escape(c)}", "wrong-length", message)
+    return np.stack(list(columns.values()), axis=-1) if columns else np.zeros((1, 0))
+
+
+def numeric(given: Any, pointer: str) -> Array:
+    """A finite array of doubles from nested lists of numbers. Raises InvalidDocument with the first fault's place."""
+    if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
+        values = given.astype(np.float64, copy=False)
+    else:
+        _check_numbers(given, pointer)
+        try:
+            values = np.asarray(given, dtype=np.float64)
+        except (ValueError, TypeError, OverflowError):
+            raise InvalidDocument.at(pointer, "wrong-length", "a rectangular array of numbers is needed") from None
+    if not np.isfinite(values).all():
+        where = "".join(f"/{int(i)}" for i in np.argwhere(~np.isfinite(values))[0])
+        raise InvalidDocument.at(pointer + where, "number-not-finite", "the number is not finite")
+    return values
+
+
+def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
+    if isinstance(given, (list, tuple)) and depth < 3:
+        for i, x in enumerate(given):
+            if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
+                _check_numbers(x, f"{pointer}/{i}", depth + 1)
+    elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
+        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
+
+
+def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
+    """Values of all symbols that the needed outputs of the model depend on. Raises InvalidDocument, MissingValue."""
+    values = known_values(model, request, states, model.parameters)
+    require(model.program, needs, values)
+    return values
+
+
+def known_values(
+    model: Model, request: Mapping[str, Any], states: States, parameters: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
+    a value in the request. Raises InvalidDocument.
+    """
+    count = states.count
+    values: dict[str, Any] = {}
+    for primes, columns in (("", states.q), ("'", states.qd), ("''", states.qdd)):
+        if columns is not None:
+            rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
+            values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
+    t = numeric(0 if request.get("t") is None else request["t"], "/t")
+    values["t"] = _per_state(t, count, "/t")
+    inputs = input_names(model)
+    values |= dict.fromkeys(inputs, 0.0)
+    # default values, correctly rounded
+    values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
+    values |= _given(request, "inputs", count, inputs)
+    values |= _given(request, "parameters", count, parameters)
+    return values
+
+
+def input_names(model: Model) -> list[str]:
+    """The inputs of loads, and every actuator (also where it does no work)."""
+    named = [s.name for s in model.program.symbols if s.kind == "input"]
+    return list(dict.fromkeys([*named, *(f"tau.{name}" for name in model.coordinates)]))
+
+
+def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:
+    """Raises MissingValue for the first symbol without a value that the outputs depend on."""
+    for name in program.needs(names):
+        if name not in values:
+            raise MissingValue(name)
+
+
+def _given(request: Mapping[str, Any], field: str, count: int, known: Collection[str]) -> dict[str, Any]:
+    return given_values(request.get(field), field, f"/{field}", count, known)
+
+
+def given_values(given: Any, field: str, place: str, count: int, known: Collection[str]) -> dict[str, Any]:
+    """Numbers by name, one or one for every state; ``field``: what they are, ``place``: pointer to the object."""
+    if not isinstance(given or {}, Mapping):
+        raise InvalidDocument.at(place, "object-expected", "an object of numbers by name is needed")
+    result = {}
+    for name, value in (given or {}).items():
+        pointer = f"{place}/{escape(name)}"
+        if name not in known:
+            message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
+            raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", message)
+        result[name] = _per_state(numeric(value, pointer), count, pointer)
+    return result
+
+
+def _per_state(values: Array, count: int, pointer: str) -> Array:
+    if values.ndim > 1 or (values.ndim == 1 and len(values) not in (1, count)):
+        message = f"one number, or one for each of the {count} states is needed, found shape {values.shape}"
+        raise InvalidDocument.at(pointer, "wrong-length", message)
+    return values
+
+
+@lru_cache(maxsize=100_000)
+def default_number(value: Any) -> float:
+    """A default as a double: a number, or a constant expression in the grammar."""
+    if not isinstance(value, str):
+        return float(value)
+    graph = Graph()
+    try:
+        constant = parse(graph, value, no_names)
+    except ExpressionError as error:
+        raise InvalidDocument.at("", "bad-expression", str(error)) from None
+    return float(interpret(program(graph, {"x": array((), lambda: constant)}, {}), {})["x"])

@@ -1,0 +1,153 @@
+"""Which programs the quantities of an evaluation come from (the HTTP contract, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.expr.program import Program
+from substructures.mechanics.accelerations import CLOSED
+from substructures.quantities.derivatives import FD, SingularMetric
+from substructures.quantities.formulas import kept
+from substructures.quantities.regressor import RegressorModel
+from substructures.tree.model import KINEMATICS, Model
+
+FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t", "along"))
+MODEL, REGRESSOR = "model", "regressor"
+DYNAMICS = ("metric", "bias", "forces")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of the contract: outputs of the program ``source``, one array or several by ``fields``."""
+
+    source: str
+    outputs: tuple[str, ...]
+    fields: tuple[str, ...] = ()
+    requires: tuple[str, ...] = ()  #: fields of the request
+    pivots: tuple[str, ...] = ()  #: the output that tells whether the metric could be inverted
+
+
+def _outputs(source: str, *names: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
+    return {name: Quantity(source, (name,), requires=requires) for name in names}
+
+
+def _forward(name: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
+    return {name: Quantity(name, (name,), requires=requires, pivots=("pivots",))}
+
+
+QUANTITIES: dict[str, Quantity] = {
+    **_outputs(MODEL, "metric", "christoffel", "forces", "gravity", "bias", "potential_energy"),
+    **_outputs("coriolis", "coriolis"),
+    **_outputs("inverse_dynamics", "inverse_dynamics", requires=("qdd",)),
+    **_forward("forward_dynamics"),
+    **_outputs("kinetic_energy", "kinetic_energy"),
+    "kinematics": Quantity(MODEL, KINEMATICS, KINEMATICS),
+    "momentum": Quantity("total_momentum", ("linear", "angular"), ("linear", "angular")),
+    **_outputs("inverse_dynamics_derivative", "inverse_dynamics_derivative", requires=("qdd", "along")),
+    **_forward("forward_dynamics_derivative", requires=("along",)),
+    **_outputs(REGRESSOR, "regressor", requires=("qdd",)),
+    **_outputs(REGRESSOR, "inertial_parameters"),
+}
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The programs that quantities come from, made when they are first needed.
+
+    ``derive``: a program of :data:`substructures.quantities.formulas.DERIVED`; ``regressor``: for the quantities
+    ``regressor`` and ``inertial_parameters``, which need the parts of the tree.
+    """
+
+    model: Model
+    derive: Callable[[Model, str], Program] = kept
+    regressor: Callable[[], RegressorModel] | None = None
+
+    def program(self, source: str) -> Program:
+        """The program of this name. Raises TooLarge, InvalidDocument."""
+        if source == MODEL:
+            return self.model.program
+        return self.columns().program if source == REGRESSOR else self.derive(self.model, source)
+
+    def columns(self) -> RegressorModel:
+        """The regressor with the names of its columns."""
+        if self.regressor is None:
+            raise InvalidDocument.at("/quantities", "needs-parts", "the regressor needs the parts of the tree")
+        return self.regressor()
+
+    def parameters(self, names: Sequence[str]) -> Mapping[str, Mapping[str, Any]]:
+        """The parameters that quantities may depend on."""
+        if REGRESSOR in {QUANTITIES[name].source for name in names}:
+            return {**self.columns().parameters, **self.model.parameters}
+        return self.model.parameters
+
+
+def read_quantities(request: Mapping[str, Any]) -> list[str]:
+    """The quantities of a request. Raises InvalidDocument for unknown ones, and for unknown fields."""
+    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key}'") for key in request if key not in FIELDS]
+    names = request.get("quantities")
+    if not isinstance(names, (list, tuple)) or not names:
+        faults.append(Fault("/quantities", "missing", "a list of quantities is needed"))
+        names = []
+    for i, name in enumerate(names):
+        if not isinstance(name, str) or name not in QUANTITIES:
+            known = ", ".join(QUANTITIES)
+            faults.append(
+                Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {known}")
+            )
+    if faults:
+        raise InvalidDocument(faults)
+    return list(dict.fromkeys(names))
+
+
+def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
+    """Operations and numbers of the answer for one state. Raises as :func:`evaluate`."""
+    operations = numbers = 0
+    n = sources.model.dof
+    for source, program, names in steps(sources, quantities):
+        shapes = {} if program is None else {name: program.outputs[name].shape for name in names}
+        chosen = [q for q in dict.fromkeys(quantities) if QUANTITIES[q].source == source]
+        numbers += sum(prod(shapes.get(name, (n,))) for q in chosen for name in QUANTITIES[q].outputs)
+        operations += 0 if program is None else len(program.reachable(names))
+    return operations, numbers
+
+
+def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
+    """At most so many numbers of the answer for one state; known without the formulas."""
+    n, columns = max(1, dof), 10 * frames
+    several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
+    several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6}
+    return sum(several.get(name, n) for name in quantities)
+
+
+def closed_dynamics(model: Model) -> Program:
+    """What accelerations of a tree with closures are computed from, once for every model."""
+    if "closed_dynamics" not in model.derived:
+        model.derived["closed_dynamics"] = model.program.select([*DYNAMICS, *CLOSED])
+    return model.derived["closed_dynamics"]
+
+
+def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
+    """(source, program, its outputs); no program: no state has a result.
+
+    Forward dynamics of a tree with closures, or of one too large for formulas of it, comes from outputs of the model.
+    """
+    wanted: dict[str, set[str]] = {}
+    for name in quantities:
+        quantity = QUANTITIES[name]
+        wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
+    for source, names in wanted.items():
+        if source == FD and sources.model.closures:
+            yield source, closed_dynamics(sources.model), [*DYNAMICS, *CLOSED]
+            continue
+        try:
+            yield source, sources.program(source), sorted(names)
+        except SingularMetric:
+            yield source, None, sorted(names)
+        except TooLarge:
+            if source != FD:
+                raise
+            yield source, sources.model.program, list(DYNAMICS)

@@ -1,0 +1,234 @@
+"""From a tree document and its parts to mounted parts in one graph: names, hosts, placements, bindings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from substructures.errors import InvalidDocument
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Symbol
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
+from substructures.part.frames import axis_rotation
+from substructures.part.part import Part
+from substructures.part.scope import Scope, no_names
+from substructures.part.topology import INTERFACE
+from substructures.tree.closures import ROWS, Cut, End, Rows
+from substructures.tree.coupling import over_formulas
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.mounted_part import WORLD, Mounted
+
+
+@dataclass
+class Assembly:
+    """Everything coupling needs, with the symbols and parameters of the tree."""
+
+    scope: Scope
+    instances: list[Instance]  #: hosts first
+    mounted: list[Mounted]
+    gravity: Vector
+    parameters: dict[str, dict[str, object]]
+    cuts: list[Cut]
+
+
+def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
+    """The exception for bindings that make a divisor zero: names the first instance in whose formulas they do."""
+    run = over_formulas(assembly.scope.graph)
+    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
+        try:
+            run(m.part, m.bindings, tuple(m.part.program.outputs))
+        except ZeroDivisionError:
+            message = f"with these parameters a formula of '{instance.name}' divides by zero"
+            pointer = f"/instances/{spec.instances.index(instance)}/parameters"
+            return InvalidDocument.at(pointer, "division-by-zero", message)
+    return InvalidDocument.at("/instances", "division-by-zero", "with these parameters a formula divides by zero")
+
+
+def tree_name(instance: str, symbol: str) -> str:
+    """The name in a tree of a symbol of an instance: arm.q1, arm.q1', tau.arm.q1; the time t is common to all."""
+    if symbol == "t":
+        return symbol
+    return f"tau.{instance}.{symbol[4:]}" if symbol.startswith("tau.") else f"{instance}.{symbol}"
+
+
+def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
+    """Read a tree. Raises InvalidDocument with a pointer to every fault."""
+    scope = Scope(Graph())
+    order = _order(spec, scope)
+    scope.finish()
+    parameters = _parameters(spec, parts, scope)
+    bound = _Bindings(spec, parts, scope)
+    bound.resolve_all()
+    place = {spec.instances[i].name: k for k, i in enumerate(order)}
+    mounted = [_mount(spec, i, parts, scope, place, bound) for i in order]
+    gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
+    cuts = [_cut(spec, i, parts, scope, place, bound) for i in range(len(spec.closures))]
+    scope.finish()
+    left = {name: value for name, value in parameters.items() if name not in bound.values}
+    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left, cuts)
+
+
+def _order(spec: TreeSpec, scope: Scope) -> list[int]:
+    """Indices of the instances, hosts first and otherwise as given; faults for names, unknown hosts and cycles."""
+    index: dict[str, int] = {}
+    for i, instance in enumerate(spec.instances):
+        pointer = f"/instances/{i}/name"
+        if instance.name in index:
+            scope.fault(pointer, "duplicate-name", f"duplicate instance '{instance.name}'")
+        if instance.name in ("world", "tau", "t") or instance.name in spec.parameters:
+            scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
+        index[instance.name] = i
+    waiting: dict[int, list[int]] = {}
+    ready = []
+    for i, instance in enumerate(spec.instances):
+        host = instance.at.partition(".")[0]
+        if instance.at == "world":
+            ready.append(i)
+        elif host in index:
+            waiting.setdefault(index[host], []).append(i)
+        else:
+            scope.fault(f"/instances/{i}/at", "unknown-instance", f"unknown instance '{host}'")
+    order: list[int] = []
+    while ready:
+        i = min(ready)
+        ready.remove(i)
+        order.append(i)
+        ready += waiting.get(i, [])
+    if not scope.faults:
+        for i in set(range(len(spec.instances))) - set(order):
+            name = spec.instances[i].name
+            scope.fault(f"/instances/{i}/at", "cycle", f"instance '{name}' is on or behind a cycle of hosts")
+    return order
+
+
+def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
+    """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
+    result: dict[str, dict[str, object]] = {}
+    for name, parameter in sorted(spec.parameters.items()):
+        scope.declare(name, "parameter", parameter.unit)
+        if parameter.value is not None:
+            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
+        result[name] = parameter.model_dump()
+    for instance in spec.instances:
+        for name, some in sorted(parts[instance.name].parameters.items()):
+            full = f"{instance.name}.{name}"
+            scope.declare(full, "parameter", str(some["unit"]))
+            result[full] = some
+    return result
+
+
+class _Bindings:
+    """Parameters of instances that are bound to numbers or to expressions in other parameters."""
+
+    def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> None:
+        self.scope = scope
+        self.given: dict[str, tuple[object, str]] = {}
+        self.values: dict[str, Expr] = {}
+        self.open: list[str] = []
+        for i, instance in enumerate(spec.instances):
+            for name, value in sorted(instance.parameters.items()):
+                pointer = f"/instances/{i}/parameters/{name}"
+                if name in parts[instance.name].parameters:
+                    self.given[f"{instance.name}.{name}"] = (value, pointer)
+                else:
+                    scope.fault(
+                        pointer, "unknown-parameter", f"'{parts[instance.name].name}' has no parameter '{name}'"
+                    )
+
+    def resolve_all(self) -> None:
+        """Read all bindings."""
+        for name in self.given:
+            self.lookup(name)
+
+    def lookup(self, name: str) -> Expr | None:
+        """A parameter by its name in the tree, with its binding put in."""
+        if name in self.values:
+            return self.values[name]
+        if name not in self.given:
+            return self.scope.names.get(name)
+        value, pointer = self.given[name]
+        if name in self.open or len(self.open) > 50:
+            self.scope.fault(pointer, "cycle", f"the binding of '{name}' refers to itself")
+            return self.scope.graph.zero
+        self.open.append(name)
+        self.values[name] = self.scope.read(value, pointer, self.lookup)
+        self.open.pop()
+        return self.values[name]
+
+
+def _mount(
+    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
+) -> Mounted:
+    instance, part = spec.instances[i], parts[spec.instances[i].name]
+    host, frame = _frame(instance.at, f"/instances/{i}/at", parts, scope, place)
+    pointer = f"/instances/{i}/placement"
+    E = scope.rpy(instance.placement.rpy, f"{pointer}/rpy", bound.lookup).matrix()
+    position = scope.vector(instance.placement.position, f"{pointer}/position", bound.lookup)
+    return Mounted(part, host, frame, E, position, _symbols(instance.name, part, scope, bound))
+
+
+def _frame(at: str, pointer: str, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int]) -> tuple[int, int]:
+    """Index of an instance (or WORLD) and of its frame, for ``world`` or ``instance.frame``."""
+    if at == "world":
+        return WORLD, 0
+    name, frame = at.split(".")
+    if name not in place:
+        scope.fault(pointer, "unknown-instance", f"unknown instance '{name}'")
+        return WORLD, 0
+    frames = parts[name].frames
+    if frame not in frames:
+        known = ", ".join(frames)
+        scope.fault(pointer, "unknown-port", f"'{name}' has no port or body '{frame}'; it has {known}")
+        return place[name], 0
+    return place[name], frames.index(frame)
+
+
+def _cut(
+    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
+) -> Cut:
+    """A closure of the document with its frames; the third axes of both ends are the joint axis."""
+    closure, pointer = spec.closures[i], f"/closures/{i}"
+    if any(other.name == closure.name for other in spec.closures[:i]):
+        scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
+    axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
+    E = scope.rpy(closure.placement.rpy, f"{pointer}/placement/rpy", bound.lookup).matrix()
+    position = scope.vector(closure.placement.position, f"{pointer}/placement/position", bound.lookup)
+    start = End(*_frame(closure.from_, f"{pointer}/from", parts, scope, place), axis, ZERO)
+    end = End(*_frame(closure.to, f"{pointer}/to", parts, scope, place), multiply(axis, E), position)
+    length = scope.graph.zero
+    if closure.length is not None:
+        length = scope.read(closure.length, f"{pointer}/length", bound.lookup)
+        if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
+            scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
+    rows = Rows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
+    return Cut(rows, start, end, length)
+
+
+def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[str, Expr]:
+    """What every symbol of a stored program is in the tree (inertia symbols are bound by coupling)."""
+    result: dict[str, Expr] = {}
+    for symbol in part.program.symbols:
+        if symbol.kind == "inertia":
+            continue
+        name = tree_name(instance, symbol.name)
+        value = bound.lookup(name) if symbol.kind == "parameter" else None
+        if value is None:
+            scope.symbols.setdefault(name, Symbol(name, symbol.kind, symbol.unit))
+            value = scope.graph.symbol(name)
+        result[symbol.name] = value
+    return result
+
+
+def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
+    """(parent, kind) of every joint of a tree, by index in the tree; hosts come first."""
+    result: list[tuple[int, int]] = []
+    first: list[int] = []
+    seats: list[int] = []
+    for m in mounted:
+        carrier = INTERFACE if m.host == WORLD else mounted[m.host].part.frame_carriers[m.frame]
+        outer = WORLD if m.host == WORLD else seats[m.host]
+        seats.append(outer if carrier == INTERFACE else first[m.host] + carrier)
+        first.append(len(result))
+        joints = m.part.skeleton.joints
+        result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
+    return result

@@ -1,0 +1,216 @@
+"""Closures of loops as formulas: residuals, Jacobian and acceleration terms from U and Omega alone.
+
+A closure equates a frame A (``from``) and a frame B (``to``) as far as its joint demands. With everything in the axes
+of A, d = r_B - r_A, M = R_A R_B^T (components in B -> components in A, columns m_j = axes of B) and the relative
+partial velocities of coordinate a
+
+    u_a = M U_Ba - U_Aa - Omega_Aa x d        w_a = M Omega_Ba - Omega_Aa
+
+the rows are
+
+=========  ===================================  =================  =========================================
+row        residual phi                         G_a = dphi/dq^a    its multiplier is, on B, in the axes of A
+=========  ===================================  =================  =========================================
+x, y, z    d_i [m]                              (u_a)_i            a force along axis i [N]
+length     (d . d - L^2) / (2 L) [m]            d . u_a / L        a force along d (pushing) [N]
+rx ry rz   -m_3 . e_2, m_3 . e_1, m_1 . e_2 [1] w_a . (m_j x e_i)  a moment about axis 1, 2, 3 [N m]
+cross      m_2 . e_3 [1]                        w_a . (m_2 x e_3)  a moment across both axes [N m]
+=========  ===================================  =================  =========================================
+
+The acceleration terms G' q' are the second time derivatives of phi at q'' = 0: cross products of the motions of A and B
+(mathematics.md, sections 3 and 7). With them g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G' q' = 0.
+
+========================  =====  ====================================================================
+output                    shape  meaning (m rows of all closures in order)
+========================  =====  ====================================================================
+closure.residual          m      phi
+closure.jacobian          m n    G
+closure.acceleration      m      G' q'
+closure.direction         m 3    force or moment on B of a unit multiplier, in the axes of A
+closure.alignment         m      m_j . e_j of the axes that a row makes parallel: 1 when closed, -1 when upside down;
+                                 0 for all other rows
+========================  =====  ====================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas
+from substructures.mechanics.base_functions import Twist
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    S,
+    Vector,
+    add,
+    apply,
+    cross,
+    dot,
+    multiply,
+    scale,
+    sub,
+    transpose,
+)
+from substructures.mechanics.newton_euler import Motion
+from substructures.tree.inverse_dynamics import body_motions, from_body
+from substructures.tree.mounted_part import WORLD, Mounted, State, frame_kinematics, frame_link
+
+PLACE = ("x", "y", "z")
+#: the rows of every type of closure; the axis of a joint is the third one
+ROWS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("pin", "revolute"), (*PLACE, "rx", "ry")),
+    **dict.fromkeys(("slider", "prismatic"), ("x", "y", "rx", "ry", "rz")),
+    **dict.fromkeys(("ball", "spherical"), PLACE),
+    **dict.fromkeys(("weld", "fixed"), (*PLACE, "rx", "ry", "rz")),
+    "cylindrical": ("x", "y", "rx", "ry"),
+    "universal": (*PLACE, "cross"),
+    "planar": ("z", "rx", "ry"),
+    "rod": ("length",),
+}
+#: rows of directions: (axis j of B, axis i of A, sign) with residual sign * m_j . e_i
+TURNS = {"rx": (2, 1, -1), "ry": (2, 0, 1), "rz": (0, 1, 1), "cross": (1, 2, 1)}
+#: the axis that such a row makes parallel
+ALIGNED = {"rx": 2, "ry": 2, "rz": 0}
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """What a closure is and its rows, in the order of the outputs."""
+
+    name: str
+    type: str
+    start: str
+    end: str
+    rows: tuple[str, ...]
+
+    def plain(self) -> dict[str, Any]:
+        """As JSON data."""
+        return {"name": self.name, "type": self.type, "from": self.start, "to": self.end, "rows": list(self.rows)}
+
+    @classmethod
+    def read(cls, plain: Mapping[str, Any]) -> Rows:
+        """From JSON data."""
+        return cls(plain["name"], plain["type"], plain["from"], plain["to"], tuple(plain["rows"]))
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """A frame of a mounted part (or of the WORLD) with a constant placement in it."""
+
+    part: int
+    frame: int
+    E: Matrix
+    position: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A closure with its frames read."""
+
+    rows: Rows
+    start: End
+    end: End
+    length: Expr
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """R: world -> frame; origin in the world; columns and motion at q'' = 0 in the axes of the frame."""
+
+    R: Matrix
+    r: Vector
+    columns: Mapping[int, Twist]
+    motion: Motion
+
+
+@dataclass(frozen=True)
+class _Relative:
+    """Of B with respect to A, in the axes of A: d, M^T (its rows are the axes of B) and partial velocities; rates."""
+
+    d: Vector
+    axes: Matrix
+    twists: Mapping[int, Twist]
+    v: Vector
+    w: Vector
+    dv: Vector
+    dw: Vector
+
+
+def closure_formulas(
+    mounted: Sequence[Mounted], states: Sequence[State], cuts: Sequence[Cut], rates: Sequence[S]
+) -> dict[str, Formulas]:
+    """The outputs of the table above; ``rates``: the velocities of all coordinates."""
+    motions = body_motions(mounted, states, rates)
+    entries: dict[str, dict[tuple[int, ...], Any]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
+    directions: dict[tuple[int, ...], Any] = {}
+    alignment: dict[tuple[int, ...], Any] = {}
+    k = 0
+    for cut in cuts:
+        frames = [_frame(mounted, states, motions, end) for end in (cut.start, cut.end)]
+        relative = _relative(frames[0], frames[1], rates)
+        for name in cut.rows.rows:
+            residual, direction, columns, acceleration = _row(name, relative, cut.length)
+            entries["residual"][(k,)] = residual
+            entries["jacobian"] |= {(k, a): x for a, x in columns.items()}
+            entries["acceleration"][(k,)] = acceleration
+            directions |= {(k, i): direction[i] for i in range(3)}
+            alignment[(k,)] = relative.axes[ALIGNED[name]][ALIGNED[name]] if name in ALIGNED else 0
+            k += 1
+    shapes = {"residual": (k,), "jacobian": (k, len(rates)), "acceleration": (k,)}
+    outputs = {f"closure.{name}": Formulas(shapes[name], some) for name, some in entries.items()}
+    return outputs | {"closure.direction": Formulas((k, 3), directions), "closure.alignment": Formulas((k,), alignment)}
+
+
+def _frame(
+    mounted: Sequence[Mounted], states: Sequence[State], motions: Sequence[Sequence[Motion]], end: End
+) -> _Frame:
+    if end.part == WORLD:
+        return _Frame(end.E, end.position, {}, Motion())
+    m, state = mounted[end.part], states[end.part]
+    link = frame_link(m, state, end.frame, end.E, end.position)
+    motion = motions[end.part][link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
+    return _Frame(*frame_kinematics(m, state, end.frame, end.E, end.position), motion)
+
+
+def _relative(A: _Frame, B: _Frame, rates: Sequence[S]) -> _Relative:
+    """v, w: velocity of B's origin and angular velocity seen from A; dv, dw: their rates seen from A at q'' = 0."""
+    d = apply(A.R, sub(B.r, A.r))
+    M = multiply(A.R, transpose(B.R))
+    none = Twist(ZERO, ZERO)
+    twists: dict[int, Twist] = {}
+    v: Vector = ZERO
+    for a in sorted({*A.columns, *B.columns}):
+        own, other = A.columns.get(a, none), B.columns.get(a, none)
+        U = sub(sub(apply(M, other.U), own.U), cross(own.Omega, d))
+        twists[a] = Twist(U, sub(apply(M, other.Omega), own.Omega))
+        v = add(v, scale(rates[a], U))
+    omega = A.motion.omega
+    w = sub(apply(M, B.motion.omega), omega)
+    # a_B - a_A - alpha_A x d - omega_A x (omega_A x d) - 2 omega_A x v
+    carried = add(A.motion.a, apply(A.motion.field(), d))
+    dv = sub(sub(apply(M, B.motion.a), carried), scale(2, cross(omega, v)))
+    dw = sub(sub(apply(M, B.motion.alpha), A.motion.alpha), cross(omega, w))
+    return _Relative(d, transpose(M), twists, v, w, dv, dw)
+
+
+def _row(name: str, r: _Relative, length: Expr) -> tuple[S, Vector, dict[int, S], S]:
+    """Residual, direction of the multiplier, columns of the Jacobian, acceleration term."""
+    if name in TURNS:
+        j, i, sign = TURNS[name]
+        axis = IDENTITY[i]
+        direction = scale(sign, cross(r.axes[j], axis))
+        turned = add(cross(r.dw, r.axes[j]), cross(r.w, cross(r.w, r.axes[j])))
+        columns = {a: dot(t.Omega, direction) for a, t in r.twists.items()}
+        return sign * dot(r.axes[j], axis), direction, columns, sign * dot(turned, axis)
+    if name == "length":
+        direction = r.d[0] / length, r.d[1] / length, r.d[2] / length
+        residual = (dot(r.d, r.d) - length * length) / (2 * length)
+        acceleration = (dot(r.v, r.v) + dot(r.d, r.dv)) / length
+        return residual, direction, {a: dot(t.U, direction) for a, t in r.twists.items()}, acceleration
+    i = PLACE.index(name)
+    return r.d[i], IDENTITY[i], {a: t.U[i] for a, t in r.twists.items()}, r.dv[i]

@@ -1,0 +1,84 @@
+"""The JSON form of a tree of substructures (the HTTP contract, section 3)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from substructures.documents import Document, DocumentPart, read_model
+from substructures.documents.fields import LibraryName, Name, Number, Vector
+from substructures.part.definition import Definition, Parameter, Placement
+
+REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
+AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
+FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
+MAX_INSTANCES = 500
+
+
+class Instance(DocumentPart):
+    """A substructure mounted on the world, or on a port or body of another instance."""
+
+    name: Name
+    substructure: Annotated[str, Field(pattern=REFERENCE)] | None = Field(
+        None, description="reference into the library"
+    )
+    definition: Definition | None = Field(None, description="instead of a reference: a definition of its own")
+    at: Annotated[str, Field(pattern=AT)] = "world"
+    placement: Placement = Placement()
+    parameters: dict[Name, Number] = Field(
+        {}, max_length=5000, description="numbers, or expressions in other parameters"
+    )
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Instance:
+        if (self.substructure is None) == (self.definition is None):
+            raise PydanticCustomError("one-source", "give either 'substructure' or 'definition'")
+        return self
+
+
+class Closure(DocumentPart):
+    """A loop of the mechanism: a joint that is cut. It equates two frames as far as the joint demands.
+
+    The joint's axis is the third axis of both frames. ``pin`` is ``revolute``, ``slider`` is ``prismatic``, ``ball`` is
+    ``spherical``, ``weld`` is ``fixed``; ``rod``: the origins keep the distance ``length``.
+    """
+
+    name: Name
+    type: Literal[
+        "pin", "revolute", "slider", "prismatic", "ball", "spherical", "weld", "fixed", "cylindrical", "universal",
+        "planar", "rod",
+    ]  # fmt: skip
+    from_: Annotated[str, Field(pattern=FRAME)] = Field(alias="from", description="instance.port or instance.body")
+    to: Annotated[str, Field(pattern=AT)] = Field("world", description="instance.port, instance.body or world")
+    placement: Placement = Field(Placement(), description="where the joint is in the frame 'to'")
+    axis: tuple[Number, Number, Number] | None = Field(
+        None, description="joint axis in the frame 'from' and in the placed frame 'to' (constant; default: the third)"
+    )
+    length: Number | None = Field(None, description="m; of a rod")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+    @model_validator(mode="after")
+    def _fitting(self) -> Closure:
+        if (self.type == "rod") != (self.length is not None):
+            raise PydanticCustomError("rod-length", "a rod has a 'length', and only a rod")
+        if self.axis is not None and self.type in ("ball", "spherical", "weld", "fixed", "rod"):
+            raise PydanticCustomError("no-axis", "this type of closure has no 'axis'")
+        return self
+
+
+class TreeSpec(Document):
+    """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree."""
+
+    name: LibraryName
+    gravity: Vector = Field((0, 0, 0), description="gravity acceleration in world axes, m/s^2")
+    parameters: dict[Name, Parameter] = Field({}, max_length=5000)
+    instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
+    closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
+
+
+def read_instance(data: Any) -> Instance:
+    """One instance from plain data. Raises InvalidDocument."""
+    return read_model(Instance, data)
