@@ -35,7 +35,7 @@ from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Engine, interpreted
+from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.from_parts import NumericTree, Scalars, kernel_entries
 from substructures.tree.coupling import ASKED
 
@@ -88,7 +88,7 @@ class Kernels:
             return interpreted(program, values, names, states)
         return kernel.evaluate(values, threads=os.cpu_count() or 1)
 
-    def of_tree(self, program: Program, parts: Iterable[Part], tree: Callable[[], NumericTree]) -> Engine:
+    def of_tree(self, program: Program, parts: Iterable[Part], tree: Callable[[], NumericTree]) -> Evaluator:
         """An engine that also takes the way over the parts, for outputs of the tree's own ``program``."""
 
         def run(given: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:

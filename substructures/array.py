@@ -1,4 +1,4 @@
-"""The array of numbers that everything here computes with."""
+"""The arrays of numbers that everything here computes with."""
 
 from __future__ import annotations
 
@@ -6,3 +6,4 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]

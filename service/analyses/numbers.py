@@ -17,7 +17,7 @@ from service.analyses.requests import (
     SensitivityRequest,
 )
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
-from service.analyses.source import Report, Source
+from service.analyses.source import Source
 from substructures.analysis.closed.loops import analyse_loops
 from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
 from substructures.analysis.control.nonlinear_program import OptimalControlRequest
@@ -25,6 +25,7 @@ from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.motion.requests import (
     ClosedRequest,
     LoopRequest,
@@ -52,7 +53,7 @@ class Analysis:
     """
 
     schema: type[BaseModel]
-    compute: Callable[[Source, Request, Report], Any]
+    compute: Callable[[Source, Request, ProgressReport], Any]
     text: str
     media: tuple[str, ...] = PLAIN
     needs_parts: bool = False
@@ -84,7 +85,7 @@ def _motion_schema(request: Request, is_closed: bool) -> type[SpanRequest]:
     return ClosedRequest if is_closed or request.get("prescribed") else SimulationRequest
 
 
-def _simulation(source: Source, request: Request, report: Report) -> Any:
+def _simulation(source: Source, request: Request, report: ProgressReport) -> Any:
     model, n = source.model, source.model.dof
     read = read_model(_motion_schema(request, bool(model.closures)), request)
     rows = sum(len(closure.rows) for closure in model.closures)
@@ -92,7 +93,7 @@ def _simulation(source: Source, request: Request, report: Report) -> Any:
     return simulate(model, request, report, source.folder)
 
 
-def _sensitivities(source: Source, request: Request, report: Report) -> Any:
+def _sensitivities(source: Source, request: Request, report: ProgressReport) -> Any:
     read = read_model(SensitivityRequest, request)
     n, known = source.model.dof, source.model.parameters
     faults = [
@@ -108,7 +109,7 @@ def _sensitivities(source: Source, request: Request, report: Report) -> Any:
     return sensitivities(source.model, rest, read.by, read.of_start, report, source.folder)
 
 
-def _linearisation(source: Source, request: Request, _: Report) -> Any:
+def _linearisation(source: Source, request: Request, _: ProgressReport) -> Any:
     read, n = read_model(LinearisationRequest, request), source.model.dof
     inputs = sum(s.kind == "input" for s in source.model.program.symbols)
     states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
@@ -116,14 +117,14 @@ def _linearisation(source: Source, request: Request, _: Report) -> Any:
     return linearise(source.model, request)
 
 
-def _curvature(source: Source, request: Request, _: Report) -> Any:
+def _curvature(source: Source, request: Request, _: ProgressReport) -> Any:
     read, n = read_model(CurvatureRequest, request), source.model.dof
     states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
     _check_size(source, states, n**4 + n**3 + 2 * n * n + 1)
     return curvature_values(source.model, request, source.limits.states, source.engine, curvature_of(source))
 
 
-def _optimal_control(source: Source, request: Request, report: Report) -> Any:
+def _optimal_control(source: Source, request: Request, report: ProgressReport) -> Any:
     most = read_model(OptimalControlRequest, request).iterations
 
     def told(iteration: int, _cost: float, _violation: float) -> None:
@@ -132,13 +133,13 @@ def _optimal_control(source: Source, request: Request, report: Report) -> Any:
     return optimal_control(source.model, request, told)
 
 
-def _excitation(source: Source, request: Request, _: Report) -> Any:
+def _excitation(source: Source, request: Request, _: ProgressReport) -> Any:
     drives = read_model(ExcitationRequest, request).drives
     found = excitation(base_of(source, drives), _without(request, "drives"))
     return {**vars(found), "is_good": found.is_good, "advice": found.advice}
 
 
-def _identification(source: Source, request: Request, _: Report) -> Any:
+def _identification(source: Source, request: Request, _: ProgressReport) -> Any:
     read = read_model(IdentificationRequest, request)
     data = _without(request, "drives", "known")
     return identify(base_of(source, read.drives), data, source.model if read.known else None)

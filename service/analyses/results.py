@@ -95,4 +95,4 @@ def _arrow(motion: Trajectory) -> bytes:
     """A row for every time: t, q, qd, and ``series.<name>``; the rest in the metadata of the schema, as JSON."""
     columns = {"t": motion.t, "q": motion.q, "qd": motion.qd}
     columns |= {f"series.{name}": np.asarray(x, dtype=np.float64) for name, x in motion.series.items()}
-    return b"".join(map(bytes, arrow.write_tables([arrow.Table(columns)], plain(motion.summary()))))
+    return b"".join(map(bytes, arrow.write_tables([arrow.ArrowTable(columns)], plain(motion.summary()))))

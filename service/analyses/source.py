@@ -7,12 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.settings import Limits
-from substructures.quantities.evaluation import Engine, interpreted
+from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
-
-#: told the finished share of the work
-Report = Callable[[float], bool | None]
 
 
 @dataclass(frozen=True)
@@ -24,4 +21,4 @@ class Source:
     regressor: Callable[[], RegressorModel]
     limits: Limits
     folder: Path | None = None
-    engine: Engine = interpreted
+    engine: Evaluator = interpreted

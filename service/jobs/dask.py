@@ -26,8 +26,8 @@ from distributed import Client
 
 from service.jobs.dask_cluster import CONNECT, Notices, Workers, described
 from service.jobs.dask_task import TOPIC, compute
-from service.jobs.engine import Report, Work
-from service.jobs.wire import Reader, WireError, read_report, work_frame
+from service.jobs.engine import AttemptReport, Work
+from service.jobs.wire import MessageReader, WireError, read_report, work_frame
 
 WATCH = 0.5  # seconds between looks at the cluster
 SILENCE = 60.0  # seconds without a scheduler or workers after which attempts are given up
@@ -50,7 +50,7 @@ class DaskEngine:
         self.address = address
         self._open: set[str] = set()  # used by the caller's thread only
         self._wanted: dict[str, Work] = {}
-        self._news: SimpleQueue[Report | None] = SimpleQueue()
+        self._news: SimpleQueue[AttemptReport | None] = SimpleQueue()
         self._slots = 0
         self._tasks: dict[str, _Task] = {}
         self._workers: Workers | None = None
@@ -79,16 +79,16 @@ class DaskEngine:
         if self._wanted.pop(attempt, None) is not None:
             self._loop.call_soon_threadsafe(self._reconcile)
 
-    def reports(self, seconds: float) -> list[Report]:
+    def reports(self, seconds: float) -> list[AttemptReport]:
         """News, waiting at most so long for the first; none also when there are more or fewer workers."""
-        news: list[Report | None] = []
+        news: list[AttemptReport | None] = []
         with contextlib.suppress(Empty):
             news.append(self._news.get(timeout=max(seconds, 1e-3)))
             while True:
                 news.append(self._news.get_nowait())
         return [report for report in news if report is not None and self._is_news(report)]
 
-    def _is_news(self, report: Report) -> bool:
+    def _is_news(self, report: AttemptReport) -> bool:
         is_open = report.id in self._open
         if report.is_final:
             self._open.discard(report.id)
@@ -176,7 +176,7 @@ class DaskEngine:
     def _progress(self, event: tuple[float, Mapping[str, Any]]) -> None:
         _, message = event
         if message.get("id") in self._wanted:
-            self._news.put(Report(message["id"], float(message["fraction"])))
+            self._news.put(AttemptReport(message["id"], float(message["fraction"])))
 
     def _give_up(self, what: str) -> None:
         """Report everything dead when nothing was heard for too long."""
@@ -184,10 +184,10 @@ class DaskEngine:
             return
         self._heard = monotonic()
         for attempt in list(self._wanted):
-            self._end(Report(attempt, death=f"{what} (for {SILENCE:g} s)"))
+            self._end(AttemptReport(attempt, death=f"{what} (for {SILENCE:g} s)"))
         self._reconcile()
 
-    def _end(self, report: Report) -> None:
+    def _end(self, report: AttemptReport) -> None:
         if self._wanted.pop(report.id, None) is not None:
             self._news.put(report)
 
@@ -214,11 +214,11 @@ class DaskEngine:
             data = await future
         except (CancelledError, OSError) as error:
             if client.status == "running":
-                self._end(Report(work.id, death=f"the cluster gave the task up: {error}"))
+                self._end(AttemptReport(work.id, death=f"the cluster gave the task up: {error}"))
         except (WireError, ImportError):
             workers.doubt()  # a worker of another version: the next look submits the work again
         except Exception as error:
-            self._end(Report(work.id, death=f"the task failed: {described(error)}"))
+            self._end(AttemptReport(work.id, death=f"the task failed: {described(error)}"))
         else:
             self._end(_report(work.id, data))
         finally:
@@ -228,13 +228,13 @@ class DaskEngine:
                 del self._tasks[work.id]
 
 
-def _report(attempt: str, data: bytes) -> Report:
+def _report(attempt: str, data: bytes) -> AttemptReport:
     try:
-        frames: Iterator[Any] = Reader().feed(data)
+        frames: Iterator[Any] = MessageReader().feed(data)
         frame = next(frames, None)
-        return Report(attempt, death="the worker gave the task up") if frame is None else read_report(frame)
+        return AttemptReport(attempt, death="the worker gave the task up") if frame is None else read_report(frame)
     except WireError as error:
-        return Report(attempt, death=f"the worker's answer cannot be read: {error}")
+        return AttemptReport(attempt, death=f"the worker's answer cannot be read: {error}")
 
 
 async def _end_all(tasks: Collection[asyncio.Task[Any]]) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 from distributed import Status, get_worker
 
 from service.jobs.local import LocalEngine
-from service.jobs.wire import PROTOCOL, Reader, read_work, report_frame
+from service.jobs.wire import PROTOCOL, MessageReader, read_work, report_frame
 
 TOPIC = "substructures-progress"
 POLL = 0.1  # seconds between looks of a task at whether it is still wanted
@@ -28,7 +28,7 @@ def compute(frame: bytes) -> bytes:
     """The task: compute a work on the worker, and answer with the frame of its last report (nothing when unwanted)."""
     worker = get_worker()
     key = worker.get_current_task()
-    (first,) = Reader().feed(frame)
+    (first,) = MessageReader().feed(frame)
     work = read_work(first, {})
     engine = _engine()
     while not engine.free:

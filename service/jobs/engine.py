@@ -40,7 +40,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class Report:
+class AttemptReport:
     """News of one attempt: ``fraction`` done while it runs; at its end an outcome, or what was seen of its death."""
 
     id: str
@@ -67,7 +67,7 @@ class Engine(Protocol):
     def stop(self, attempt: str) -> None:
         """Kill what computes the attempt; no report follows. Nothing happens when there is none."""
 
-    def reports(self, seconds: float) -> list[Report]:
+    def reports(self, seconds: float) -> list[AttemptReport]:
         """News, waiting at most so long for the first."""
 
     def close(self) -> None:

@@ -7,7 +7,7 @@ import selectors
 from collections import deque
 from time import monotonic
 
-from service.jobs.engine import Report, Work
+from service.jobs.engine import AttemptReport, Work
 from service.jobs.process import Process
 from service.jobs.wire import WireError
 
@@ -27,7 +27,7 @@ class LocalEngine:
         self._selector = selectors.DefaultSelector()
         self._processes: set[Process] = set()
         self._running: dict[str, Process] = {}
-        self._news: deque[Report] = deque()
+        self._news: deque[AttemptReport] = deque()
         self._failures, self._not_before = 0, 0.0
         self._fill()
 
@@ -59,7 +59,7 @@ class LocalEngine:
             self._fill()
         self._news = deque(report for report in self._news if report.id != attempt)
 
-    def reports(self, seconds: float) -> list[Report]:
+    def reports(self, seconds: float) -> list[AttemptReport]:
         """News, waiting at most so long for the first; none also when another runner has become free."""
         end = monotonic() + seconds
         free = self.free

@@ -13,9 +13,9 @@ from collections import OrderedDict, deque
 from dataclasses import replace
 from pathlib import Path
 
-from service.jobs.engine import Report, Work
+from service.jobs.engine import AttemptReport, Work
 from service.jobs.kinds import failed
-from service.jobs.wire import Frame, Reader, WireError, read_report, work_frame
+from service.jobs.wire import Message, MessageReader, WireError, read_report, work_frame
 from service.refusals import Refused
 
 #: what a runner gets of the environment; nothing that says where the database is, and no credentials
@@ -66,7 +66,7 @@ class Process:
         self.work, self.output = self._input.fileno(), self._output.fileno()
         for descriptor in (self.reports, self.work, self.output):
             os.set_blocking(descriptor, False)
-        self._reader = Reader()
+        self._reader = MessageReader()
         self._outgoing: deque[memoryview] = deque()
         self._blobs: OrderedDict[str, int] = OrderedDict()
         self._printed = ""
@@ -134,7 +134,7 @@ class Process:
         self._printed = (self._printed + data.decode(errors="replace"))[-OUTPUT:]
         return bool(data)
 
-    def receive(self) -> list[Report] | None:
+    def receive(self) -> list[AttemptReport] | None:
         """News of the current work; None when the process has ended. Raises WireError."""
         try:
             data = os.read(self.reports, CHUNK)
@@ -144,7 +144,7 @@ class Process:
             return None
         return [report for frame in self._reader.feed(data) for report in self._news(frame)]
 
-    def _news(self, frame: Frame) -> list[Report]:
+    def _news(self, frame: Message) -> list[AttemptReport]:
         if "ready" in frame.head:
             self.is_ready = True
             return []
@@ -170,7 +170,7 @@ class Process:
             pages = Path(f"/proc/{self.pid}/statm").read_text().split()[1]
             self._resident = int(pages) * os.sysconf("SC_PAGE_SIZE")
 
-    def excess(self) -> Report | None:
+    def excess(self) -> AttemptReport | None:
         """The last report about a work that takes more than it may: memory, or far too long."""
         if self.current is None:
             return None
@@ -178,10 +178,12 @@ class Process:
         if self._resident > self.current.budget.memory_bytes:
             return self._out_of_memory(self.current)
         if time.monotonic() >= self.deadline:
-            return Report(self.current.id, death="the process was killed: it took far longer than its CPU time allows")
+            return AttemptReport(
+                self.current.id, death="the process was killed: it took far longer than its CPU time allows"
+            )
         return None
 
-    def _out_of_memory(self, work: Work) -> Report:
+    def _out_of_memory(self, work: Work) -> AttemptReport:
         return _problem(work, "memory-limit", f"{work.budget.memory_bytes:,} bytes of memory")
 
     def kill(self) -> None:
@@ -189,7 +191,7 @@ class Process:
         if self._child.poll() is None:
             os.killpg(self.pid, signal.SIGKILL)
 
-    def seen(self, work: Work) -> Report:
+    def seen(self, work: Work) -> AttemptReport:
         """The last report about the work of a process that has ended: its own failure, or what was seen."""
         try:
             code = self._child.wait(PATIENCE)  # it closed its pipe a moment before
@@ -204,7 +206,7 @@ class Process:
         what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
         what = what if self.is_ready else f"{what} before it was ready"
         printed = f"; it printed: {self.printed}" if self.printed else ""
-        return Report(work.id, death=f"the process ended: {what}{printed}")
+        return AttemptReport(work.id, death=f"the process ended: {what}{printed}")
 
     def close(self) -> None:
         """Kill it, wait for the end and release everything."""
@@ -225,5 +227,5 @@ def _pipe() -> tuple[int, int]:
     return ends
 
 
-def _problem(work: Work, code: str, limit: str) -> Report:
-    return Report(work.id, 1.0, failed(Refused(422, code, f"the item needs more than {limit}")))
+def _problem(work: Work, code: str, limit: str) -> AttemptReport:
+    return AttemptReport(work.id, 1.0, failed(Refused(422, code, f"the item needs more than {limit}")))

@@ -15,9 +15,9 @@ import sys
 from collections.abc import Callable
 from time import monotonic
 
-from service.jobs.engine import Budget, Outcome, Report, Work
+from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.kinds import failed, run
-from service.jobs.wire import Frame, Reader, read_work, report_frame
+from service.jobs.wire import Message, MessageReader, read_work, report_frame
 from service.refusals import Refused
 
 CHUNK = 2**20
@@ -31,8 +31,8 @@ def main(arguments: list[str]) -> int:
     reports, parent = map(int, arguments)
     _end_with(parent)
     os.nice(NICE)
-    _send(reports, Frame({"ready": os.getpid()}))
-    reader = Reader()
+    _send(reports, Message({"ready": os.getpid()}))
+    reader = MessageReader()
     blobs: dict[str, bytes] = {}
     while data := os.read(sys.stdin.fileno(), CHUNK):
         for frame in reader.feed(data):
@@ -52,7 +52,7 @@ def _end_with(parent: int) -> None:
 def _serve(work: Work, reports: int) -> bool:
     """Compute and report; False when the process should not be used again."""
     outcome, is_sound = _computed(work, _throttled(lambda fraction: _send(reports, _progress(work, fraction))))
-    _send(reports, report_frame(Report(work.id, 1.0, outcome), last=not is_sound))
+    _send(reports, report_frame(AttemptReport(work.id, 1.0, outcome), last=not is_sound))
     return is_sound
 
 
@@ -81,8 +81,8 @@ def out_of_memory(budget: Budget) -> Refused:
     return Refused(422, "memory-limit", f"the item needs more than {limit:,} bytes of memory", limit=limit)
 
 
-def _progress(work: Work, fraction: float) -> Frame:
-    return report_frame(Report(work.id, fraction))
+def _progress(work: Work, fraction: float) -> Message:
+    return report_frame(AttemptReport(work.id, fraction))
 
 
 def _throttled(send: Callable[[float], None]) -> Callable[[float], None]:
@@ -97,7 +97,7 @@ def _throttled(send: Callable[[float], None]) -> Callable[[float], None]:
     return progress
 
 
-def _send(descriptor: int, frame: Frame) -> None:
+def _send(descriptor: int, frame: Message) -> None:
     data = memoryview(frame.to_bytes())
     while data:
         data = data[os.write(descriptor, data) :]

@@ -17,7 +17,7 @@ from typing import Any
 
 import orjson
 
-from service.jobs.engine import Budget, Outcome, Report, Work
+from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 
@@ -33,7 +33,7 @@ class WireError(Exception):
 
 
 @dataclass(frozen=True)
-class Frame:
+class Message:
     """A head and its contents."""
 
     head: Mapping[str, Any]
@@ -46,19 +46,19 @@ class Frame:
         return b"".join((_LENGTH.pack(len(head)), head, *self.contents.values()))
 
 
-class Reader:
+class MessageReader:
     """Puts frames together out of whatever arrives."""
 
     def __init__(self) -> None:
         self._buffer = bytearray()
 
-    def feed(self, data: bytes) -> Iterator[Frame]:
+    def feed(self, data: bytes) -> Iterator[Message]:
         """The frames that are complete now. Raises WireError."""
         self._buffer += data
         while (frame := self._next()) is not None:
             yield frame
 
-    def _next(self) -> Frame | None:
+    def _next(self) -> Message | None:
         start = _LENGTH.size
         if len(self._buffer) < start:
             return None
@@ -76,7 +76,7 @@ class Reader:
             contents[name] = bytes(self._buffer[at : at + size])
             at += size
         del self._buffer[:end]
-        return Frame(head, contents)
+        return Message(head, contents)
 
 
 def _head(data: bytes) -> tuple[dict[str, Any], dict[str, int]]:
@@ -93,7 +93,7 @@ def _head(data: bytes) -> tuple[dict[str, Any], dict[str, int]]:
     return head, sizes
 
 
-def work_frame(work: Work, known: frozenset[str] = frozenset(), forget: tuple[str, ...] = ()) -> Frame:
+def work_frame(work: Work, known: frozenset[str] = frozenset(), forget: tuple[str, ...] = ()) -> Message:
     """A work to be computed. Blobs that the receiver ``known`` are not sent again; it may ``forget`` some."""
     head = {
         "id": work.id,
@@ -104,10 +104,10 @@ def work_frame(work: Work, known: frozenset[str] = frozenset(), forget: tuple[st
         "forget": list(forget),
     }
     sent = {digest: data for digest, data in work.blobs.items() if digest not in known}
-    return Frame(head, {ITEM: write_json(dict(work.item)), **sent})
+    return Message(head, {ITEM: write_json(dict(work.item)), **sent})
 
 
-def read_work(frame: Frame, blobs: dict[str, bytes]) -> Work:
+def read_work(frame: Message, blobs: dict[str, bytes]) -> Work:
     """The work of a frame; ``blobs`` are those kept from earlier ones, and brought up to date. Raises WireError."""
     try:
         head, contents = frame.head, dict(frame.contents)
@@ -121,28 +121,28 @@ def read_work(frame: Frame, blobs: dict[str, bytes]) -> Work:
         raise WireError(f"not a work: {error}") from None
 
 
-def report_frame(report: Report, **more: Any) -> Frame:
+def report_frame(report: AttemptReport, **more: Any) -> Message:
     """News of an attempt."""
     head = {"id": report.id, "fraction": report.fraction, "death": report.death, **more}
     outcome = report.outcome
     if outcome is None:
-        return Frame(head)
+        return Message(head)
     contents = {SUMMARY: write_json(dict(outcome.summary))}
     contents |= {FILE + name: data for name, data in outcome.files.items()}
     if outcome.problem is not None:
         contents[PROBLEM] = write_json(dict(outcome.problem))
-    return Frame(head, contents)
+    return Message(head, contents)
 
 
-def read_report(frame: Frame) -> Report:
+def read_report(frame: Message) -> AttemptReport:
     """The report of a frame. Raises WireError."""
     try:
         head, contents = frame.head, frame.contents
-        report = Report(str(head["id"]), float(head["fraction"]), None, str(head["death"]))
+        report = AttemptReport(str(head["id"]), float(head["fraction"]), None, str(head["death"]))
         if SUMMARY not in contents:
             return report
         files = {name.removeprefix(FILE): data for name, data in contents.items() if name.startswith(FILE)}
         problem = read_json(contents[PROBLEM]) if PROBLEM in contents else None
-        return Report(report.id, 1.0, Outcome(read_json(contents[SUMMARY]), files, problem))
+        return AttemptReport(report.id, 1.0, Outcome(read_json(contents[SUMMARY]), files, problem))
     except (KeyError, TypeError, ValueError, InvalidDocument) as error:
         raise WireError(f"not a report: {error}") from None

@@ -15,7 +15,7 @@ from substructures.documents import pointer_step, read_json
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.formats import arrow
 from substructures.formats.arrays import flat, read_npz
-from substructures.formats.columns import Request, has_rows, request_of
+from substructures.formats.columns import ColumnRequest, has_rows, request_of
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.states import numeric, read_states
 
@@ -23,7 +23,7 @@ PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
 _CONSTANTS = ("quantities", "parameters", "inputs", "along", "t")
 
-Evaluate = Callable[[Request], Mapping[str, Any]]
+Evaluate = Callable[[ColumnRequest], Mapping[str, Any]]
 
 
 def npz_request(file: IO[bytes], limits: Limits) -> dict[str, Any]:
@@ -47,7 +47,7 @@ def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
         raise InvalidDocument.at("/q", "missing", "the stream has no states")
 
 
-def joined(requests: Iterable[Request], limits: Limits) -> Request:
+def joined(requests: Iterable[ColumnRequest], limits: Limits) -> ColumnRequest:
     """One request of all record batches, for an answer in one piece. Raises TooLarge."""
     kept, size = [], 0
     for request in requests:
@@ -68,7 +68,7 @@ def _arrays(request: Any) -> dict[str, Array]:
     return {name: column for name, column in columns.items() if isinstance(column, np.ndarray)}
 
 
-def split(sources: Sources, request: Request, limits: Limits) -> Iterable[Request]:
+def split(sources: Sources, request: ColumnRequest, limits: Limits) -> Iterable[ColumnRequest]:
     """Check the numbers of a request, and cut it into parts whose results are of moderate size and have a leading axis
     also for a single state. Raises InvalidDocument.
     """
@@ -117,7 +117,7 @@ def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
 
 
 def as_arrow(
-    evaluate: Evaluate, cuts: Iterable[Iterable[Request]], quantities: Iterable[str]
+    evaluate: Evaluate, cuts: Iterable[Iterable[ColumnRequest]], quantities: Iterable[str]
 ) -> Iterator[memoryview | bytes]:
     """The answer as an Arrow stream: a record batch for every part, null where a state has no result."""
     names = list(dict.fromkeys(quantities))

@@ -18,7 +18,7 @@ from substructures.part.part import derive
 
 
 @dataclass(frozen=True, slots=True)
-class Submission:
+class PartSubmission:
     """A definition ready to be stored; ``content`` is None when that is stored already."""
 
     name: str
@@ -35,14 +35,14 @@ class Page:
     next_token: str | None
 
 
-def prepare(store: Store, definition: Definition) -> Submission:
+def prepare(store: Store, definition: Definition) -> PartSubmission:
     """Derive, verify and certify a definition unless its content is known. Raises InvalidDocument, TooLarge."""
     with store.database.read() as connection:
         if content.has_part(connection, definition.digest):
-            return Submission(definition.name, definition.digest, None)
+            return PartSubmission(definition.name, definition.digest, None)
     part = derive(definition, store.settings.limits.program_nodes)
     store.remember_part(part)
-    return Submission(definition.name, definition.digest, part_content(part))
+    return PartSubmission(definition.name, definition.digest, part_content(part))
 
 
 def store_part(connection: Connection, part: PartContent) -> None:
@@ -51,7 +51,7 @@ def store_part(connection: Connection, part: PartContent) -> None:
     content.put_part(connection, part.row, part.tags, [content.FormulaRow(*values) for values in part.formulas])
 
 
-def submit(connection: Connection, submission: Submission) -> tuple[catalogue.Version, bool]:
+def submit(connection: Connection, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
     """Store a submission; the version, and whether it is new."""
     if submission.content is not None:
         store_part(connection, submission.content)
@@ -80,7 +80,7 @@ def is_pinned(text: str) -> bool:
     return ref is not None and ref.is_pinned
 
 
-def search(connection: Connection, wanted: catalogue.Search, size: int, token: str | None) -> Page:
+def search(connection: Connection, wanted: catalogue.CatalogueSearch, size: int, token: str | None) -> Page:
     """A page of the latest versions. Raises Refused 422 for a token of another search."""
     column = wanted.sort.lstrip("-")
     after = read_token(wanted, token, int if column == "dof" else str, str)

@@ -15,8 +15,8 @@ from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
 from substructures.formats import arrays, arrow
-from substructures.formats.columns import Request
-from substructures.quantities.evaluation import Engine, Sources, evaluate
+from substructures.formats.columns import ColumnRequest
+from substructures.quantities.evaluation import Evaluator, Sources, evaluate
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 _KNOWN = ", ".join(MEDIA_TYPES)
@@ -59,7 +59,7 @@ class Evaluation:
     sources: Sources
     digest: str
     limits: Limits
-    engine: Engine
+    engine: Evaluator
 
     def answer(self, requests: Iterable[Any], wanted: str) -> Answer | Stream:
         """The answer to requests. Raises InvalidDocument, MissingValue, TooLarge, all before the first byte is sent
@@ -79,10 +79,10 @@ class Evaluation:
         cuts = chain([self._cut(first)], map(self._cut, requests))
         return batches.as_arrow(self._evaluated, cuts, first.get("quantities", ()))
 
-    def _cut(self, request: Any) -> Iterable[Request]:
+    def _cut(self, request: Any) -> Iterable[ColumnRequest]:
         evaluations.check_size(self.sources, request, self.limits, streamed=True)
         return batches.split(self.sources, request, self.limits)
 
-    def _evaluated(self, request: Request) -> dict[str, Any]:
+    def _evaluated(self, request: ColumnRequest) -> dict[str, Any]:
         answer = evaluate(self.sources.model, request, self.limits.states, self.engine, self.sources)
         return {**answer, "digest": self.digest}

@@ -9,7 +9,7 @@ from service.addresses import tree_path, version_path
 from service.database.connections import Connection
 from service.jobs.engine import Outcome
 from service.operations import catalogue, trees
-from service.operations.catalogue import Submission
+from service.operations.catalogue import PartSubmission
 from service.queries import results
 from service.queries.attempts import Attempt
 from service.summaries import PartContent
@@ -41,7 +41,7 @@ def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> 
     files, told = outcome.files, outcome.summary
     inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
     figures = told["program"], told["nodes"], told["dof"]
-    coupled = trees.Coupled(
+    coupled = trees.TreeContent(
         told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
     )
     tree, _ = trees.store(connection, coupled, item.get(BASE), bool(item.get(IS_EXACT)))
@@ -50,5 +50,5 @@ def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> 
 
 def _version(connection: Connection, outcome: Outcome) -> dict[str, Any]:
     part = PartContent.of_files(outcome.files)
-    version, _ = catalogue.submit(connection, Submission(part.name, part.digest, part))
+    version, _ = catalogue.submit(connection, PartSubmission(part.name, part.digest, part))
     return {"version": version.version, "location": version_path(version)}

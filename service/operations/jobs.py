@@ -26,7 +26,7 @@ RECENT = 30.0  # seconds over which the rate is measured
 
 
 @dataclass(frozen=True, slots=True)
-class Submission:
+class JobSubmission:
     """A job ready to be queued."""
 
     kind: str
@@ -43,7 +43,7 @@ class Progress:
     eta_seconds: float | None
 
 
-def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -> Submission:
+def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -> JobSubmission:
     """Resolve all items of ``{"kind", "items"}``; ``members`` are added to each.
 
     Raises InvalidDocument or Refused 422 with pointers to the items; nothing is queued then.
@@ -56,19 +56,19 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
     with store.database.read() as connection:
         library = StoreLibrary(connection)
         expanded = kinds.expand(kind, body, store.settings.limits, library)
-        return Submission(kind, _resolved(kind, expanded, library, _places(body, len(expanded)), members or {}))
+        return JobSubmission(kind, _resolved(kind, expanded, library, _places(body, len(expanded)), members or {}))
 
 
-def prepare_items(store: Store, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]) -> Submission:
+def prepare_items(store: Store, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]) -> JobSubmission:
     """Resolve items that are expanded, and that refer to states uploaded before. Raises as :func:`prepare`."""
     with store.database.read() as connection:
         resolved = _resolved(kind, items, StoreLibrary(connection), _places({}, len(items)), {})
-    return Submission(kind, resolved, digests)
+    return JobSubmission(kind, resolved, digests)
 
 
 def prepare_one(
     store: Store, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
-) -> Submission:
+) -> JobSubmission:
     """A job of one item in place of a request; ``step`` is where the body of the request is in the item. Raises as
     :func:`prepare`, with pointers into that body."""
     place = f"/items/0{step}"
@@ -137,7 +137,7 @@ def require_room(connection: Connection, new: int, principal: str, limits: Limit
             raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
 
 
-def submit(connection: Connection, submission: Submission, principal: str, limits: Limits) -> Job:
+def submit(connection: Connection, submission: JobSubmission, principal: str, limits: Limits) -> Job:
     """Queue a job. Raises Refused 503 when the queue is full."""
     require_room(connection, len(submission.items), principal, limits)
     identifier = jobs.add_job(connection, submission.kind, principal, submission.items)
@@ -153,7 +153,7 @@ def find(connection: Connection, identifier: str) -> Job:
     return job
 
 
-def find_item(connection: Connection, identifier: str, position: int) -> jobs.Item:
+def find_item(connection: Connection, identifier: str, position: int) -> jobs.JobItem:
     """One item of a job. Raises Refused 404."""
     found = jobs.page_items(connection, find(connection, identifier).id, None, position - 1, 1)
     if not found or found[0].position != position:

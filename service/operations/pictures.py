@@ -23,7 +23,7 @@ from substructures.quantities.evaluation import Sources
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
-Pose = tuple[float, ...]
+PoseValues = tuple[float, ...]
 INSTANCE = "part"
 LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -38,7 +38,7 @@ class Scene:
     model: Model
 
 
-def read_pose(text: str | None, dof: int) -> Pose | None:
+def read_pose(text: str | None, dof: int) -> PoseValues | None:
     """The pose of ``?q=0.1,0.2``; None for the standard one. Raises Refused 422 with the pointer ``/query/q``."""
     if text is None:
         return None
@@ -52,21 +52,21 @@ def read_pose(text: str | None, dof: int) -> Pose | None:
     return tuple(map(float, fields))
 
 
-def draw_part(store: Store, version: Version, pose: Pose | None) -> str:
+def draw_part(store: Store, version: Version, pose: PoseValues | None) -> str:
     """SVG of a part alone, mounted on the world. Raises TooLarge."""
     return _kept(store, version.digest, pose) or _draw(store, version.digest, _part_scene(store, version), pose)
 
 
-def draw_tree(store: Store, tree: Tree, pose: Pose | None) -> str:
+def draw_tree(store: Store, tree: Tree, pose: PoseValues | None) -> str:
     """SVG of a revision of a tree. Raises TooLarge."""
     return _kept(store, tree.digest, pose) or _draw(store, tree.digest, _tree_scene(store, tree), pose)
 
 
-def _kept(store: Store, digest: str, pose: Pose | None) -> str | None:
+def _kept(store: Store, digest: str, pose: PoseValues | None) -> str | None:
     return store.pictures.get(digest) if pose is None else None
 
 
-def _draw(store: Store, digest: str, scene: Scene, pose: Pose | None) -> str:
+def _draw(store: Store, digest: str, scene: Scene, pose: PoseValues | None) -> str:
     check_size(Sources(scene.model), {"quantities": ["kinematics"], "q": pose}, store.settings.limits)
     with np.errstate(all="ignore"):  # defaults of any size may be stored; what is not finite is not drawn
         svg = picture(scene.spec, scene.parts, scene.model, None if pose is None else list(pose))

@@ -7,7 +7,7 @@ from service.queries.trees import Tree
 from service.store import Store
 from substructures.documents import read_json
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Engine, Sources
+from substructures.quantities.evaluation import Evaluator, Sources
 from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
@@ -19,7 +19,7 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     return Sources(model, store.derived, lambda: _regressor(store, tree))
 
 
-def engine_of(store: Store, tree: Tree, model: Model) -> Engine:
+def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
     """What computes them: a tree whose parts have kernels answers before it has one of its own."""
     found = store.numeric_trees.get(tree.digest)
     if found is None:

@@ -41,7 +41,7 @@ class Revision:
 
 
 @dataclass(frozen=True, slots=True)
-class Coupled:
+class TreeContent:
     """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
     freedom, the summary as JSON.
 
@@ -60,7 +60,7 @@ class Coupled:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class TreeChange:
     """What a tree shall become; ``is_exact``: ``base`` was named by number; ``step``: where the request's body is."""
 
     document: dict[str, Any]
@@ -74,15 +74,15 @@ def prepare(store: Store, data: Any) -> Revision:
     return _coupled(store, TreeSpec.read(data))
 
 
-def coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> Change:
+def coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> TreeChange:
     """One more instance on an existing tree. Raises Refused 404 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
     grown = {**spec, "instances": [*instances, data]}
-    return Change(grown, base, _is_pinned(text), f"/instances/{len(instances)}")
+    return TreeChange(grown, base, _is_pinned(text), f"/instances/{len(instances)}")
 
 
-def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> Change:
+def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> TreeChange:
     """One instance less, which must not carry another. Raises Refused 404, 409 or 412."""
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
@@ -92,10 +92,10 @@ def removal(store: Store, text: str, instance: str, if_match: str | None = None)
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
     kept = [each for each in instances if each["name"] != instance]
-    return Change({**spec, "instances": kept}, base, _is_pinned(text), "")
+    return TreeChange({**spec, "instances": kept}, base, _is_pinned(text), "")
 
 
-def prepare_change(store: Store, change: Change) -> Revision:
+def prepare_change(store: Store, change: TreeChange) -> Revision:
     """Couple a changed tree. Raises InvalidDocument, TooLarge."""
     try:
         return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
@@ -182,12 +182,12 @@ def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool
     digests = {name: part.definition.digest for name, part in revision.parts.items()}
     program, summary = model.program, tree_summary(spec, model)
     figures = program.digest, len(program), model.dof
-    coupled = Coupled(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
+    coupled = TreeContent(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
     return store(connection, coupled, revision.base.revision if revision.base else None, revision.is_exact)
 
 
 def store(
-    connection: Connection, coupled: Coupled, base: int | None = None, is_exact: bool = False
+    connection: Connection, coupled: TreeContent, base: int | None = None, is_exact: bool = False
 ) -> tuple[trees.Tree, bool]:
     """Store a coupled tree; the tree, and whether it is new (creating the same tree again is not).
 

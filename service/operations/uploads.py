@@ -22,7 +22,7 @@ from service.store import Store
 from substructures.array import Array
 from substructures.errors import Fault, InvalidDocument
 from substructures.formats.arrays import flat, write_npz
-from substructures.formats.columns import Request, parted, pointer_of, request_of
+from substructures.formats.columns import ColumnRequest, parted, pointer_of, request_of
 from substructures.quantities.evaluation import Sources, check
 
 TOGETHER = 8 * 2**20  # bytes that are written in one transaction
@@ -33,15 +33,15 @@ class _Chunk:
     """States ``start`` to ``stop``: columns with a row for each of them, and what is the same for all."""
 
     rows: Mapping[str, Array]
-    constants: Request
+    constants: ColumnRequest
     start: int
     stop: int
     single: bool
 
 
 def prepare(
-    store: Store, tree: Tree, sources: Sources, requests: Iterable[Request], form: str, principal: str
-) -> jobs.Submission:
+    store: Store, tree: Tree, sources: Sources, requests: Iterable[ColumnRequest], form: str, principal: str
+) -> jobs.JobSubmission:
     """Store the states of requests (one, or one for each record batch) and resolve the items that evaluate them.
 
     ``form``: npz or arrow, the format of the results. Raises InvalidDocument with the place of the array among all
@@ -74,7 +74,7 @@ def _write(store: Store, contents: dict[str, bytes], items: int, principal: str)
     contents.clear()
 
 
-def _chunks(sources: Sources, requests: Iterable[Request], limits: Limits) -> Iterator[_Chunk]:
+def _chunks(sources: Sources, requests: Iterable[ColumnRequest], limits: Limits) -> Iterator[_Chunk]:
     """Chunks of equal size, however the states arrive."""
     model, start, carried = sources.model, 0, dict[str, Array]()
     size, constants, single = 0, dict[str, Any](), False
@@ -98,7 +98,7 @@ def _length(rows: Mapping[str, Array]) -> int:
     return len(next(iter(rows.values()))) if rows else 0
 
 
-def _parted(sources: Sources, request: Request, first: int) -> tuple[dict[str, Array], dict[str, Any], bool]:
+def _parted(sources: Sources, request: ColumnRequest, first: int) -> tuple[dict[str, Array], dict[str, Any], bool]:
     """The columns with a row for every state, what is the same for all, and whether it is one state without an axis.
 
     ``first``: how many states came before.

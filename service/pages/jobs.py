@@ -9,7 +9,7 @@ import orjson
 from service.operations.jobs import Progress
 from service.pages.html import Content, Html, facts, html, link, table, tag
 from service.pages.layout import document
-from service.queries.jobs import Item, Job
+from service.queries.jobs import Job, JobItem
 from service.views.jobs import job_path
 
 AGAIN = 2  # seconds until a page of what changes is loaded again
@@ -37,7 +37,7 @@ def _row(job: Job, progress: Progress) -> list[Content]:
     ]
 
 
-def job_page(job: Job, progress: Progress, bad: Sequence[Item], more: bool) -> bytes:
+def job_page(job: Job, progress: Progress, bad: Sequence[JobItem], more: bool) -> bytes:
     """The bytes of the page of one job; ``bad``: items that failed, ``more``: there are others."""
     path = job_path(job.id)
     about = facts(
@@ -66,7 +66,7 @@ def job_page(job: Job, progress: Progress, bad: Sequence[Item], more: bool) -> b
     )
 
 
-def _problems(bad: Sequence[Item], more: bool, path: str) -> list[Html]:
+def _problems(bad: Sequence[JobItem], more: bool, path: str) -> list[Html]:
     if not bad:
         return []
     rows = [(item.position, item.attempts, _detail(item)) for item in bad]
@@ -74,7 +74,7 @@ def _problems(bad: Sequence[Item], more: bool, path: str) -> list[Html]:
     return [tag("h2", "Items that failed"), table(("item", "attempts", "what was seen"), rows), note]
 
 
-def _detail(item: Item) -> str:
+def _detail(item: JobItem) -> str:
     return str(orjson.loads(item.problem or "{}").get("detail", ""))
 
 

@@ -18,7 +18,7 @@ from service.pages.layout import answer
 from service.queries import aliases
 from service.queries import jobs as job_rows
 from service.queries import trees as revisions
-from service.queries.catalogue import Search
+from service.queries.catalogue import CatalogueSearch
 from service.settings import Settings
 from substructures.part.alone import lean
 
@@ -32,7 +32,7 @@ router = APIRouter(include_in_schema=False, dependencies=[needs("read")])
 def first_page(request: Request, store: StoreOf) -> Response:
     """The catalogue."""
     with store.database.read() as connection:
-        found = catalogue.search(connection, Search(), CARDS, None)
+        found = catalogue.search(connection, CatalogueSearch(), CARDS, None)
         some = revisions.page(connection, None, TREES + 1)
     shown = Shown(found.versions, sum(found.facets["dof"].values()), some[:TREES], len(some) > TREES)
     with_key = request.state.principal != keys.OPEN

@@ -48,7 +48,7 @@ class Version:
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
+class CatalogueSearch:
     """Which versions to list. All conditions must hold; ``sort`` is a name of ``SORTS``."""
 
     words: tuple[str, ...] = ()
@@ -110,7 +110,7 @@ def all_versions(connection: Connection) -> list[tuple[str, int]]:
     return [(name, number) for name, number in connection.execute(query.order_by(versions.c.name, versions.c.version))]
 
 
-def page(connection: Connection, search: Search, after: tuple[Any, ...] | None, size: int) -> list[Version]:
+def page(connection: Connection, search: CatalogueSearch, after: tuple[Any, ...] | None, size: int) -> list[Version]:
     """Up to ``size`` latest versions that follow the position ``after`` (sort value, name) in the order of ``sort``."""
     column = _SORTABLE[search.sort.lstrip("-")]
     descending = search.sort.startswith("-")
@@ -123,7 +123,7 @@ def page(connection: Connection, search: Search, after: tuple[Any, ...] | None, 
     return [Version(*row) for row in connection.execute(query)]
 
 
-def facets(connection: Connection, search: Search) -> dict[str, dict[str, int]]:
+def facets(connection: Connection, search: CatalogueSearch) -> dict[str, dict[str, int]]:
     """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
     return {
         "tags": _counted(connection, _matching(select(tags.c.tag, func.count()), search, join_tags=True)),
@@ -142,7 +142,7 @@ def _is_latest() -> ColumnElement[bool]:
     return and_(substructures.c.name == versions.c.name, substructures.c.latest == versions.c.version)
 
 
-def _matching(query: Select[Any], search: Search, join_tags: bool = False) -> Select[Any]:
+def _matching(query: Select[Any], search: CatalogueSearch, join_tags: bool = False) -> Select[Any]:
     source = _STORED.join(substructures, _is_latest())
     query = query.select_from(source.join(tags, tags.c.part == parts.c.digest) if join_tags else source)
     for word in search.words:

@@ -14,7 +14,7 @@ from service.queries.common import now
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class JobEvent:
     """One entry of the log; ``data`` is JSON."""
 
     seq: int
@@ -30,8 +30,8 @@ def add_event(connection: Connection, job: str, kind: str, data: Mapping[str, An
     connection.execute(insert(job_events).values(**row, data=orjson.dumps(data).decode()))
 
 
-def events_after(connection: Connection, job: str, seq: int, size: int) -> list[Event]:
+def events_after(connection: Connection, job: str, seq: int, size: int) -> list[JobEvent]:
     """Up to ``size`` entries that follow the number ``seq``."""
-    columns = select(*(job_events.c[name] for name in Event.__slots__))
+    columns = select(*(job_events.c[name] for name in JobEvent.__slots__))
     query = columns.where(job_events.c.job == job, job_events.c.seq > seq).order_by(job_events.c.seq).limit(size)
-    return [Event(*row) for row in connection.execute(query)]
+    return [JobEvent(*row) for row in connection.execute(query)]

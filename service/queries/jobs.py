@@ -41,7 +41,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class JobItem:
     """An item as stored, with the summary of its result; ``deaths``, ``problem`` and ``summary`` are JSON."""
 
     position: int
@@ -169,16 +169,16 @@ def page_jobs(connection: Connection, state: str | None, kind: str | None, befor
     return [Job(*row) for row in connection.execute(query.order_by(jobs.c.id.desc()).limit(size))]
 
 
-def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[Item]:
+def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[JobItem]:
     """Up to ``size`` items that follow the position ``after``."""
-    names = [name for name in Item.__slots__ if name != "summary"]
+    names = [name for name in JobItem.__slots__ if name != "summary"]
     summary = case((job_items.c.state == "succeeded", results.c.summary))
     columns: list[Any] = [*(job_items.c[name] for name in names), summary]
     query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
     query = query.where(job_items.c.job == job, job_items.c.position > after)
     if state is not None:
         query = query.where(job_items.c.state == state)
-    return [Item(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
+    return [JobItem(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
 
 
 def finished_since(connection: Connection, job: str, seconds: float) -> int:

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from datetime import timedelta
 from time import monotonic
 
-from service.jobs.engine import Budget, Engine, Outcome, Report, Work
+from service.jobs.engine import AttemptReport, Budget, Engine, Outcome, Work
 from service.queries import jobs, queue
 from service.queries.attempts import Attempt
 from service.queries.common import is_conflict, is_outage
@@ -150,7 +150,7 @@ class Supervisor:
             self._due[what] = monotonic() + period
         return is_due
 
-    def _hear(self, report: Report) -> None:
+    def _hear(self, report: AttemptReport) -> None:
         known = self._running.get(report.id)
         if known is None:
             return

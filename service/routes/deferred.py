@@ -27,7 +27,7 @@ def answer(connection: Connection, job: Job, status: int = 200) -> Answer:
     return json_answer(dump(view), status, headers)
 
 
-def committed(store: Store, submission: jobs.Submission, principal: str) -> Commit:
+def committed(store: Store, submission: jobs.JobSubmission, principal: str) -> Commit:
     """What queues a submission and answers 202."""
 
     def commit(connection: Connection) -> Answer:

@@ -65,7 +65,7 @@ async def _events(store: Store, job: str, seq: int) -> AsyncIterator[bytes]:
             await asyncio.sleep(POLL)
 
 
-def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.Event], bool]:
+def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], bool]:
     with store.database.read() as connection:
         found = rows.get_job(connection, job)
         return job_events.events_after(connection, job, seq, EVENTS), found is None or found.is_final

@@ -48,7 +48,7 @@ def tree_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Res
 
 
 def _answer(
-    request: Request, digest: str, pose: pictures.Pose | None, pinned: bool, draw: Callable[[], str]
+    request: Request, digest: str, pose: pictures.PoseValues | None, pinned: bool, draw: Callable[[], str]
 ) -> Response:
     tag = etag(digest, "picture", repr(pose))
     return conditional(request, tag, pinned, lambda: Answer(200, draw().encode(), HEADERS))

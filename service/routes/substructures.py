@@ -14,7 +14,7 @@ from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, condition
 from service.operations import catalogue
 from service.paging import limited, link_header, next_link
 from service.queries import aliases, content
-from service.queries.catalogue import SORTS, Search, Version
+from service.queries.catalogue import SORTS, CatalogueSearch, Version
 from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import ACCEPTED, deferred
@@ -70,7 +70,7 @@ def search(
     """A page of the latest versions, with facets."""
     if sort not in SORTS:
         raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {', '.join(SORTS)}", "/query/sort")
-    wanted = Search(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, sort)
+    wanted = CatalogueSearch(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, sort)
     size = limited(page_size, store.settings.limits)
     with store.database.read() as connection:
         page = catalogue.search(connection, wanted, size, page_token)

@@ -43,7 +43,7 @@ def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
     return prepared
 
 
-def changed(once: Once, change: Callable[[], trees.Change]) -> Response:
+def changed(once: Once, change: Callable[[], trees.TreeChange]) -> Response:
     """Store a changed tree, at once or by a job."""
 
     def later() -> Commit:

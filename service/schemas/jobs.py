@@ -11,7 +11,7 @@ from service.schemas.shapes import Links, Shape, Time
 
 JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
-Item = dict[str, Any]
+ItemDocument = dict[str, Any]
 Values = Annotated[list[Any], Field(min_length=1)]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
@@ -28,8 +28,10 @@ class JobRequest(Shape):
     )
 
     kind: JobKind = Field(description=KINDS)
-    items: list[Item] = Field(default_factory=list, min_length=1, description="what an item is: see `kind`")
-    template: Item = Field(default_factory=dict, description="an item that is copied for every combination of choices")
+    items: list[ItemDocument] = Field(default_factory=list, min_length=1, description="what an item is: see `kind`")
+    template: ItemDocument = Field(
+        default_factory=dict, description="an item that is copied for every combination of choices"
+    )
     choices: dict[str, Values] = Field(default_factory=dict, min_length=1, description=CHOICES)
 
 

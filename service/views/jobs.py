@@ -9,8 +9,8 @@ import orjson
 
 from service.addresses import BASE
 from service.operations.jobs import Progress
-from service.queries.job_events import Event
-from service.queries.jobs import Item, Job
+from service.queries.job_events import JobEvent
+from service.queries.jobs import Job, JobItem
 from service.queries.results import File
 
 BINARY = "application/octet-stream"
@@ -48,7 +48,7 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
     }
 
 
-def item_view(job: str, item: Item, files: Sequence[File]) -> dict[str, Any]:
+def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:
     """An item with its result or its problem."""
     return {
         "position": item.position,
@@ -65,7 +65,7 @@ def item_view(job: str, item: Item, files: Sequence[File]) -> dict[str, Any]:
     }
 
 
-def _file(job: str, item: Item, file: File) -> dict[str, Any]:
+def _file(job: str, item: JobItem, file: File) -> dict[str, Any]:
     return {
         "name": file.name,
         "size": file.size,
@@ -74,13 +74,13 @@ def _file(job: str, item: Item, file: File) -> dict[str, Any]:
     }
 
 
-def media_type(item: Item, name: str) -> str:
+def media_type(item: JobItem, name: str) -> str:
     """The media type of a file: what the item says of itself, or what is usual for the name."""
     said = orjson.loads(item.summary or "{}").get("media_type")
     return str(said) if said and name in ("result", "text") else MEDIA_TYPES.get(name, BINARY)
 
 
-def event_text(event: Event) -> bytes:
+def event_text(event: JobEvent) -> bytes:
     """A server-sent event; its id is where a reader resumes."""
     data = f'{{"time":"{event.time}",{event.data.strip()[1:]}'
     return f"id: {event.seq}\nevent: {event.type}\ndata: {data}\n\n".encode()

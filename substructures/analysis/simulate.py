@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from substructures.analysis.closed.simulation import simulate_closed
-from substructures.analysis.motion.progress import Report
+from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.motion.rolling import simulate_rolling
 from substructures.analysis.motion.simulation import simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
@@ -15,7 +15,7 @@ from substructures.tree.model import Model
 
 
 def simulate(
-    model: Model, request: Mapping[str, Any], progress: Report | None = None, folder: Path | None = None
+    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """The motion of any model from a start over a span of time, with its judges.
 

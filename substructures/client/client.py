@@ -109,7 +109,7 @@ class Client(JobCaller):
         the same for all (``quantities``, ``parameters``, ...). Gives the answer in parts, in order, NaN where a state
         has no result. Nothing is answered before all was sent.
         """
-        tables = (arrow.Table(flat(batch)) for batch in batches)
+        tables = (arrow.ArrowTable(flat(batch)) for batch in batches)
         content = arrow.write_tables(tables, constants)
         with self._transfer(f"/v1/trees/{step(tree)}/evaluations", content, arrow.MEDIA_TYPE) as answer:
             if answer.status == 202:

@@ -71,7 +71,7 @@ class JobCaller(Caller):
             plain = {name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in rest.items()}
             constants = request_of({}, {**plain, **flat(constants)})
             states = _batches(rows, size)
-        tables = (arrow.Table(flat(batch)) for batch in states)
+        tables = (arrow.ArrowTable(flat(batch)) for batch in states)
         return self._queued(path, arrow.write_tables(tables, constants), arrow.MEDIA_TYPE, headers)
 
     def _queued(

@@ -12,10 +12,10 @@ import numpy as np
 from substructures.array import Array
 
 #: names, and an array whose columns (last axis) are their values
-Columns = tuple[Sequence[str], Array]
+NamedColumns = tuple[Sequence[str], Array]
 
 
-class Column(NamedTuple):
+class ArgumentColumn(NamedTuple):
     """A column of an array of doubles, one row for every state."""
 
     address: int
@@ -36,7 +36,7 @@ class Arguments(NamedTuple):
 NOTHING = Arguments(np.zeros(0), [], [])
 
 
-def batch_shape(values: Mapping[str, Any], columns: Iterable[Columns] = ()) -> tuple[int, ...]:
+def batch_shape(values: Mapping[str, Any], columns: Iterable[NamedColumns] = ()) -> tuple[int, ...]:
     """The common shape of all values. Raises ValueError when there is none."""
     kinds = set(map(type, values.values()))
     shapes = {np.shape(v) for v in values.values() if type(v) is not float} if kinds - {float} else set()
@@ -47,7 +47,7 @@ def batch_shape(values: Mapping[str, Any], columns: Iterable[Columns] = ()) -> t
     return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
 
 
-def merged(values: Mapping[str, Any], columns: Iterable[Columns], batch: tuple[int, ...]) -> Mapping[str, Any]:
+def merged(values: Mapping[str, Any], columns: Iterable[NamedColumns], batch: tuple[int, ...]) -> Mapping[str, Any]:
     """Columns as values by name; without a copy where an array has one row of doubles for every state."""
     result = None
     for names, array in columns:
@@ -57,7 +57,7 @@ def merged(values: Mapping[str, Any], columns: Iterable[Columns], batch: tuple[i
             raise ValueError(f"{len(names)} names for an array of shape {shape}")
         if isinstance(array, np.ndarray) and array.dtype == np.float64 and shape[:-1] == batch and len(batch) == 1:
             base, (row, step) = array.__array_interface__["data"][0], array.strides
-            result |= {name: Column(base + k * step, row, array, k) for k, name in enumerate(names)}
+            result |= {name: ArgumentColumn(base + k * step, row, array, k) for k, name in enumerate(names)}
         else:
             result |= {name: np.asarray(array)[..., k] for k, name in enumerate(names)}
     return values if result is None else result
@@ -90,7 +90,7 @@ class Inputs:
         """The value when it is the same for all states; arrays are noted in the result."""
         if type(value) is float:
             return value
-        if type(value) is Column:
+        if type(value) is ArgumentColumn:
             if not value.stride and not in_place:
                 return float(value.array[0, value.number])
             result.varying.append((place, value.address, value.stride))

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from substructures.compile.emission import literal, vector
 
 
-class Assembly:
+class AssemblyWriter:
     """Writes LLVM assembly; loops as context managers, so that control flow reads like a program."""
 
     def __init__(self, width: int) -> None:

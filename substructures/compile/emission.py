@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator, Sequence
 
-from substructures.compile.lowering import Lowered, Part, Place
+from substructures.compile.lowering import Lowered, Place, StageFunction
 from substructures.compile.order import REGIONS
 from substructures.expr.program import Operation
 
@@ -44,7 +44,7 @@ def attributes(width: int) -> str:
 class _Emitter:
     """Text of one function. Values are called %v and the number of their operation."""
 
-    def __init__(self, lowered: Lowered, part: Part, ops: Sequence[Operation], width: int) -> None:
+    def __init__(self, lowered: Lowered, part: StageFunction, ops: Sequence[Operation], width: int) -> None:
         self.lowered, self.part, self.ops, self.width = lowered, part, ops, width
         self.kind = vector(width)
         self.lines: list[str] = []

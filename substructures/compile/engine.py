@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.compile import cache, target
-from substructures.compile.lowering import Step
+from substructures.compile.lowering import ProgramStep
 from substructures.compile.runtime import CONTEXT, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
@@ -30,7 +30,7 @@ def address(array: NDArray[Any]) -> int:
     return int(array.__array_interface__["data"][0])
 
 
-class Table(NamedTuple):
+class WordTable(NamedTuple):
     """Rows of 64-bit words for the runtime; ``alive`` owns the memory."""
 
     address: int
@@ -38,12 +38,12 @@ class Table(NamedTuple):
     alive: Any
 
     @classmethod
-    def of(cls, array: NDArray[np.int64]) -> Table:
+    def of(cls, array: NDArray[np.int64]) -> WordTable:
         """A table that is used often."""
         return cls(address(array), len(array), array)
 
     @classmethod
-    def written(cls, rows: Sequence[Iterable[int]]) -> Table:
+    def written(cls, rows: Sequence[Iterable[int]]) -> WordTable:
         """A table for one call."""
         words = [word for row in rows for word in row]
         memory = (ctypes.c_int64 * len(words))(*words)
@@ -89,12 +89,12 @@ class Runtime:
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 
-    def steps(self, steps: Iterable[Step], stage: int, parts: Mapping[str, int]) -> NDArray[np.int64]:
+    def steps(self, steps: Iterable[ProgramStep], stage: int, parts: Mapping[str, int]) -> NDArray[np.int64]:
         """The table STEP of a stage."""
         rows = [self._step(step, stage, parts) for step in steps]
         return np.array(rows, dtype=np.int64).reshape(-1, len(STEP))
 
-    def _step(self, step: Step, stage: int, parts: Mapping[str, int]) -> list[int]:
+    def _step(self, step: ProgramStep, stage: int, parts: Mapping[str, int]) -> list[int]:
         if step.function == "part":
             return [-1, parts[f"part{step.number}"], 0, 0, 0, 0, 0]
         a, b, c = (8 * self.width * x for x in (step.a, step.b, step.c))

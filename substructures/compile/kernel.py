@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.array import Array
-from substructures.compile.arguments import Column, Columns, batch_shape, merged
+from substructures.compile.arguments import ArgumentColumn, NamedColumns, batch_shape, merged
 from substructures.compile.recipe import needed_symbols
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Output, Program
@@ -26,7 +26,7 @@ def is_packed(name: str, packed: Packed) -> bool:
     return packed if isinstance(packed, bool) else name in packed
 
 
-class Request(NamedTuple):
+class KernelCall(NamedTuple):
     """What :meth:`Kernel.evaluate` is asked, checked; ``clean``: ``out`` holds zeros or earlier results."""
 
     values: Mapping[str, Any]
@@ -83,7 +83,7 @@ class Kernel(ABC):
         values: Mapping[str, Any],
         names: Iterable[str] | None = None,
         *,
-        columns: Iterable[Columns] = (),
+        columns: Iterable[NamedColumns] = (),
         packed: Packed = False,
         threads: int = 1,
     ) -> dict[str, Array]:
@@ -95,7 +95,7 @@ class Kernel(ABC):
         out = {
             n: np.zeros(batch + self.shape(n, is_packed(n, packed))) for n in (self.names if names is None else names)
         }
-        self._run(Request(merged(values, columns, batch), batch, out, packed, threads))
+        self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads))
         return out
 
     def evaluate_into(
@@ -103,7 +103,7 @@ class Kernel(ABC):
         out: Mapping[str, Array],
         values: Mapping[str, Any],
         *,
-        columns: Iterable[Columns] = (),
+        columns: Iterable[NamedColumns] = (),
         packed: Packed = False,
         threads: int = 1,
         clean: bool = False,
@@ -115,14 +115,14 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        self._run(Request(merged(values, columns, batch), batch, out, packed, threads, clean))
+        self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads, clean))
 
     def bind(
         self,
         out: Mapping[str, Array],
         values: Mapping[str, Any],
         *,
-        columns: Iterable[Columns] = (),
+        columns: Iterable[NamedColumns] = (),
         packed: Packed = False,
     ) -> Callable[[], None]:
         """evaluate_into for these arrays, prepared: every call reads them anew. For one state at a time.
@@ -132,11 +132,16 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        return self._bound(Request(merged(values, columns, batch), batch, out, packed, clean=False))
+        return self._bound(KernelCall(merged(values, columns, batch), batch, out, packed, clean=False))
 
     @abstractmethod
     def blocks(
-        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
+        self,
+        values: Mapping[str, Any],
+        *,
+        columns: Iterable[NamedColumns] = (),
+        threads: int = 1,
+        out: Array | None = None,
     ) -> Blocks:
         """Independent elements of all outputs without any rearrangement: the fastest form. ``out``: the array of
         earlier blocks of the same shape, to be overwritten. Raises ValueError when it does not fit.
@@ -151,7 +156,7 @@ class Kernel(ABC):
 
     def stream(
         self,
-        batches: Iterable[tuple[Mapping[str, Any], Iterable[Columns]]],
+        batches: Iterable[tuple[Mapping[str, Any], Iterable[NamedColumns]]],
         names: Iterable[str] | None = None,
         *,
         packed: Packed = False,
@@ -170,15 +175,15 @@ class Kernel(ABC):
                 held = prod(batch)
                 memory = {n: np.zeros((held, *self.shape(n, is_packed(n, packed)))) for n in wanted}
             out = {n: array[: prod(batch)].reshape(batch + array.shape[1:]) for n, array in memory.items()}
-            self._run(Request(merged(values, given, batch), batch, out, packed, threads))
+            self._run(KernelCall(merged(values, given, batch), batch, out, packed, threads))
             yield out
 
     @abstractmethod
-    def _run(self, request: Request) -> None:
+    def _run(self, request: KernelCall) -> None:
         """Fills ``out``."""
 
     @abstractmethod
-    def _bound(self, request: Request) -> Callable[[], None]:
+    def _bound(self, request: KernelCall) -> Callable[[], None]:
         """The same for later."""
 
 
@@ -200,7 +205,12 @@ class InterpretedKernel(Kernel):
         return False
 
     def blocks(
-        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
+        self,
+        values: Mapping[str, Any],
+        *,
+        columns: Iterable[NamedColumns] = (),
+        threads: int = 1,
+        out: Array | None = None,
     ) -> Blocks:
         """One lane."""
         columns = list(columns)
@@ -214,19 +224,19 @@ class InterpretedKernel(Kernel):
             out[...] = array
         return Blocks(count, array if out is None else out, places)
 
-    def _run(self, request: Request) -> None:
+    def _run(self, request: KernelCall) -> None:
         values = {n: _array(v) for n, v in request.values.items() if n in self.symbols}
         for name, result in interpret(self.program, values, list(request.out)).items():
             chosen = _independent(self.outputs[name], result) if is_packed(name, request.packed) else result
             request.out[name][...] = chosen
 
-    def _bound(self, request: Request) -> Callable[[], None]:
+    def _bound(self, request: KernelCall) -> Callable[[], None]:
         return lambda: self._run(request)
 
 
 def _array(value: Any) -> Any:
     """A value as the interpreter takes it."""
-    return value.array[:, value.number] if type(value) is Column else value
+    return value.array[:, value.number] if type(value) is ArgumentColumn else value
 
 
 def _independent(output: Output, result: Array) -> Array:

@@ -30,7 +30,7 @@ Place = tuple[str, int]
 
 
 @dataclass(slots=True)
-class Part:
+class StageFunction:
     """One function: operands to load, operations in order, values to store (one value at several places possible)."""
 
     operations: list[int]
@@ -39,7 +39,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ProgramStep:
     """Call of a function of the program ("part", its number), or a batch of ``count`` vectors.
 
     sincos reads a, writes sines to b and cosines to c; library functions read a (and b) and write c.
@@ -59,7 +59,7 @@ class Stage:
 
     region: str
     inputs: list[int] = field(default_factory=list)
-    steps: list[Step] = field(default_factory=list)
+    steps: list[ProgramStep] = field(default_factory=list)
     size: int = 0
     results: list[int] = field(default_factory=list)
 
@@ -74,7 +74,7 @@ class Lowered:
     """Stages, and the functions of all. The stages' results are at the places 1, 2, ... of the region "o"."""
 
     stages: tuple[Stage, ...]
-    parts: list[Part]
+    parts: list[StageFunction]
     literals: dict[int, float]
 
 
@@ -87,7 +87,7 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
     stage = stage_of(program, needed)
     # values that cross from one stage to another
     kept = {x for i in needed for x in operands(ops[i]) if stage[x] < stage[i]}
-    stages, parts, place, number = list[Stage](), list[Part](), dict[int, Place](), 1
+    stages, parts, place, number = list[Stage](), list[StageFunction](), dict[int, Place](), 1
     for k, region in enumerate(REGIONS):
         mine = [i for i in needed if stage[i] == k]
         # in the order of computation, so that results are written one after the other
@@ -113,7 +113,7 @@ class _Segment:
 
     compute: list[int]
     copies: list[tuple[int, Place]] = field(default_factory=list)
-    steps: list[Step] = field(default_factory=list)
+    steps: list[ProgramStep] = field(default_factory=list)
 
 
 class _Builder:
@@ -123,7 +123,7 @@ class _Builder:
         self,
         ops: Sequence[Operation],
         stage: Stage,
-        parts: list[Part],
+        parts: list[StageFunction],
         place: dict[int, Place],
         literals: dict[int, float],
     ) -> None:
@@ -190,7 +190,7 @@ class _Builder:
             elif name == "pow":
                 segment.copies += [(self._exponent(self.ops[i][2]), (region, b + j)) for j, i in enumerate(batch)]
         segment.copies += [(x, (region, a + j)) for j, x in enumerate(arguments)]
-        segment.steps.append(Step(name, 0, a, b, c, count))
+        segment.steps.append(ProgramStep(name, 0, a, b, c, count))
 
     def _exponent(self, exponent: int) -> int:
         """A literal beyond the numbers of the operations."""
@@ -211,7 +211,7 @@ class _Builder:
         """Adds the function of a segment; returns the places that are free after it."""
         if not segment.compute and not segment.copies:
             return []
-        part = Part(segment.compute, stores=list(segment.copies))
+        part = StageFunction(segment.compute, stores=list(segment.copies))
         inside = set(segment.compute)
         outside = [x for i in segment.compute for x in operands(self.ops[i]) if x not in inside]
         outside += [x for x, _ in segment.copies if x not in inside]
@@ -223,6 +223,6 @@ class _Builder:
                 self.place[i] = (self.stage.region, free.pop() if free else self.stage.new(1))
                 part.stores.append((i, self.place[i]))
                 self.expiring.setdefault(last[i], []).append(self.place[i][1])
-        self.stage.steps.append(Step("part", len(self.parts)))
+        self.stage.steps.append(ProgramStep("part", len(self.parts)))
         self.parts.append(part)
         return self.expiring.pop(k, [])

@@ -12,12 +12,12 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.compile import layout, target
-from substructures.compile.arguments import Arguments, Columns, batch_shape, merged
-from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, Table, address, workers
-from substructures.compile.kernel import Blocks, Kernel, Request, is_packed
+from substructures.compile.arguments import Arguments, NamedColumns, batch_shape, merged
+from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, WordTable, address, workers
+from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.recipe import Recipe
-from substructures.compile.stages import Once, Stages
+from substructures.compile.stages import PreparedStages, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
 
@@ -28,17 +28,17 @@ MAX_GROUP = 16
 THREADED = 1024
 #: scratch arrays kept for the next call
 KEPT = 4
-NO_OUTPUTS = Table.written(())
+NO_OUTPUTS = WordTable.written(())
 
 
 class _Job(NamedTuple):
     """A batch: number of states, leading stages, inputs of all stages, tables for the driver."""
 
     states: int
-    once: Once
+    once: PreparedStages
     arguments: list[Arguments]
-    inputs: Table
-    outputs: Table
+    inputs: WordTable
+    outputs: WordTable
     counter: Counter
     blocks: Array | None
 
@@ -72,12 +72,17 @@ class MachineKernel(Kernel):
         """True."""
         return True
 
-    def _run(self, request: Request) -> None:
+    def _run(self, request: KernelCall) -> None:
         if prod(request.batch):
             self._run_job(self._job(request.values, request.batch, self._outputs(request)), request.threads)
 
     def blocks(
-        self, values: Mapping[str, Any], *, columns: Iterable[Columns] = (), threads: int = 1, out: Array | None = None
+        self,
+        values: Mapping[str, Any],
+        *,
+        columns: Iterable[NamedColumns] = (),
+        threads: int = 1,
+        out: Array | None = None,
     ) -> Blocks:
         columns = list(columns)
         batch = batch_shape(values, columns)
@@ -100,7 +105,7 @@ class MachineKernel(Kernel):
         places = {name: [self._place[e] - 1 for e in output.entries] for name, output in self.outputs.items()}
         return {name: np.array(some, dtype=np.int64) for name, some in places.items()}
 
-    def _bound(self, request: Request) -> Callable[[], None]:
+    def _bound(self, request: KernelCall) -> Callable[[], None]:
         job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
         return _Bound((self, job, request), self.runtime.call, self._prepared(job), job.counter)
 
@@ -108,7 +113,7 @@ class MachineKernel(Kernel):
         self,
         values: Mapping[str, Any],
         batch: tuple[int, ...],
-        outputs: Table = NO_OUTPUTS,
+        outputs: WordTable = NO_OUTPUTS,
         blocks: Array | None = None,
         in_place: bool = False,
     ) -> _Job:
@@ -123,7 +128,7 @@ class MachineKernel(Kernel):
             blocks[:, :ready] = once.results.array[0, self.width :].reshape(ready, self.width)
         size = 8 * self.width
         inputs = [(a, stride, size * k, stage) for stage, x in enumerate(arguments) for k, a, stride in x.varying]
-        return _Job(prod(batch), once, arguments, Table.written(inputs), outputs, Counter(), blocks)
+        return _Job(prod(batch), once, arguments, WordTable.written(inputs), outputs, Counter(), blocks)
 
     def _run_job(self, job: _Job, threads: int) -> None:
         if threads > 1 and job.states >= THREADED:
@@ -131,11 +136,11 @@ class MachineKernel(Kernel):
         else:
             self._work(job)
 
-    def _outputs(self, request: Request) -> Table:
+    def _outputs(self, request: KernelCall) -> WordTable:
         """The table OUTPUT."""
-        return Table.written([self._output(name, array, request) for name, array in request.out.items()])
+        return WordTable.written([self._output(name, array, request) for name, array in request.out.items()])
 
-    def _output(self, name: str, array: Array, request: Request) -> tuple[int, ...]:
+    def _output(self, name: str, array: Array, request: KernelCall) -> tuple[int, ...]:
         packed = is_packed(name, request.packed)
         if (name, packed) not in self._layouts:
             made = (layout.packed if packed else layout.dense)(self.outputs[name], self._place, self.width)

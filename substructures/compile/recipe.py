@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from substructures.compile.lowering import Lowered, Stage, Step
+from substructures.compile.lowering import Lowered, ProgramStep, Stage
 from substructures.compile.order import REGIONS
 from substructures.expr.program import Program
 
@@ -16,7 +16,7 @@ class StageRecipe:
     """Names of the inputs (places 0, 1, ...), steps, vectors in the scratch array, results (operations)."""
 
     inputs: tuple[str, ...]
-    steps: tuple[Step, ...]
+    steps: tuple[ProgramStep, ...]
     size: int
     results: tuple[int, ...]
 
@@ -29,7 +29,7 @@ class StageRecipe:
     @classmethod
     def read(cls, data: Any) -> StageRecipe:
         """From plain data."""
-        steps = tuple(Step(str(f), *map(int, numbers)) for f, *numbers in data["steps"])
+        steps = tuple(ProgramStep(str(f), *map(int, numbers)) for f, *numbers in data["steps"])
         return cls(tuple(map(str, data["inputs"])), steps, int(data["size"]), tuple(map(int, data["results"])))
 
     def plain(self) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from substructures.compile.assembler import Assembly
+from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.emission import attributes, literal, vector
 from substructures.compile.order import REGIONS
 from substructures.compile.scatter import scatter, scatter_some
@@ -46,7 +46,7 @@ BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
 
 def _sincos(width: int) -> str:
     """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos."""
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     size = 8 * width
     with w.loop("0", "%count") as i:
         at = w.arithmetic("mul", i, size)
@@ -73,7 +73,7 @@ def _sincos(width: int) -> str:
 
 def _library(width: int, arguments: int) -> str:
     """The C function ``extra`` of every number at a (and b), to c."""
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     with w.loop("0", w.arithmetic("mul", "%count", width)) as i:
         given = [w.do(f"load double, ptr {w.offset(x, i, 'double')}") for x in ("%a", "%b")[:arguments]]
         value = w.do(f"call double %extra({', '.join(f'double {x}' for x in given)})")
@@ -86,7 +86,7 @@ def _load(width: int) -> str:
 
     Every input is a column of some array of the caller: a base address and a stride.
     """
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     lanes = []
     for lane in range(width):
         state = w.arithmetic("add", "%first", lane)
@@ -105,7 +105,7 @@ def _load(width: int) -> str:
     return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %context, i64 %block")
 
 
-def _scratch(w: Assembly, stage: str, block: str) -> str:
+def _scratch(w: AssemblyWriter, stage: str, block: str) -> str:
     """Scratch row of a stage for a vector of the group."""
     row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))
     return w.offset(w.pointer(row["base"]), w.arithmetic("mul", block, row["stride"]))
@@ -117,7 +117,7 @@ def _drive(width: int) -> str:
     Taking a function for several vectors in turn keeps its instructions in the cache. Several threads may drive the
     same batch, each with scratch of its own: they share the counter of groups.
     """
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     c = w.words("%context", CONTEXT)
     tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", *REGIONS, "o")}
     final = w.arithmetic("sub", c["last"], 1)
@@ -148,14 +148,14 @@ def _drive(width: int) -> str:
 
 
 @contextmanager
-def _turn(w: Assembly, counter: str, rounds: str) -> Iterator[str]:
+def _turn(w: AssemblyWriter, counter: str, rounds: str) -> Iterator[str]:
     """The next group that no other thread has taken, if there is one left."""
     turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
     with w.when(w.do(f"icmp slt i64 {turn}, {rounds}")):
         yield turn
 
 
-def _steps(w: Assembly, table: str, count: str, blocks: str, rows: Callable[[str], list[str]]) -> None:
+def _steps(w: AssemblyWriter, table: str, count: str, blocks: str, rows: Callable[[str], list[str]]) -> None:
     """Functions of the program (stage -1) get all rows of a vector, batches three places of their stage's."""
     with w.loop("0", count) as k:
         row = w.words(w.offset(table, w.arithmetic("mul", k, 8 * len(STEP))), STEP)
@@ -169,7 +169,7 @@ def _steps(w: Assembly, table: str, count: str, blocks: str, rows: Callable[[str
             w.put(f"call void {function}(ptr {a}, ptr {b}, ptr {c}, i64 {row['count']}, ptr {extra})")
 
 
-def _rows(w: Assembly, c: dict[str, str], table: str, o: str, place: tuple[str, str]) -> None:
+def _rows(w: AssemblyWriter, c: dict[str, str], table: str, o: str, place: tuple[str, str]) -> None:
     """Outputs of one vector of states; the last one may be partial."""
     state = w.arithmetic("add", place[0], w.arithmetic("mul", place[1], w.width))
     some = w.arithmetic("sub", c["last"], state)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from substructures.compile.assembler import Assembly
+from substructures.compile.assembler import AssemblyWriter
 
 #: elements of a row written at once
 TILE = 4
@@ -17,7 +17,7 @@ def scatter(width: int) -> str:
 
     Square tiles are transposed in registers: ``tile`` neighbouring elements of a row come from ``tile`` places.
     """
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     tile = min(width, TILE)
     with w.loop("0", "%count") as i:
         row = w.words(w.offset("%table", w.arithmetic("mul", i, 8 * len(OUTPUT))), OUTPUT)
@@ -36,7 +36,7 @@ def scatter(width: int) -> str:
 
 def scatter_some(width: int) -> str:
     """The same for the first ``some`` lanes, element by element."""
-    w = Assembly(width)
+    w = AssemblyWriter(width)
     tile = min(width, TILE)
     with w.loop("0", "%count") as i:
         row = w.words(w.offset("%table", w.arithmetic("mul", i, 8 * len(OUTPUT))), OUTPUT)
@@ -50,7 +50,7 @@ def scatter_some(width: int) -> str:
     return w.function("scatter_some", ROWS + ", i64 %some")
 
 
-def _element(w: Assembly, group: str, start: str, lane: str, k: str) -> None:
+def _element(w: AssemblyWriter, group: str, start: str, lane: str, k: str) -> None:
     """Element k of a group, one lane."""
     at, signs = (w.do(f"load i64, ptr {w.offset(group, n, 'i64')}") for n in (0, 1))
     source = w.do(f"load i64, ptr {w.offset(w.offset(group, 16), k, 'i64')}")
@@ -60,7 +60,7 @@ def _element(w: Assembly, group: str, start: str, lane: str, k: str) -> None:
     w.put(f"store i64 {w.arithmetic('xor', bits, sign)}, ptr {target}, align 8")
 
 
-def _group(w: Assembly, group: str, starts: list[str], tile: int) -> None:
+def _group(w: AssemblyWriter, group: str, starts: list[str], tile: int) -> None:
     """All tiles of a group (width / tile of them, one below the other); signs only where there are some."""
     at, signs = (w.do(f"load i64, ptr {w.offset(group, n, 'i64')}") for n in (0, 1))
     sources = [w.offset("%o", w.do(f"load i64, ptr {w.offset(group, 2 + k, 'i64')}")) for k in range(tile)]
@@ -71,7 +71,7 @@ def _group(w: Assembly, group: str, starts: list[str], tile: int) -> None:
         _tiles(w, sources, bits, [w.offset(start, at) for start in starts])
 
 
-def _tiles(w: Assembly, sources: list[str], signs: list[str] | None, targets: list[str]) -> None:
+def _tiles(w: AssemblyWriter, sources: list[str], signs: list[str] | None, targets: list[str]) -> None:
     tile = len(sources)
     integers = f"<{tile} x i64>"
     for first in range(0, w.width, tile):
@@ -84,7 +84,7 @@ def _tiles(w: Assembly, sources: list[str], signs: list[str] | None, targets: li
             w.put(f"store {integers} {values}, ptr {target}, align 8")
 
 
-def _transposed(w: Assembly, rows: list[str]) -> list[str]:
+def _transposed(w: AssemblyWriter, rows: list[str]) -> list[str]:
     """A square of 2 or 4 vectors, by exchanging blocks."""
     kind = f"<{len(rows)} x i64>"
 

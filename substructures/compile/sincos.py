@@ -10,7 +10,7 @@ the limit, next to zeros included.
 
 from __future__ import annotations
 
-from substructures.compile.assembler import Assembly
+from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.emission import literal
 
 #: beyond this (and for infinities and NaN) the C library answers, lane by lane
@@ -38,7 +38,7 @@ COSINE = (
 )
 
 
-def sincos_body(w: Assembly, x: str) -> tuple[str, str]:
+def sincos_body(w: AssemblyWriter, x: str) -> tuple[str, str]:
     """(sine, cosine) of the vector x; instructions are appended to w."""
     shifted = w.fused("fadd", w.fused("fmul", x, TWO_OVER_PI), ROUND)
     k = w.fused("fsub", shifted, ROUND)
@@ -52,7 +52,7 @@ def sincos_body(w: Assembly, x: str) -> tuple[str, str]:
     return _quadrant(w, shifted, sine, cosine)
 
 
-def _polynomial(w: Assembly, z: str, coefficients: tuple[float, ...]) -> str:
+def _polynomial(w: AssemblyWriter, z: str, coefficients: tuple[float, ...]) -> str:
     """Estrin's scheme for six coefficients: short chains."""
     pairs = [w.fused("fadd", w.fused("fmul", z, coefficients[i + 1]), coefficients[i]) for i in range(0, 6, 2)]
     square = w.fused("fmul", z, z)
@@ -60,7 +60,7 @@ def _polynomial(w: Assembly, z: str, coefficients: tuple[float, ...]) -> str:
     return w.fused("fadd", pairs[0], w.fused("fmul", square, upper))
 
 
-def _quadrant(w: Assembly, shifted: str, sine: str, cosine: str) -> tuple[str, str]:
+def _quadrant(w: AssemblyWriter, shifted: str, sine: str, cosine: str) -> tuple[str, str]:
     """k mod 4 from the low bits: odd exchanges the two, 2 and 3 (for the cosine 1 and 2) turn the sign."""
     integers = f"<{w.width} x i64>"
 

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from substructures.compile.arguments import NOTHING, Arguments, Inputs
-from substructures.compile.engine import Counter, Runtime, Scratch, Table
+from substructures.compile.engine import Counter, Runtime, Scratch, WordTable
 from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
 from substructures.compile.runtime import STEP
 
 
-class Once(NamedTuple):
+class PreparedStages(NamedTuple):
     """Leading stages that have run for the whole batch: their scratch rows, and a row with a zero and their results."""
 
     scratch: tuple[Scratch, ...]
@@ -34,12 +34,14 @@ class Stages:
         self.rows = [self.width * max(stage.size, 1) for stage in recipe.stages]
         self.results = [0, *accumulate(len(stage.results) for stage in recipe.stages)]
         steps = [runtime.steps(stage.steps, k, functions) for k, stage in enumerate(recipe.stages)]
-        self._steps = Table.of(np.concatenate(steps))
+        self._steps = WordTable.of(np.concatenate(steps))
         self._first = [0, *accumulate(map(len, steps))]
-        self._none = Once((), Scratch.zeros(1, self.width))
-        self._last: tuple[tuple[float, ...], Once] | None = None
+        self._none = PreparedStages((), Scratch.zeros(1, self.width))
+        self._last: tuple[tuple[float, ...], PreparedStages] | None = None
 
-    def begin(self, values: Mapping[str, Any], batch: tuple[int, ...], in_place: bool) -> tuple[Once, list[Arguments]]:
+    def begin(
+        self, values: Mapping[str, Any], batch: tuple[int, ...], in_place: bool
+    ) -> tuple[PreparedStages, list[Arguments]]:
         """Runs the leading stages whose inputs do not vary; the inputs of all others. Raises KeyError.
 
         The last set of parameters is remembered. ``in_place``: see :meth:`Inputs.read`.
@@ -65,7 +67,7 @@ class Stages:
         first, last = self._first[start], self._first[stop]
         return self._steps.address + 8 * len(STEP) * first, last - first
 
-    def _continued(self, once: Once, arguments: Sequence[Arguments]) -> Once:
+    def _continued(self, once: PreparedStages, arguments: Sequence[Arguments]) -> PreparedStages:
         """The next stages, run once."""
         start = len(once.scratch)
         stop = start + len(arguments)
@@ -80,4 +82,4 @@ class Stages:
         counter, nothing = Counter(), (0, 0)
         words = (*results[:2], 0, 1, ctypes.addressof(counter), *nothing, *self.steps(start, stop), *nothing, 1)
         self.runtime.drive(*rows, *words)
-        return Once(tuple(scratch), results)
+        return PreparedStages(tuple(scratch), results)

@@ -28,6 +28,6 @@ Number = Annotated[
     BeforeValidator(_number),
     WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "maxLength": 10000}]}),
 ]
-Vector = tuple[Number, Number, Number]
+NumberVector = tuple[Number, Number, Number]
 Name = Annotated[str, Field(pattern=NAME)]
 LibraryName = Annotated[str, Field(pattern=LIBRARY_NAME)]

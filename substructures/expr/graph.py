@@ -25,7 +25,7 @@ from substructures.expr.exact import split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 from substructures.expr.patterns import coefficient, constant, has_number, square_of_root
 
-Number = int | Fraction | Decimal
+ExactNumber = int | Fraction | Decimal
 
 #: Constants are exact; numerator and denominator may have this many bits.
 MAX_BITS = 4096
@@ -56,7 +56,7 @@ class Expr:
         """True when the formula is the zero function."""
         return self.fp == 0
 
-    def __add__(self, other: Expr | Number) -> Expr:
+    def __add__(self, other: Expr | ExactNumber) -> Expr:
         x = other if isinstance(other, Expr) else self.graph.number(other)
         fp = (self.fp + x.fp) % PRIME
         found = self.graph.table.get(fp)
@@ -64,16 +64,16 @@ class Expr:
 
     __radd__ = __add__
 
-    def __sub__(self, other: Expr | Number) -> Expr:
+    def __sub__(self, other: Expr | ExactNumber) -> Expr:
         x = other if isinstance(other, Expr) else self.graph.number(other)
         fp = (self.fp - x.fp) % PRIME
         found = self.graph.table.get(fp)
         return found if found is not None else self.graph._difference(self, x, fp)
 
-    def __rsub__(self, other: Number) -> Expr:
+    def __rsub__(self, other: ExactNumber) -> Expr:
         return -self + other
 
-    def __mul__(self, other: Expr | Number) -> Expr:
+    def __mul__(self, other: Expr | ExactNumber) -> Expr:
         x = other if isinstance(other, Expr) else self.graph.number(other)
         fp = self.fp * x.fp % PRIME
         found = self.graph.table.get(fp)
@@ -92,10 +92,10 @@ class Expr:
             return Expr(self.graph, self.op, (), -self.value, fp)
         return Expr(self.graph, "neg", (self,), None, fp)
 
-    def __truediv__(self, other: Expr | Number) -> Expr:
+    def __truediv__(self, other: Expr | ExactNumber) -> Expr:
         return self.graph._quotient(self, other if isinstance(other, Expr) else self.graph.number(other))
 
-    def __rtruediv__(self, other: Number) -> Expr:
+    def __rtruediv__(self, other: ExactNumber) -> Expr:
         return self.graph.number(other) / self
 
     def __pow__(self, n: int) -> Expr:
@@ -129,7 +129,7 @@ class Graph:
     def __len__(self) -> int:
         return len(self.table)
 
-    def number(self, value: Number) -> Expr:
+    def number(self, value: ExactNumber) -> Expr:
         """An exact constant; a Decimal is taken as its decimal text. Floats are refused."""
         if isinstance(value, Decimal):
             value = Fraction(value)

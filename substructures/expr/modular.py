@@ -16,9 +16,9 @@ from flint import fmpz
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 
-Point = tuple[int, int]
+ModularPoint = tuple[int, int]
 #: an angle as multiples of what its sine and cosine are built from, and of pi
-Linear = tuple[dict[int, Fraction], Fraction]
+AngleForm = tuple[dict[int, Fraction], Fraction]
 BITS = 100
 #: multiples with denominators that divide this one are multiples of one point on the circle
 PARTS = 63 * 10**6
@@ -33,7 +33,7 @@ class Field:
 
     def __init__(self) -> None:
         self.prime = _prime()
-        self.points: dict[object, Point] = {}
+        self.points: dict[object, ModularPoint] = {}
         root2, root6, quarter = self.root(2), self.root(6), pow(4, -1, self.prime)
         self.points["pi/12"] = (root6 + root2) * quarter % self.prime, (root6 - root2) * quarter % self.prime
 
@@ -54,7 +54,7 @@ class Field:
             raise ZeroDivisionError("division by zero in the field")
         return pow(x, -1, self.prime)
 
-    def circle(self, angle: Linear) -> Point:
+    def circle(self, angle: AngleForm) -> ModularPoint:
         """(cos, sin) of an angle."""
         terms, turns = angle
         twelfths = turns * 12
@@ -66,17 +66,17 @@ class Field:
             result = self._sum(result, self._times(self._point((atom, common)), n))
         return result
 
-    def _point(self, key: object) -> Point:
+    def _point(self, key: object) -> ModularPoint:
         if key not in self.points:
             t = self.draw()
             inverse = self.inverse((1 + t * t) % self.prime)
             self.points[key] = (1 - t * t) * inverse % self.prime, 2 * t * inverse % self.prime
         return self.points[key]
 
-    def _sum(self, a: Point, b: Point) -> Point:
+    def _sum(self, a: ModularPoint, b: ModularPoint) -> ModularPoint:
         return (a[0] * b[0] - a[1] * b[1]) % self.prime, (a[0] * b[1] + a[1] * b[0]) % self.prime
 
-    def _times(self, point: Point, n: int) -> Point:
+    def _times(self, point: ModularPoint, n: int) -> ModularPoint:
         """(cos, sin) of n times an angle."""
         point, n = (point[0], -point[1] if n < 0 else point[1]), abs(n)
         result = (1, 0)
@@ -101,7 +101,7 @@ class _Run:
     def __init__(self, field: Field, program: Program, symbols: Mapping[str, int]) -> None:
         self.field, self.program, self.symbols = field, program, symbols
         self.values: dict[int, int] = {}
-        self.linear: dict[int, Linear] = {}
+        self.linear: dict[int, AngleForm] = {}
 
     def step(self, i: int, operation: Operation) -> None:
         """The value of one operation."""
@@ -147,7 +147,7 @@ class _Run:
         if key == ("acos", self.field.prime - 1):
             self.linear[i] = {}, Fraction(1)
 
-    def _form(self, i: int) -> Linear:
+    def _form(self, i: int) -> AngleForm:
         """An operation as multiples of atoms and of pi."""
         terms: dict[int, Fraction] = {}
         turns, stack = Fraction(0), [(i, Fraction(1))]

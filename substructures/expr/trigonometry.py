@@ -15,10 +15,10 @@ from fractions import Fraction
 from substructures.expr.fingerprint import PRIME, add_angles, circle_point, multiply_angle
 from substructures.expr.graph import Expr, Graph
 
-Linear = tuple[dict[Expr, Fraction], Fraction]
+LinearForm = tuple[dict[Expr, Fraction], Fraction]
 
 
-def linear_form(x: Expr) -> Linear:
+def linear_form(x: Expr) -> LinearForm:
     """x as sum of rational multiples of atoms, and of pi."""
     terms: dict[Expr, Fraction] = {}
     turns = Fraction(0)

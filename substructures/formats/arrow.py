@@ -148,7 +148,7 @@ def _width(pointer: str, column: Any) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ArrowTable:
     """Columns (N, ...); ``missing``: True where a column has no value; ``notes``: texts by state, if any."""
 
     columns: Mapping[str, Array]
@@ -161,7 +161,7 @@ class Table:
         return max(map(len, self.columns.values()), default=0)
 
 
-def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> Table:
+def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> ArrowTable:
     """The named parts of the answer of an evaluation with a leading axis, with a note for every state that failed."""
     columns, count = flat({name: answer[name] for name in names}), answer["count"]
     failures: dict[int, list[dict[str, Any]]] = {}
@@ -173,10 +173,10 @@ def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> Table:
             if name == quantity or name.startswith(f"{quantity}."):
                 missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
     notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
-    return Table(columns, missing, notes)
+    return ArrowTable(columns, missing, notes)
 
 
-def write_tables(tables: Iterable[Table], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
+def write_tables(tables: Iterable[ArrowTable], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
     """The pieces of a stream, one record batch for each table; all tables have the columns of the first.
 
     A column (N, ...) of more than one axis becomes fixed-size lists, row-major, with the ``shape`` of one state in the

@@ -10,13 +10,13 @@ import numpy as np
 from substructures.documents import pointer_step
 from substructures.errors import InvalidDocument
 
-Request = Mapping[str, Any]
+ColumnRequest = Mapping[str, Any]
 #: fields whose columns may also be given one by one: ``q.<coordinate>``, ``parameters.<name>``, ...
 _GROUPS = ("along.inputs", "along.q", "along.qd", "along.qdd", "along", "q", "qd", "qdd", "inputs", "parameters")
 _STATES = ("/q", "/qd", "/qdd", "/along/q", "/along/qd", "/along/qdd")
 
 
-def request_of(constants: Request, columns: Request) -> dict[str, Any]:
+def request_of(constants: ColumnRequest, columns: ColumnRequest) -> dict[str, Any]:
     """The request with nested objects, from columns whose names are joined by dots. Raises InvalidDocument."""
     request = {name: dict(value) if isinstance(value, Mapping) else value for name, value in constants.items()}
     for name, column in columns.items():
@@ -48,7 +48,7 @@ def has_rows(value: Any, pointer: str) -> bool:
     return isinstance(value, np.ndarray) and value.ndim == (2 if pointer in _STATES else 1)
 
 
-def parted(columns: Request) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+def parted(columns: ColumnRequest) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
     """The columns with a row for every state, which are the longest, and what is the same for all states."""
     lengths = {name: len(x) for name, x in columns.items() if has_rows(x, pointer_of(name))}
     count = max(lengths.values(), default=1)

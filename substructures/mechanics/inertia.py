@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from substructures.mechanics.joints import Joint
+from substructures.mechanics.joints import OneDofJoint
 from substructures.mechanics.linear3 import (
     ZERO,
     ZERO6,
@@ -76,7 +76,7 @@ def binet(theta: Symmetric, half: S = Fraction(1, 2)) -> Symmetric:
     return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz
 
 
-def composites(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...]) -> tuple[list[Inertia], Inertia]:
+def composites(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...]) -> tuple[list[Inertia], Inertia]:
     """Inertia of every subtree about O_k in frame k, and of the whole about the interface (without fixed bodies).
 
     One pass from the leaves to the base; ``bodies`` are given about the body frame origins. Joints that are parallel
@@ -100,7 +100,7 @@ def composites(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...]) -> tuple[
     return total, base
 
 
-def _parallel_to_root(joints: tuple[Joint, ...]) -> list[bool]:
+def _parallel_to_root(joints: tuple[OneDofJoint, ...]) -> list[bool]:
     """For every joint but a root: whether it and its ancestors turn about one direction, down to the root's axis."""
     group: list[bool] = []
     for joint in joints:

@@ -9,7 +9,7 @@ from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, V
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class OneDofJoint:
     """A one degree of freedom joint that carries body k.
 
     ``parent``: L(k), -1 for the interface. ``s``: 1 prismatic, 0 revolute. ``rotation``: E_k = Ehat(phi) A.
@@ -34,7 +34,7 @@ class Link:
     Z: Vector
 
 
-def links(joints: tuple[Joint, ...]) -> tuple[Link, ...]:
+def links(joints: tuple[OneDofJoint, ...]) -> tuple[Link, ...]:
     """Z_k = offset + tau_p e3."""
     result = []
     for joint in joints:
@@ -64,7 +64,7 @@ def _turns_about(m: Matrix, axis: int) -> bool:
     return all(exactly(m[axis][x], x == axis) and exactly(m[x][axis], x == axis) for x in range(3))
 
 
-def path(chain: Sequence[Joint | Link], k: int) -> list[int]:
+def path(chain: Sequence[OneDofJoint | Link], k: int) -> list[int]:
     """Indices from the base to k, k included; empty for the interface (-1)."""
     result = []
     while k >= 0:

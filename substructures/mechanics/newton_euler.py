@@ -28,7 +28,7 @@ from substructures.mechanics.linear3 import (
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class BodyMotion:
     """omega [rad/s], alpha [rad/s^2] of a body and the acceleration a [m/s^2] of a point of it, in its frame."""
 
     omega: Vector = ZERO
@@ -42,40 +42,40 @@ class Motion:
         p, q, r = self.alpha
         return (-(yy + zz), xy - r, xz + q), (xy + r, -(xx + zz), yz - p), (xz - q, yz + p, -(xx + yy))
 
-    def at(self, z: Vector, rotation: Rotation) -> Motion:
+    def at(self, z: Vector, rotation: Rotation) -> BodyMotion:
         """The same body's motion at the point z, in a turned frame."""
         a = add(self.a, apply(self.field(), z))
-        return Motion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
+        return BodyMotion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
 
-    def moved(self, s: int, rate: S, tau: S, acceleration: S = 0) -> Motion:
+    def moved(self, s: int, rate: S, tau: S, acceleration: S = 0) -> BodyMotion:
         """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q''."""
         a = add(self.a, apply(self.field(), (0, 0, tau)))
         turning, along = scale(rate, cross(self.omega, E3)), (0, 0, acceleration)
         if s:
-            return Motion(self.omega, self.alpha, add(add(a, scale(2, turning)), along))
-        return Motion(add(self.omega, (0, 0, rate)), add(add(self.alpha, turning), along), a)
+            return BodyMotion(self.omega, self.alpha, add(add(a, scale(2, turning)), along))
+        return BodyMotion(add(self.omega, (0, 0, rate)), add(add(self.alpha, turning), along), a)
 
 
 @dataclass(frozen=True, slots=True)
-class Load:
+class Wrench:
     """A force and its moment about the origin of a frame, in that frame."""
 
     f: Vector = ZERO
     n: Vector = ZERO
 
-    def __add__(self, other: Load) -> Load:
-        return Load(add(self.f, other.f), add(self.n, other.n))
+    def __add__(self, other: Wrench) -> Wrench:
+        return Wrench(add(self.f, other.f), add(self.n, other.n))
 
-    def before(self, z: Vector, rotation: Rotation) -> Load:
+    def before(self, z: Vector, rotation: Rotation) -> Wrench:
         """About the origin of the frame before, from which z leads to this one."""
         f = rotation.back(self.f)
-        return Load(f, add(rotation.back(self.n), cross(z, f)))
+        return Wrench(f, add(rotation.back(self.n), cross(z, f)))
 
 
-def inertial_load(motion: Motion, inertia: Inertia) -> Load:
+def inertial_load(motion: BodyMotion, inertia: Inertia) -> Wrench:
     """What moves the body like that: m a + A s, s x a + axial(A J)."""
     A = motion.field()
     x, y, z = transpose(dense(inertia.J))
     moment = (dot(A[2], y) - dot(A[1], z), dot(A[0], z) - dot(A[2], x), dot(A[1], x) - dot(A[0], y))
     force = add(scale(inertia.m, motion.a), apply(A, inertia.s))
-    return Load(force, add(cross(inertia.s, motion.a), moment))
+    return Wrench(force, add(cross(inertia.s, motion.a), moment))

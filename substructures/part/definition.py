@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from substructures.documents import Document, DocumentPart
-from substructures.documents.fields import LibraryName, Name, Number, Vector
+from substructures.documents.fields import LibraryName, Name, Number, NumberVector
 
 MAX_BODIES = 500
 
@@ -27,14 +27,14 @@ class Parameter(DocumentPart):
 class Placement(DocumentPart):
     """A constant offset: position of the origin, then fixed-axis roll, pitch, yaw (URDF)."""
 
-    position: Vector = Field((0, 0, 0), description="m")
-    rpy: Vector = Field((0, 0, 0), description="rad")
+    position: NumberVector = Field((0, 0, 0), description="m")
+    rpy: NumberVector = Field((0, 0, 0), description="rad")
 
 
 class PortRotation(DocumentPart):
     """Rotation of a port by fixed-axis roll, pitch, yaw."""
 
-    rpy: Vector = Field((0, 0, 0), description="rad")
+    rpy: NumberVector = Field((0, 0, 0), description="rad")
 
 
 class Joint(DocumentPart):
@@ -76,7 +76,7 @@ class Body(DocumentPart):
     parent: Name
     joint: Joint
     mass: Number = Field(0, description="kg")
-    com: Vector = Field((0, 0, 0), description="m")
+    com: NumberVector = Field((0, 0, 0), description="m")
     inertia: InertiaTensor = InertiaTensor()
 
 
@@ -85,7 +85,7 @@ class Port(DocumentPart):
 
     name: Name
     body: Name
-    position: Vector = Field((0, 0, 0), description="m")
+    position: NumberVector = Field((0, 0, 0), description="m")
     rotation: PortRotation = PortRotation()
 
 
@@ -93,7 +93,7 @@ class Point(DocumentPart):
     """A point fixed in a body."""
 
     body: Name
-    at: Vector = Field((0, 0, 0), description="m")
+    at: NumberVector = Field((0, 0, 0), description="m")
 
 
 class ForceLoad(DocumentPart):
@@ -101,8 +101,8 @@ class ForceLoad(DocumentPart):
 
     type: Literal["force"]
     body: Name
-    at: Vector = Field((0, 0, 0), description="m")
-    vector: Vector = Field(description="N")
+    at: NumberVector = Field((0, 0, 0), description="m")
+    vector: NumberVector = Field(description="N")
     frame: Literal["body", "world"] = "body"
 
 
@@ -111,7 +111,7 @@ class TorqueLoad(DocumentPart):
 
     type: Literal["torque"]
     body: Name
-    vector: Vector = Field(description="N m")
+    vector: NumberVector = Field(description="N m")
     frame: Literal["body", "world"] = "body"
 
 

@@ -21,7 +21,7 @@ Lookup = Callable[[str], Expr | None]
 
 
 @dataclass(frozen=True)
-class Wrench:
+class AppliedWrench:
     """A force at a point, or a moment: ``at`` [m] in the carrier's body frame, vector in its axes or in the world's."""
 
     carrier: int
@@ -46,7 +46,7 @@ class Spring:
 class Loads:
     """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index."""
 
-    wrenches: tuple[Wrench, ...]
+    wrenches: tuple[AppliedWrench, ...]
     springs: tuple[Spring, ...]
     joint_forces: dict[int, Expr]
 
@@ -63,7 +63,7 @@ def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[t
 def read_loads(m: Mechanism) -> Loads:
     """Read the loads; expressions may name parameters, coordinates, velocities (q'), inputs and the time t."""
     lookup = load_names(m.scope, m)
-    wrenches: list[Wrench] = []
+    wrenches: list[AppliedWrench] = []
     springs: list[Spring] = []
     forces: dict[int, Expr] = {}
     for i, load in enumerate(m.definition.loads):
@@ -111,7 +111,7 @@ def _frame(m: Mechanism, body: str, pointer: str) -> Frame | None:
     return frame
 
 
-def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lookup) -> list[Wrench]:
+def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lookup) -> list[AppliedWrench]:
     frame = _frame(m, load.body, f"{pointer}/body")
     if frame is None:
         return []
@@ -122,7 +122,7 @@ def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lo
     world = load.frame == "world"
     if not world:
         vector = apply(transpose(frame.E), vector)
-    return [Wrench(frame.carrier, isinstance(load, TorqueLoad), world, at, vector)]
+    return [AppliedWrench(frame.carrier, isinstance(load, TorqueLoad), world, at, vector)]
 
 
 def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> list[Spring]:

@@ -8,7 +8,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.inertia import Inertia, binet
-from substructures.mechanics.joints import Joint, lean_rotation
+from substructures.mechanics.joints import OneDofJoint, lean_rotation
 from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
@@ -46,7 +46,7 @@ class Mechanism:
     definition: Definition
     skeleton: Skeleton
     scope: Scope
-    joints: tuple[Joint, ...]
+    joints: tuple[OneDofJoint, ...]
     own: tuple[Inertia, ...]  #: own inertia of carrier k about its body frame origin
     base: Inertia  #: what is fixed to the interface
     laws: tuple[JointLaw, ...]
@@ -110,7 +110,7 @@ class _Builder:
         self.entries: dict[int, list[JointEntry]] = {}
         for entry in bones.joints:
             self.entries.setdefault(entry.body, []).append(entry)
-        self.joints: list[Joint] = []
+        self.joints: list[OneDofJoint] = []
         self.own: list[Inertia] = []
         self.base = Inertia()
         self.laws: list[JointLaw] = []
@@ -173,7 +173,7 @@ class _Builder:
         constant = multiply(turned, frame.E)
         phi, tau = (phi, q + tau) if entry.s else (q + phi, tau)
         rotation = lean_rotation(constant, *cos_sin(phi))
-        self.joints.append(Joint(frame.carrier, entry.s, rotation, frame.position, tau))
+        self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
         self.own.append(Inertia())
         self.laws.append(self._law(entry, body, pointer))
         self._limits(entry, body, pointer)

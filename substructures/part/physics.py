@@ -15,7 +15,7 @@ from substructures.mechanics.linear3 import dense
 from substructures.part.mechanism import Mechanism
 from substructures.part.scope import Scope, no_names
 
-Problem = tuple[str, str]  #: code, message
+PhysicsFault = tuple[str, str]  #: code, message
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def constants(scope: Scope, given: Mapping[str, Any]) -> dict[str, float]:
     return {name: float(v) for name, v in numbers.items()}
 
 
-def _problem(field: str, value: Array) -> Problem | None:
+def _problem(field: str, value: Array) -> PhysicsFault | None:
     if not np.isfinite(value).all():
         return "number-not-finite", "a value is beyond the range of floating point numbers"
     if field == "inertia":
@@ -80,7 +80,7 @@ def _problem(field: str, value: Array) -> Problem | None:
     return (f"negative-{quantity}", f"the {quantity} {float(value):g} {unit} is negative") if value < 0 else None
 
 
-def _impossible_tensor(binet: Array) -> Problem | None:
+def _impossible_tensor(binet: Array) -> PhysicsFault | None:
     """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
     eigenvalues = np.linalg.eigvalsh(binet)
     if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):

@@ -32,7 +32,7 @@ from substructures.tree.model import Model
 __all__ = [
     "QUANTITIES",
     "REGRESSOR",
-    "Engine",
+    "Evaluator",
     "Sources",
     "check",
     "cost",
@@ -53,7 +53,7 @@ OPEN = (
 )
 
 #: outputs of a program for (program, values, names, number of states)
-Engine = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
+Evaluator = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
 
 
 def interpreted(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
@@ -65,7 +65,7 @@ def evaluate(
     model: Model,
     request: Mapping[str, Any],
     limit: int | None = None,
-    engine: Engine = interpreted,
+    engine: Evaluator = interpreted,
     sources: Sources | None = None,
 ) -> dict[str, Any]:
     """Evaluate quantities for states.
@@ -113,7 +113,7 @@ def check(sources: Sources, request: Mapping[str, Any]) -> States:
 
 
 def _computed(
-    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], engine: Engine, states: States
+    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], engine: Evaluator, states: States
 ) -> dict[str, dict[str, Array]]:
     """Outputs by source."""
     count = states.count
@@ -132,7 +132,7 @@ def _computed(
     return found
 
 
-def _solved(model: Model, values: Mapping[str, Any], engine: Engine, count: int) -> dict[str, Array]:
+def _solved(model: Model, values: Mapping[str, Any], engine: Evaluator, count: int) -> dict[str, Array]:
     """Forward dynamics of a model too large for formulas of it: g q'' = Q - Gamma q' q' by numbers, in blocks."""
     result, size = np.empty((count, model.dof)), max(1, BLOCK // model.dof**2)
     for start in range(0, count, size):
@@ -144,7 +144,7 @@ def _solved(model: Model, values: Mapping[str, Any], engine: Engine, count: int)
 
 
 def _closed(
-    model: Model, program: Program, values: Mapping[str, Any], engine: Engine, states: States
+    model: Model, program: Program, values: Mapping[str, Any], engine: Evaluator, states: States
 ) -> dict[str, Array]:
     """Forward dynamics of a tree with closures."""
     outputs = engine(program, values, [*DYNAMICS, *CLOSED], states.count)

@@ -33,7 +33,7 @@ from substructures.tree.mounted_part import Mounted
 
 Scalars = list[Any]
 #: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
-Engine = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[str, Scalars]]
+PartEvaluator = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[str, Scalars]]
 EQUATIONS = ("metric", "christoffel", "gravity", "forces", "bias", "inverse_dynamics", "potential_energy")
 #: states that are coupled at a time: their numbers stay in the second-level cache
 BLOCK = 2048
@@ -74,7 +74,7 @@ class NumericTree:
     Raises InvalidDocument when the tree cannot be put together.
     """
 
-    def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], engine: Engine = interpret_entries) -> None:
+    def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], engine: PartEvaluator = interpret_entries) -> None:
         self.assembly, self.engine = assemble(spec, parts), engine
         pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
         self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)

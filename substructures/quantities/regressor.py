@@ -30,14 +30,14 @@ from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import lean_rotation
 from substructures.mechanics.linear3 import S, negate, transpose
 from substructures.mechanics.metric import pairing
-from substructures.mechanics.newton_euler import Motion, inertial_load
+from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import Stored
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.topology import BASE, INTERFACE
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.closures import Rows
+from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, Run, couple_parts, over_formulas
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.inverse_dynamics import body_motions, from_body
@@ -73,7 +73,7 @@ class RegressorModel:
     names: tuple[str, ...]
     units: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
-    closures: tuple[Rows, ...] = ()
+    closures: tuple[ClosureRows, ...] = ()
 
     def evaluate(self, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Array]:
         """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
@@ -96,7 +96,7 @@ class _Link:
 
     name: str
     inertia: Inertia
-    motion: Motion
+    motion: BodyMotion
     columns: Columns
 
 
@@ -163,7 +163,7 @@ def _links(run: Run, assembly: Assembly) -> list[_Link]:
     return result
 
 
-def _link(name: str, m: Mounted, state: State, frame: int, own: Stored, motions: Sequence[Motion]) -> _Link:
+def _link(name: str, m: Mounted, state: State, frame: int, own: Stored, motions: Sequence[BodyMotion]) -> _Link:
     """Inertia, motion and partial velocities of a carrier, in the frame of the body it is named by."""
     link = frame_link(m, state, frame)
     c = link.parent

@@ -13,7 +13,7 @@ from substructures.part.frames import axis_rotation
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
 from substructures.part.topology import INTERFACE
-from substructures.tree.closures import ROWS, Cut, End, Rows
+from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.coupling import over_formulas
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.mounted_part import WORLD, Mounted
@@ -193,14 +193,14 @@ def _cut(
     axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
     E = scope.rpy(closure.placement.rpy, f"{pointer}/placement/rpy", bound.lookup).matrix()
     position = scope.vector(closure.placement.position, f"{pointer}/placement/position", bound.lookup)
-    start = End(*_frame(closure.from_, f"{pointer}/from", parts, scope, place), axis, ZERO)
-    end = End(*_frame(closure.to, f"{pointer}/to", parts, scope, place), multiply(axis, E), position)
+    start = ClosureEnd(*_frame(closure.from_, f"{pointer}/from", parts, scope, place), axis, ZERO)
+    end = ClosureEnd(*_frame(closure.to, f"{pointer}/to", parts, scope, place), multiply(axis, E), position)
     length = scope.graph.zero
     if closure.length is not None:
         length = scope.read(closure.length, f"{pointer}/length", bound.lookup)
         if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
             scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
-    rows = Rows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
+    rows = ClosureRows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
     return Cut(rows, start, end, length)
 
 

@@ -56,7 +56,7 @@ from substructures.mechanics.linear3 import (
     sub,
     transpose,
 )
-from substructures.mechanics.newton_euler import Motion
+from substructures.mechanics.newton_euler import BodyMotion
 from substructures.tree.inverse_dynamics import body_motions, from_body
 from substructures.tree.mounted_part import WORLD, Mounted, State, frame_kinematics, frame_link
 
@@ -79,7 +79,7 @@ ALIGNED = {"rx": 2, "ry": 2, "rz": 0}
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class ClosureRows:
     """What a closure is and its rows, in the order of the outputs."""
 
     name: str
@@ -93,13 +93,13 @@ class Rows:
         return {"name": self.name, "type": self.type, "from": self.start, "to": self.end, "rows": list(self.rows)}
 
     @classmethod
-    def read(cls, plain: Mapping[str, Any]) -> Rows:
+    def read(cls, plain: Mapping[str, Any]) -> ClosureRows:
         """From JSON data."""
         return cls(plain["name"], plain["type"], plain["from"], plain["to"], tuple(plain["rows"]))
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class ClosureEnd:
     """A frame of a mounted part (or of the WORLD) with a constant placement in it."""
 
     part: int
@@ -112,9 +112,9 @@ class End:
 class Cut:
     """A closure with its frames read."""
 
-    rows: Rows
-    start: End
-    end: End
+    rows: ClosureRows
+    start: ClosureEnd
+    end: ClosureEnd
     length: Expr
 
 
@@ -125,7 +125,7 @@ class _Frame:
     R: Matrix
     r: Vector
     columns: Mapping[int, Twist]
-    motion: Motion
+    motion: BodyMotion
 
 
 @dataclass(frozen=True)
@@ -167,10 +167,10 @@ def closure_formulas(
 
 
 def _frame(
-    mounted: Sequence[Mounted], states: Sequence[State], motions: Sequence[Sequence[Motion]], end: End
+    mounted: Sequence[Mounted], states: Sequence[State], motions: Sequence[Sequence[BodyMotion]], end: ClosureEnd
 ) -> _Frame:
     if end.part == WORLD:
-        return _Frame(end.E, end.position, {}, Motion())
+        return _Frame(end.E, end.position, {}, BodyMotion())
     m, state = mounted[end.part], states[end.part]
     link = frame_link(m, state, end.frame, end.E, end.position)
     motion = motions[end.part][link.parent].at(from_body(state, link.parent, link.Z), link.rotation)

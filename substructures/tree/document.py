@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart, read_model
-from substructures.documents.fields import LibraryName, Name, Number, Vector
+from substructures.documents.fields import LibraryName, Name, Number, NumberVector
 from substructures.part.definition import Definition, Parameter, Placement
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
@@ -73,7 +73,7 @@ class TreeSpec(Document):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree."""
 
     name: LibraryName
-    gravity: Vector = Field((0, 0, 0), description="gravity acceleration in world axes, m/s^2")
+    gravity: NumberVector = Field((0, 0, 0), description="gravity acceleration in world axes, m/s^2")
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)

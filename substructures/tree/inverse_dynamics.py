@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from substructures.mechanics.linear3 import S, Vector, negate
-from substructures.mechanics.newton_euler import Load, Motion, inertial_load
+from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
 from substructures.part.topology import INTERFACE
 from substructures.tree.mounted_part import WORLD, Mounted, State, applied_wrenches
 
@@ -31,7 +31,7 @@ def inverse_dynamics(
     loads = _inertial_loads(states, body_motions(mounted, states, rates, accelerations))
     for m, state, own in zip(mounted, states, loads, strict=True):
         for carrier, force, moment in applied_wrenches(m, state):
-            own[carrier] += Load(negate(force), negate(moment))
+            own[carrier] += Wrench(negate(force), negate(moment))
     result = _pass_back(mounted, states, loads, len(rates))
     for m, state in zip(mounted, states, strict=True):
         for c in range(len(state.links)):
@@ -43,12 +43,12 @@ def inverse_dynamics(
 
 def body_motions(
     mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S], accelerations: Sequence[S] | None = None
-) -> list[list[Motion]]:
+) -> list[list[BodyMotion]]:
     """For every part the motions of its joints' body frames, and last of its interface.
 
     With ``accelerations`` the world is accelerated against gravity; without, q'' = 0 in a world at rest.
     """
-    motions: list[list[Motion]] = []
+    motions: list[list[BodyMotion]] = []
     for m, state in zip(mounted, states, strict=True):
         own = [_interface(m, state, motions, accelerations is not None)]
         for c, link in enumerate(state.links):
@@ -65,15 +65,15 @@ def from_body(state: State, carrier: int, z: Vector) -> Vector:
     return z if carrier == INTERFACE else (z[0], z[1], z[2] - state.tau[carrier])
 
 
-def _interface(m: Mounted, state: State, motions: Sequence[Sequence[Motion]], falling: bool) -> Motion:
+def _interface(m: Mounted, state: State, motions: Sequence[Sequence[BodyMotion]], falling: bool) -> BodyMotion:
     """Of a part's interface."""
     if state.host is None or state.link is None:
-        return Motion(a=negate(state.gamma[INTERFACE])) if falling else Motion()
+        return BodyMotion(a=negate(state.gamma[INTERFACE])) if falling else BodyMotion()
     carrier = state.link.parent
     return motions[m.host][carrier].at(from_body(state.host, carrier, state.link.Z), state.link.rotation)
 
 
-def _inertial_loads(states: Sequence[State], motions: Sequence[Sequence[Motion]]) -> list[list[Load]]:
+def _inertial_loads(states: Sequence[State], motions: Sequence[Sequence[BodyMotion]]) -> list[list[Wrench]]:
     """What moves every body, and last what is fixed to the interface, like that."""
     result = []
     for state, own in zip(states, motions, strict=True):
@@ -82,7 +82,7 @@ def _inertial_loads(states: Sequence[State], motions: Sequence[Sequence[Motion]]
     return result
 
 
-def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[list[Load]], n: int) -> list[S]:
+def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[list[Wrench]], n: int) -> list[S]:
     result: list[S] = [0] * n
     for i in reversed(range(len(mounted))):
         m, state, own = mounted[i], states[i], loads[i]
@@ -91,7 +91,7 @@ def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[
             result[m.first + c] = load.f[2] if link.s else load.n[2]
             x, y, z = load.n
             tau = state.tau[c]
-            at_joint = Load(load.f, (x - tau * load.f[1], y + tau * load.f[0], z))
+            at_joint = Wrench(load.f, (x - tau * load.f[1], y + tau * load.f[0], z))
             own[link.parent] += at_joint.before(from_body(state, link.parent, link.Z), link.rotation)
         if m.host != WORLD and state.host is not None and state.link is not None:
             carrier = state.link.parent

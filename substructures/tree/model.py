@@ -34,7 +34,7 @@ from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.part.topology import christoffel_entries
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
-from substructures.tree.closures import Rows, closure_formulas
+from substructures.tree.closures import ClosureRows, closure_formulas
 from substructures.tree.coupling import Coupled, couple_parts, over_formulas
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
@@ -55,7 +55,7 @@ class Model:
     frames: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     certificate: Mapping[str, Any] = field(hash=False)
-    closures: tuple[Rows, ...] = ()
+    closures: tuple[ClosureRows, ...] = ()
 
     @cached_property
     def operations(self) -> dict[str, int]:
@@ -89,11 +89,11 @@ class Model:
         """A stored model. Raises InvalidProgram when the bytes are damaged."""
         names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
         described = (summary["parameters"], summary["certificate"])
-        closures = tuple(Rows.read(plain) for plain in summary.get("closures", ()))
+        closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
         return cls(Program.from_bytes(program_bytes), *names, *described, closures)
 
 
-def require_open(closures: Sequence[Rows], instead: str) -> None:
+def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
     """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
     if closures:
         names = ", ".join(f"'{rows.name}'" for rows in closures)

@@ -11,7 +11,7 @@ import pytest
 
 from substructures import Definition, catalogue, derive
 from substructures.compile import compile_program, layout
-from substructures.compile.kernel import Request
+from substructures.compile.kernel import KernelCall
 from substructures.compile.machine import MachineKernel
 
 THREADS = 8
@@ -33,7 +33,7 @@ def test_tables_in_use_are_never_freed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(layout, "dense", at_once)
     (name,) = kernel.names
     array = np.zeros((1, *kernel.shape(name)))
-    request = Request({}, (1,), {name: array}, False)
+    request = KernelCall({}, (1,), {name: array}, False)
     with ThreadPoolExecutor(THREADS) as pool:
         found = list(pool.map(lambda _: kernel._output(name, array, request), range(THREADS)))
     assert set(found) == {kernel._output(name, array, request)}

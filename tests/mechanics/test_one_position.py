@@ -13,7 +13,7 @@ from substructures import Model
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, Engine, evaluate, interpreted
+from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, Evaluator, evaluate, interpreted
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
@@ -40,7 +40,7 @@ def leaves(answer: Plain) -> dict[str, Any]:
 
 @pytest.mark.parametrize("engine", [interpreted, compiled])
 @pytest.mark.parametrize("batched", ["qd qdd", "qdd", "qd", "t", "inputs"])
-def test_one_position_stands_for_all(engine: Engine, batched: str) -> None:
+def test_one_position_stands_for_all(engine: Evaluator, batched: str) -> None:
     model = random_model()
     x = random_states(np.random.default_rng(1), N, model.dof)
     given = {"t": np.arange(N) / 7, "inputs": {f"tau.{model.coordinates[0]}": np.arange(N) - 2.0}}

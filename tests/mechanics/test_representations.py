@@ -16,7 +16,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.mechanics.base_functions import base_functions
 from substructures.mechanics.inertia import Inertia, composites
-from substructures.mechanics.joints import Joint, links
+from substructures.mechanics.joints import OneDofJoint, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
 from substructures.quantities.evaluation import evaluate
@@ -78,7 +78,7 @@ def test_parameters_may_differ_from_state_to_state() -> None:
 # --- one recursion for every scalar
 
 
-def recursion(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...], gravity: Any) -> dict[tuple[Any, ...], Any]:
+def recursion(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...], gravity: Any) -> dict[tuple[Any, ...], Any]:
     """Metric, Christoffel symbols and gravity by calling the mechanics directly."""
     subtree, _ = composites(joints, bodies)
     chain = links(joints)
@@ -94,7 +94,7 @@ def recursion(joints: tuple[Joint, ...], bodies: tuple[Inertia, ...], gravity: A
     return result
 
 
-def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[Joint, ...], tuple[Inertia, ...]]:
+def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[OneDofJoint, ...], tuple[Inertia, ...]]:
     """Joints and bodies over other scalars; ``scalar(name, *index)`` is an element of a stored output."""
 
     def matrix(name: str, c: int) -> Any:
@@ -107,7 +107,7 @@ def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[Joint, ...], tuple[In
         # Z_k = offset + tau_p e3
         z[2] = z[2] - (own[j.parent] if j.parent >= 0 else 0)
         own.append(tau)
-        joints.append(Joint(j.parent, j.s, Rotation((Turn(matrix("E", c)),)), tuple(z), tau))
+        joints.append(OneDofJoint(j.parent, j.s, Rotation((Turn(matrix("E", c)),)), tuple(z), tau))
         s = tuple(scalar(x["inertia.s"], c, i) for i in range(3))
         bodies.append(Inertia(scalar(x["inertia.m"], c), s, packed(matrix("inertia.J", c))))
     return tuple(joints), tuple(bodies)
@@ -155,7 +155,7 @@ def test_formulas_mix_with_exact_numbers() -> None:
     c, s, inertia = graph.symbol("c"), graph.symbol("s"), graph.symbol("J")
     turn = Rotation((Turn(((c, s, 0), (-s, c, 0), (0, 0, 1))),))
     body = Inertia(2, (3, 0, 0), (inertia, 0, 0, 0, 0, 0))
-    found = recursion((Joint(-1, 0, turn, (0, 0, Fraction(1, 2)), 0),), (body,), (-10, 0, 0))
+    found = recursion((OneDofJoint(-1, 0, turn, (0, 0, Fraction(1, 2)), 0),), (body,), (-10, 0, 0))
     assert isinstance(found["g", 0, 0], Expr)
     assert found["g", 0, 0] is inertia
     assert found["Q", 0] is 30 * s

@@ -10,7 +10,7 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from service.jobs.engine import Outcome, Report, Work
+from service.jobs.engine import AttemptReport, Outcome, Work
 from service.jobs.kinds import run
 from service.queue.supervisor import Supervisor
 from service.store import Store
@@ -43,17 +43,17 @@ class FakeEngine:
         self.works.pop(attempt, None)
         self.stopped.append(attempt)
 
-    def reports(self, seconds: float) -> list[Report]:
+    def reports(self, seconds: float) -> list[AttemptReport]:
         if not self.works or self.allowed < 1:
             time.sleep(min(seconds, 0.01))
-            return [Report(identifier, fraction=0.5) for identifier in self.works]
+            return [AttemptReport(identifier, fraction=0.5) for identifier in self.works]
         ready = list(self.works)[: int(min(self.allowed, self.slots))]
         self.allowed -= len(ready)
         return [self._report(self.works.pop(identifier)) for identifier in ready]
 
-    def _report(self, work: Work) -> Report:
+    def _report(self, work: Work) -> AttemptReport:
         death = self.death(work)
-        return Report(work.id, death=death) if death else Report(work.id, outcome=self.compute(work))
+        return AttemptReport(work.id, death=death) if death else AttemptReport(work.id, outcome=self.compute(work))
 
     def compute(self, work: Work) -> Outcome:
         return run(work.kind, dict(work.item), work.blobs, lambda _: None)

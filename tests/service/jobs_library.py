@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from service.jobs.engine import Budget, Engine, Report, Work
+from service.jobs.engine import AttemptReport, Budget, Engine, Work
 from service.jobs.kinds import expand, resolve
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.settings import Limits
@@ -76,7 +76,7 @@ class MemoryLibrary:
 
 def compute(
     engine: Engine, works: Sequence[Work], seconds: float = 60.0, told: Callable[[int], None] = lambda _: None
-) -> dict[str, Report]:
+) -> dict[str, AttemptReport]:
     """The final reports of works; ``told``: called with how many there are so far."""
     waiting, final = list(works), {}
     for _ in range(int(seconds / 0.05)):

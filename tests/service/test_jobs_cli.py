@@ -123,7 +123,9 @@ def test_states_in_files(
     if suffix == "npz":
         np.savez(file, **{"q": q, "parameters.arm.m": masses})
     elif suffix == "arrow":
-        parts = [arrow.Table({"q": q[rows], "parameters.arm.m": masses[rows]}) for rows in (slice(7), slice(7, 30))]
+        parts = [
+            arrow.ArrowTable({"q": q[rows], "parameters.arm.m": masses[rows]}) for rows in (slice(7), slice(7, 30))
+        ]
         file.write_bytes(b"".join(arrow.write_tables(parts, {})))
     else:
         file.write_text(json.dumps({"q": q.tolist(), "parameters": {"arm.m": masses.tolist()}}))

@@ -15,7 +15,7 @@ import pytest
 
 from service.jobs import dask
 from service.jobs.dask import DaskEngine
-from service.jobs.engine import Budget, Report, Work
+from service.jobs.engine import AttemptReport, Budget, Work
 from service.jobs.kinds import run
 
 from .conftest import PENDULUM, SLIDER, TREE
@@ -101,7 +101,7 @@ def cells(library: MemoryLibrary, count: int) -> list[Work]:
     return library.works("assemble", {"items": [{**TREE, "name": f"cell-{k}"} for k in range(count)]})
 
 
-def check(works: list[Work], reports: dict[str, Report]) -> None:
+def check(works: list[Work], reports: dict[str, AttemptReport]) -> None:
     """Every work has the result that it has in place."""
     for work in works:
         outcome = reports[work.id].outcome

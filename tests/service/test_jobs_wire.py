@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from service.jobs.engine import Budget, Outcome, Report, Work
-from service.jobs.wire import Frame, Reader, WireError, read_report, read_work, report_frame, work_frame
+from service.jobs.engine import AttemptReport, Budget, Outcome, Work
+from service.jobs.wire import Message, MessageReader, WireError, read_report, read_work, report_frame, work_frame
 
 from .jobs_library import BUDGET
 
 
 def test_frames_arrive_in_any_pieces() -> None:
     work = Work("a", "verify", {"x": 1, "y": [0.1, "pi"]}, {"sha256:1": b"\x00\xff", "sha256:2": b""}, Budget(1.5, 7))
-    report = Report("b", 1.0, Outcome({"n": 2}, {"f": b"12", "g": b""}, {"code": "x"}))
+    report = AttemptReport("b", 1.0, Outcome({"n": 2}, {"f": b"12", "g": b""}, {"code": "x"}))
     data = work_frame(work).to_bytes() + report_frame(report).to_bytes()
     for size in (1, 7, len(data)):
-        reader = Reader()
+        reader = MessageReader()
         first, second = (f for k in range(0, len(data), size) for f in reader.feed(data[k : k + size]))
         again = read_work(first, {})
         assert (again.id, again.blobs, again.budget) == (work.id, work.blobs, work.budget)
@@ -48,12 +48,12 @@ def test_blobs_are_sent_once() -> None:
 )
 def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
     with pytest.raises(WireError):
-        list(Reader().feed(data + b" " * 100))
+        list(MessageReader().feed(data + b" " * 100))
     with pytest.raises(WireError):
-        read_report(Frame({"id": "x"}))
+        read_report(Message({"id": "x"}))
 
 
 def test_the_other_version_of_a_cluster_is_named() -> None:
     data = work_frame(Work("a", "verify", {}, {}, BUDGET)).to_bytes().replace(b'"protocol":2', b'"protocol":9')
     with pytest.raises(WireError, match="protocol 9 instead of 2: the service and its workers differ in version"):
-        list(Reader().feed(data))
+        list(MessageReader().feed(data))

@@ -13,7 +13,7 @@ from service.jobs.kinds.choices import combinations
 from service.jobs.kinds.derive import DERIVE
 from service.jobs.kinds.evaluate import EVALUATE
 from service.jobs.kinds.export import EXPORT
-from service.jobs.kinds.kind import Item, Kind, Progress
+from service.jobs.kinds.kind import ItemDocument, ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
@@ -38,7 +38,7 @@ FIELDS = ("kind", "items", "template", "choices")
 _log = logging.getLogger(__name__)
 
 
-def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Library) -> list[Item]:
+def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Library) -> list[ItemDocument]:
     """The items of a submission: ``items``, or every combination of the ``choices`` put into the ``template``.
 
     An item may stand for several: states are split into parts of bounded size, ``*`` into the
@@ -46,7 +46,7 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
     """
     if kind not in _KINDS:
         raise InvalidDocument.at("/kind", "unknown-kind", f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}")
-    items: list[Item] = []
+    items: list[ItemDocument] = []
     for pointer, given in _given(request, limits.job_items):
         if not isinstance(given, dict):
             raise InvalidDocument.at(pointer, "object-expected", "an object is needed")
@@ -80,7 +80,7 @@ def _given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
     return [(f"/items/{k}", item) for k, item in enumerate(items)]
 
 
-def resolve(kind: str, item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def resolve(kind: str, item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     """The item with all references pinned to digests, and the digests of the blobs that it needs.
 
     Raises InvalidDocument with pointers relative to the item.
@@ -88,7 +88,7 @@ def resolve(kind: str, item: Item, library: Library) -> tuple[Item, tuple[str, .
     return _KINDS[kind].resolve(item, library)
 
 
-def run(kind: str, item: Item, blobs: Mapping[str, bytes], progress: Progress) -> Outcome:
+def run(kind: str, item: ItemDocument, blobs: Mapping[str, bytes], progress: ItemProgress) -> Outcome:
     """Compute a resolved item; what fails on its own account becomes a problem document. Raises MemoryError."""
     try:
         return _KINDS[kind].run(item, blobs, progress)

@@ -16,7 +16,7 @@ from service.analyses.numbers import ANALYSES, check_request
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis
@@ -32,7 +32,7 @@ TOLD = ("status", "message", "is_right", "cost")
 def analysis_kind(name: str | None = None) -> Kind:
     """The kind for one analysis; without a name every item says which."""
 
-    def spread(item: Item, limits: Limits, library: Library) -> list[Item]:
+    def spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
         which = ("analysis",) if name is None else ()
         what = "requests" if "requests" in item else "request"
         check_fields(item, ("tree", what, *which), ("format",))
@@ -45,11 +45,11 @@ def analysis_kind(name: str | None = None) -> Kind:
     return Kind(spread, _resolve, _run)
 
 
-def _limits(limits: Limits) -> Item:
+def _limits(limits: Limits) -> ItemDocument:
     return {"limits": {"program_nodes": limits.job_nodes, "binary_bytes": limits.binary_bytes}}
 
 
-def _check(item: Item) -> None:
+def _check(item: ItemDocument) -> None:
     name, form = item["analysis"], item["format"]
     if name not in tuple(ANALYSES):
         what = f"unknown analysis '{name[:40]}'" if isinstance(name, str) else "the analysis is no text"
@@ -62,7 +62,7 @@ def _check(item: Item) -> None:
         raise InvalidDocument.at("/format", "unknown-format", message)
 
 
-def _requests(name: str, item: Item, summary: Mapping[str, Any]) -> list[Any]:
+def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list[Any]:
     """The requests that an item stands for, each of the right shape and for coordinates and parameters of the tree."""
     if "requests" not in item:
         given, places = [item["request"]], ["/request"]
@@ -79,11 +79,11 @@ def _requests(name: str, item: Item, summary: Mapping[str, Any]) -> list[Any]:
     return given
 
 
-def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     return pinned(item, library, item["limits"]["program_nodes"], ANALYSES[item["analysis"]].needs_parts)
 
 
-def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
     source, name = source_of(item, blobs, item["limits"]), item["analysis"]
     model = source.model

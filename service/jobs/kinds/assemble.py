@@ -8,7 +8,7 @@ from service.cache import Cache
 from service.database.packed import pack
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind
 from service.jobs.kinds.library import Library, StoredVersion
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
@@ -24,11 +24,11 @@ DEFINITIONS = 1000  # kept decoded
 _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
 
 
-def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
+def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
     return [{"tree": item, "nodes": limits.job_nodes}]
 
 
-def pinned_tree(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition."""
     spec = TreeSpec.read(item["tree"])
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
@@ -94,7 +94,7 @@ def _pin(instance: Instance, version: StoredVersion | None) -> Instance:
     return instance.model_copy(update={"substructure": f"{version.name}@{version.digest}"})
 
 
-def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """Files ``program`` (packed), ``spec``, ``summary``; of every inline definition ``<instance>.program``,
     ``.content``. Raises InvalidDocument, TooLarge.
     """
@@ -119,13 +119,13 @@ def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
     return Outcome(summary, files)
 
 
-def tree_parts(item: Item, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
+def tree_parts(item: ItemDocument, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a pinned tree and its parts by instance. Raises InvalidDocument, TooLarge."""
     spec = TreeSpec.read(item["tree"])
     return spec, {i.name: _part(k, i, item, blobs) for k, i in enumerate(spec.instances)}
 
 
-def _part(index: int, instance: Instance, item: Item, blobs: Blobs) -> Part:
+def _part(index: int, instance: Instance, item: ItemDocument, blobs: Blobs) -> Part:
     if instance.definition is None:
         digest = (instance.substructure or "").partition("@")[2]
         return part_of(digest, item["programs"][digest], blobs)

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from service.summaries import part_content
@@ -23,11 +23,11 @@ from substructures.part.topology import skeleton
 TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits")
 
 
-def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
+def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
     return [{"definition": item, "nodes": limits.job_nodes}]
 
 
-def _resolve(item: Item, _library: Library) -> tuple[Item, tuple[str, ...]]:
+def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     definition = Definition.read(item["definition"])
     skeleton(definition)
     plain = read_json(definition.canonical())
@@ -78,7 +78,7 @@ def _names(text: str) -> frozenset[str]:
     return frozenset(found)
 
 
-def _run(item: Item, _blobs: Blobs, _progress: Progress) -> Outcome:
+def _run(item: ItemDocument, _blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """Files ``program``, ``content``. Raises InvalidDocument, TooLarge."""
     part = derive(Definition.read(item["definition"]), item["nodes"])
     summary = {

@@ -21,7 +21,7 @@ from service.cache import Cache
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import model_of, summary_of
 from service.jobs.kinds.joint_limits import joint_limits
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, regressor_of
@@ -57,7 +57,7 @@ _kernels: Cache[Kernel] = Cache(
 )
 
 
-def _spread(item: Item, limits: Limits, library: Library) -> list[Item]:
+def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
     check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
     tree = known_tree(item, library)
     summary = summary_of(tree.summary)
@@ -82,7 +82,7 @@ def states_per_item(request: Mapping[str, Any], dof: int, frames: int, limits: L
     return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
-def _request(item: Item) -> dict[str, Any]:
+def _request(item: ItemDocument) -> dict[str, Any]:
     request = item["request"]
     if not isinstance(request, dict):
         raise InvalidDocument.at("/request", "object-expected", "an object is needed")
@@ -100,7 +100,7 @@ def _request(item: Item) -> dict[str, Any]:
     return request
 
 
-def _described(item: Item, tree: StoredTree, summary: Mapping[str, Any], library: Library) -> Item:
+def _described(item: ItemDocument, tree: StoredTree, summary: Mapping[str, Any], library: Library) -> ItemDocument:
     """The grid or sample, complete; empty when the states are listed."""
     coordinates = summary["coordinates"]
     known = {*coordinates, *summary["parameters"]}
@@ -129,7 +129,7 @@ def _check_once(request: Mapping[str, Any], place: str, names: Iterable[str]) ->
         raise InvalidDocument(faults)
 
 
-def _count(summary: Mapping[str, Any], request: Mapping[str, Any], described: Item) -> int | None:
+def _count(summary: Mapping[str, Any], request: Mapping[str, Any], described: ItemDocument) -> int | None:
     """The number of states, None for one without a leading axis. Raises InvalidDocument."""
     if not described:
         states = check_states(summary, request)
@@ -161,13 +161,13 @@ def _with_axis(q: Any) -> Any:
     return q if isinstance(q[0], list) else [q]
 
 
-def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     has_parts = any(QUANTITIES[name].source == REGRESSOR for name in read_quantities(item["request"]))
     found, blobs = pinned(item, library, item["nodes"], has_parts)
     return found, (*blobs, item["states"]) if "states" in item else blobs
 
 
-def _run(item: Item, blobs: Blobs, progress: Progress) -> Outcome:
+def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """File ``result``: the answer of an evaluation, and the states where they were described as ``states.<name>``."""
     model = model_of(item, blobs)
     progress(0.1)
@@ -202,7 +202,7 @@ def _row(value: Any) -> Any:
     return {name: _row(x) for name, x in value.items()} if isinstance(value, Mapping) else np.asarray(value)[np.newaxis]
 
 
-def _uploaded(item: Item, blobs: Blobs) -> dict[str, Any]:
+def _uploaded(item: ItemDocument, blobs: Blobs) -> dict[str, Any]:
     """The request with the states that were uploaded for the item."""
     request: dict[str, Any] = item["request"]
     if "states" not in item:
@@ -211,7 +211,7 @@ def _uploaded(item: Item, blobs: Blobs) -> dict[str, Any]:
     return request_of(request, read_npz(BytesIO(content), len(content)))
 
 
-def _columns(item: Item) -> dict[str, Array]:
+def _columns(item: ItemDocument) -> dict[str, Array]:
     if "grid" in item:
         return grid_states(item["grid"], *item["range"])
     return sample_states(item["sample"], *item["range"]) if "sample" in item else {}

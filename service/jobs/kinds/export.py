@@ -27,7 +27,7 @@ from service.analyses.printing import (
 from service.analyses.source import Source
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.refusals import Refused
@@ -43,7 +43,7 @@ from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 
 
-def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
+def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
     body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
     check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options"))
     given = {"form": FORMS[0], "bind": "", "options": {}, **item}
@@ -68,7 +68,7 @@ def _spread(item: Item, limits: Limits, _library: Library) -> list[Item]:
     return [{**given, "nodes": limits.job_nodes}]
 
 
-def _quantity_faults(item: Item, summary: Mapping[str, Any]) -> Iterator[Fault]:
+def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
     """An unknown quantity, and options that it cannot have."""
     quantity, options = item["quantity"], item["options"]
     outputs = [name for name in summary["operations"] if name != "total"]
@@ -85,7 +85,7 @@ def _quantity_faults(item: Item, summary: Mapping[str, Any]) -> Iterator[Fault]:
             yield Fault("/options" + pointer_step(name), "unknown-option", message)
 
 
-def _bind_faults(item: Item, summary: Mapping[str, Any]) -> Iterator[Fault]:
+def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
     """What is no ``name:value``, and unknown parameters; the regressor has more of them than the other formulas."""
     known = summary["parameters"]
     for given in filter(None, (each.strip() for each in item["bind"].split(","))):
@@ -116,7 +116,7 @@ def _is_options(given: object) -> bool:
     return all(isinstance(texts, list) and all(isinstance(text, str) for text in texts) for texts in lists)
 
 
-def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     summary = summary_of(known_tree(item, library).summary)
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
@@ -124,7 +124,7 @@ def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
     return pinned(item, library, item["nodes"], needs_parts(item["quantity"]))
 
 
-def _run(item: Item, blobs: Blobs, _progress: Progress) -> Outcome:
+def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """File ``text``. Raises Refused, TooLarge."""
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
     style = Style(item["format"], item["form"], item["bind"])
@@ -150,7 +150,7 @@ def _place(pointer: str) -> str:
     return "/options" + pointer.removeprefix("/query") if pointer.startswith("/query") else pointer
 
 
-def _stored(source: Source, item: Item, style: Style) -> str:
+def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     quantity, model, sources = item["quantity"], source.model, Sources(source.model, regressor=source.regressor)
     check_quantity(model, quantity)
     members, parameters = described(sources, quantity)
@@ -158,7 +158,7 @@ def _stored(source: Source, item: Item, style: Style) -> str:
     return text_of(program, style, model.coordinates, members, item["nodes"])
 
 
-def _followed(source: Source, item: Item, style: Style) -> str:
+def _followed(source: Source, item: ItemDocument, style: Style) -> str:
     """A quantity that follows from the formulas of the model, or from its parts."""
     name, options = item["quantity"], {name: tuple(texts) for name, texts in item["options"].items()}
     if name in WITH_DOCUMENT:

@@ -13,9 +13,9 @@ from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 
-Item = dict[str, Any]
+ItemDocument = dict[str, Any]
 Blobs = Mapping[str, bytes]
-Progress = Callable[[float], None]
+ItemProgress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Kind:
     outcome; reads nothing but its arguments.
     """
 
-    spread: Callable[[Item, Limits, Library], list[Item]]
-    resolve: Callable[[Item, Library], tuple[Item, tuple[str, ...]]]
-    run: Callable[[Item, Blobs, Progress], Outcome]
+    spread: Callable[[ItemDocument, Limits, Library], list[ItemDocument]]
+    resolve: Callable[[ItemDocument, Library], tuple[ItemDocument, tuple[str, ...]]]
+    run: Callable[[ItemDocument, Blobs, ItemProgress], Outcome]
 
 
 @contextmanager
@@ -41,7 +41,7 @@ def inside(place: str) -> Iterator[None]:
         raise InvalidDocument(Fault(place + f.pointer, f.code, f.message) for f in error.faults) from None
 
 
-def check_fields(item: Item, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
+def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
     """Raise InvalidDocument for fields that are missing or unknown."""
     faults = [
         Fault(pointer_step(key), "unknown-field", f"unknown field '{key[:80]}'")
@@ -53,7 +53,7 @@ def check_fields(item: Item, required: tuple[str, ...], optional: tuple[str, ...
         raise InvalidDocument(faults)
 
 
-def known_tree(item: Item, library: Library) -> StoredTree:
+def known_tree(item: ItemDocument, library: Library) -> StoredTree:
     """The tree that an item refers to. Raises InvalidDocument."""
     reference = item["tree"]
     tree = library.tree(reference) if isinstance(reference, str) else None

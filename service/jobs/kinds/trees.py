@@ -8,7 +8,7 @@ from service.analyses.source import Source
 from service.cache import Cache
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import model_of, pinned_model
-from service.jobs.kinds.kind import Blobs, Item, known_tree
+from service.jobs.kinds.kind import Blobs, ItemDocument, known_tree
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from substructures.documents import read_json
@@ -19,7 +19,7 @@ CAPACITY = 2_000_000  # operations
 _regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 
 
-def pinned(item: Item, library: Library, nodes: int, has_parts: bool) -> tuple[Item, tuple[str, ...]]:
+def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
     """The item with its tree pinned, and the digests of the blobs that it needs.
 
     ``has_parts``: also the parts, from which the regressor is derived with at most ``nodes`` operations. Raises
@@ -33,7 +33,7 @@ def pinned(item: Item, library: Library, nodes: int, has_parts: bool) -> tuple[I
     return {**item, **found, "parts": parts}, (tree.program, *blobs)
 
 
-def regressor_of(item: Item, blobs: Blobs) -> RegressorModel:
+def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
     """The regressor of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
     found = _regressors.get(item["tree"])
     if found is None:
@@ -43,7 +43,7 @@ def regressor_of(item: Item, blobs: Blobs) -> RegressorModel:
     return found
 
 
-def source_of(item: Item, blobs: Blobs, limits: Mapping[str, int]) -> Source:
+def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> Source:
     """What analyses of the tree of an item work on. Raises InvalidProgram."""
     digest = item["tree"].partition("@")[2]
     return Source(model_of(item, blobs), digest, lambda: regressor_of(item, blobs), Limits(**limits))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, Item, Kind, Progress, check_fields
+from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields
 from service.jobs.kinds.library import Library
 from service.settings import Limits
 from substructures.documents import read_json, write_json
@@ -14,14 +14,14 @@ from substructures.part.part import Part, recheck
 ALL = "*"
 
 
-def _spread(item: Item, _limits: Limits, library: Library) -> list[Item]:
+def _spread(item: ItemDocument, _limits: Limits, library: Library) -> list[ItemDocument]:
     check_fields(item, ("substructure",))
     if item["substructure"] != ALL:
         return [item]
     return [{"substructure": reference} for reference in library.catalogue()]
 
 
-def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
+def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     reference = item["substructure"]
     version = library.version(reference) if isinstance(reference, str) else None
     if version is None:
@@ -31,7 +31,7 @@ def _resolve(item: Item, library: Library) -> tuple[Item, tuple[str, ...]]:
     return pinned, (version.digest, version.program)
 
 
-def _run(item: Item, blobs: Blobs, _progress: Progress) -> Outcome:
+def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """File ``certificate``. Raises VerificationFailed, InvalidProgram."""
     definition = Definition.read(read_json(blobs[item["substructure"].partition("@")[2]]))
     part = Part.load(definition, blobs[item["program"]], {})  # never one that was decoded before

@@ -13,9 +13,9 @@ from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
-from substructures.analysis.motion.integration import Motion, Settings, integrate
+from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance
-from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.requests import ClosedRequest
 from substructures.analysis.motion.steppers import scipy_stepper
 from substructures.analysis.motion.trajectory import Check, Trajectory, crossings
@@ -28,7 +28,7 @@ ADVICE = "look for very stiff springs, for masses or lengths near zero and for j
 
 
 def simulate_closed(
-    model: Model, request: Mapping[str, Any], progress: Report | None = None, folder: Path | None = None
+    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """Integrate the equations of motion with closures from the closed state nearest to the given one.
 
@@ -56,8 +56,8 @@ def simulate_closed(
 
 
 def _moved(
-    s: Constrained, asked: ClosedRequest, x: Array, rank: int, progress: Report | None, folder: Path | None
-) -> Motion:
+    s: Constrained, asked: ClosedRequest, x: Array, rank: int, progress: ProgressReport | None, folder: Path | None
+) -> IntegratedMotion:
     reduction: Reduction = REDUCTIONS[asked.reduction](s, rank)
     inner = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
 
@@ -69,7 +69,7 @@ def _moved(
         x,
         asked.span,
         asked.outputs(),
-        Settings(stepper, asked.max_steps, ADVICE),
+        IntegratorSettings(stepper, asked.max_steps, ADVICE),
         s.along.watches(lambda _, y: y[:-1], folder),
         s.along.breaks(asked.span),
         share_of(asked.span, progress),
@@ -79,7 +79,7 @@ def _moved(
     return motion
 
 
-def _judged(s: Constrained, asked: ClosedRequest, motion: Motion) -> Trajectory:
+def _judged(s: Constrained, asked: ClosedRequest, motion: IntegratedMotion) -> Trajectory:
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _along(_judged_quantities, s, t, x) | {"work": x[:, -1]}

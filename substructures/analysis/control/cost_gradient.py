@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from substructures.analysis.control.problem import Problem, initial_state, per_node, read_problem
+from substructures.analysis.control.problem import ControlProblem, initial_state, per_node, read_problem
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
@@ -26,7 +26,7 @@ ROUGH = (
 )
 
 
-class GradientRequest(Problem):
+class GradientRequest(ControlProblem):
     """A problem with controls."""
 
     values: dict[str, Any] = Field({}, description="by control: one number, or one for each node; default: zero")

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from substructures.analysis.control.problem import Problem, initial_state, per_node
+from substructures.analysis.control.problem import ControlProblem, initial_state, per_node
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.array import Array
 from substructures.documents import DocumentPart, escape
@@ -28,17 +28,17 @@ BEYOND = 1e30
 SEGMENTS = 10
 
 
-class End(DocumentPart):
+class EndDemands(DocumentPart):
     """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
 
     q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")
     qd: list[float | None] | dict[str, float | None] = Field({}, description="rad/s, m/s")
 
 
-class OptimalControlRequest(Problem):
+class OptimalControlRequest(ControlProblem):
     """A problem with demands, bounds and a guess."""
 
-    end: End = End()
+    end: EndDemands = EndDemands()
     bounds: dict[str, tuple[float | None, float | None]] = Field({}, description="least and largest value by control")
     guess: dict[str, Any] = Field({}, description="controls to begin with: one number, or one for each node")
     segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")

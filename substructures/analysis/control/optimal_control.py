@@ -36,7 +36,7 @@ from substructures.array import Array
 from substructures.tree.model import Model
 
 #: called with the number of an iteration, the cost and the violation
-Progress = Callable[[int, float, float], None]
+IterationReport = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
 STATIONARY = 1e-3
 
@@ -71,7 +71,7 @@ class Optimum:
     iterations: int
 
 
-def optimal_control(model: Model, request: Mapping[str, Any], progress: Progress | None = None) -> Optimum:
+def optimal_control(model: Model, request: Mapping[str, Any], progress: IterationReport | None = None) -> Optimum:
     """Solve a problem of optimal control; ``request``: the fields of OptimalControlRequest.
 
     ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the

@@ -42,7 +42,7 @@ class Cost(DocumentPart):
     terminal: str = Field("0", description="phi(q, q', t, parameters)")
 
 
-class Problem(DocumentPart):
+class ControlProblem(DocumentPart):
     """The parts of a request that say what is controlled, and how the equations of motion are discretised.
 
     A control is constant in each of the ``intervals`` (``hold``: constant) or linear between its ends (linear);
@@ -67,7 +67,7 @@ class Problem(DocumentPart):
         return self.intervals + (self.hold == "linear")
 
 
-P = TypeVar("P", bound=Problem)
+P = TypeVar("P", bound=ControlProblem)
 
 
 def read_problem(kind: type[P], model: Model, data: Mapping[str, Any]) -> P:
@@ -105,13 +105,13 @@ def _unknown(field: str, given: Mapping[str, Any], known: Iterable[str]) -> list
     ]
 
 
-def initial_state(model: Model, problem: Problem) -> Array:
+def initial_state(model: Model, problem: ControlProblem) -> Array:
     """(q, q') at the start, (2 n,). Raises InvalidDocument."""
     states = read_states(model, {"q": problem.q, "qd": problem.qd}, 1)
     return np.concatenate([states.q[0], states.qd[0]])
 
 
-def per_node(problem: Problem, given: Mapping[str, Any], field: str) -> Array:
+def per_node(problem: ControlProblem, given: Mapping[str, Any], field: str) -> Array:
     """Values of the controls from lists (or one number each) by name, (nodes, controls). Raises InvalidDocument."""
     values = np.zeros((problem.nodes, len(problem.controls)))
     faults = _unknown(field, given, problem.controls)

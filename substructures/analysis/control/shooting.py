@@ -27,7 +27,7 @@ from substructures.analysis.control.adjoint import (
     AdjointEquations,
     adjoint_equations,
 )
-from substructures.analysis.control.problem import Problem
+from substructures.analysis.control.problem import ControlProblem
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.array import Array
 from substructures.compile import compile_program
@@ -81,7 +81,7 @@ class Shooting:
     Raises InvalidDocument (see adjoint_equations) and MissingValue for a parameter without a value.
     """
 
-    def __init__(self, model: Model, problem: Problem, varied: Sequence[str] = (), segments: int = 1) -> None:
+    def __init__(self, model: Model, problem: ControlProblem, varied: Sequence[str] = (), segments: int = 1) -> None:
         self.model, self.problem, self.segments = model, problem, segments
         self.equations = adjoint_equations(model, problem.controls, problem.cost, varied)
         self.values = _constants(model, problem, self.equations)
@@ -226,7 +226,7 @@ class Shooting:
         return {name: x.reshape(W, S, *x.shape[1:]) for name, x in found.items()}
 
 
-def _constants(model: Model, problem: Problem, equations: AdjointEquations) -> dict[str, Any]:
+def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
     request = {"q": [0.0] * model.dof, "parameters": problem.parameters}
     known = symbol_values(model, request, read_states(model, request, None), ())

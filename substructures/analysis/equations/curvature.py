@@ -29,7 +29,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Output, Program, array, program
 from substructures.expr.replay import replay
 from substructures.part.part import MAX_NODES
-from substructures.quantities.evaluation import Engine, interpreted
+from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model, require_open
 
@@ -64,7 +64,7 @@ def curvature_values(
     model: Model,
     request: Mapping[str, Any],
     limit: int | None = None,
-    engine: Engine = interpreted,
+    engine: Evaluator = interpreted,
     formulas: Program | None = None,
 ) -> dict[str, Any]:
     """All five outputs as numbers: ``request`` has ``q`` (n,) or (N, n), or by coordinate name, and ``parameters``.

@@ -14,10 +14,10 @@ from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import reachable
 from substructures.tree.model import Model
 
-Rule = Literal["constant", "falling", "balance"]
+EnergyRule = Literal["constant", "falling", "balance"]
 
 
-def energy_rule(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = ()) -> Rule | None:
+def energy_rule(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = ()) -> EnergyRule | None:
     """The rule of the energy of a model, None where a varying input is part of V.
 
     ``inputs``: inputs that may have any value, all others are 0; ``zero``: parameters that are 0. Closures do no work.
@@ -26,14 +26,14 @@ def energy_rule(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = 
 
 
 @lru_cache(maxsize=32)
-def _energy_rule(known: Known, given: frozenset[str], zero: frozenset[str]) -> Rule | None:
+def _energy_rule(known: Known, given: frozenset[str], zero: frozenset[str]) -> EnergyRule | None:
     unused = {s.name for s in known.source.program.symbols if s.kind == "input" and s.name not in given}
     f = ModelFormulas(known.source, unused | zero)
     found = judged_energy(f, Vanishing(f.graph), given)
     return found[0] if found else None
 
 
-def judged_energy(f: ModelFormulas, vanishes: Vanishing, given: frozenset[str]) -> tuple[Rule, str] | None:
+def judged_energy(f: ModelFormulas, vanishes: Vanishing, given: frozenset[str]) -> tuple[EnergyRule, str] | None:
     """The rule of the energy and the reason; None where an input that varies is part of V."""
     if depends_on([f.scalar("potential_energy")], given):
         return None

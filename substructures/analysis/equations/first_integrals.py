@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.equations.energy import Rule, closures_of, depends_on, judged_energy
+from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
 from substructures.analysis.equations.formulas import Entries, ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.errors import Fault, InvalidDocument
@@ -26,7 +26,7 @@ from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import transfer
 from substructures.tree.model import Model
 
-Kind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
+IntegralKind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
 AXES = "xyz"
 UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
 
@@ -39,8 +39,8 @@ class Integral:
     """
 
     name: str
-    kind: Kind
-    rule: Rule
+    kind: IntegralKind
+    rule: EnergyRule
     unit: str
     reason: str
 
@@ -136,7 +136,7 @@ class _Search:
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self.f.rate([*linear, *angular])
         pull = [self._constant(x) or self.zero for x in rates[:3]]
-        kinds: list[Kind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
+        kinds: list[IntegralKind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
         for kind, axis, value, rate in zip(kinds, AXES + AXES, [*linear, *angular], rates, strict=True):
             if self.vanishes(rate):
                 self._momentum_found(kind, axis, value)
@@ -152,7 +152,7 @@ class _Search:
             result[i] = result[i] + x * self.f.rates[a]
         return result
 
-    def _momentum_found(self, kind: Kind, label: str, value: Expr) -> None:
+    def _momentum_found(self, kind: IntegralKind, label: str, value: Expr) -> None:
         if self.vanishes(value):
             return
         word = "force along" if kind == "linear_momentum" else "moment about"
@@ -196,7 +196,10 @@ class _Search:
     def _along_axes(self, linear: Sequence[Expr], angular: Sequence[Expr]) -> None:
         """Along and about the axes of joints that keep their direction, through the origin."""
         for name, axis in self._axes():
-            momenta: list[tuple[Kind, Sequence[Expr]]] = [("linear_momentum", linear), ("angular_momentum", angular)]
+            momenta: list[tuple[IntegralKind, Sequence[Expr]]] = [
+                ("linear_momentum", linear),
+                ("angular_momentum", angular),
+            ]
             for kind, some in momenta:
                 value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))
                 if self.vanishes(self.f.rate([value])[0]):

@@ -14,7 +14,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
 
-Rows = list[list[Expr]]
+MatrixRows = list[list[Expr]]
 
 
 def _numbers(f: Formulation, rows: Sequence[Sequence[Expr]], near: Mapping[str, float] | None = None) -> Any:
@@ -47,7 +47,7 @@ def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows,
 
 def quasi_velocity_rows(
     f: Formulation, spec: VelocityConstraints, rows: VelocityRows, near: Mapping[str, float] | None
-) -> tuple[list[str], Rows]:
+) -> tuple[list[str], MatrixRows]:
     """Names of the quasi-velocities and their rows; declares their symbols and those of their rates."""
     p, coordinates = f.n - len(rows.rows), f.model.coordinates
     if spec.velocities is not None:
@@ -76,7 +76,7 @@ def quasi_velocity_rows(
     return names, own
 
 
-def _chosen(f: Formulation, rows: Rows, near: Mapping[str, float] | None) -> list[str]:
+def _chosen(f: Formulation, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:
     """Independent coordinates: the dependent ones are taken where the constraints have the simplest coefficients,
     if these are well conditioned.
     """

@@ -36,7 +36,7 @@ from typing import Any
 
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.formulation import Elements, Formulation
-from substructures.analysis.equations.quasi_choice import Rows, independent_rows, quasi_velocity_rows
+from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
 from substructures.analysis.equations.velocity_constraints import VelocityConstraints, velocity_rows
 from substructures.errors import InvalidDocument
 from substructures.expr.differentiate import gradient
@@ -99,7 +99,7 @@ def velocity_equations(
 class _Equations:
     """The outputs, from Y and its inverse."""
 
-    def __init__(self, f: Formulation, names: Sequence[str], Y: Rows, inverted: Rows) -> None:
+    def __init__(self, f: Formulation, names: Sequence[str], Y: MatrixRows, inverted: MatrixRows) -> None:
         self.f, self.n, self.p, self.Y = f, f.n, len(names), Y
         self.T = [row[: self.p] for row in inverted]
         self.S = [row[self.p :] for row in inverted]
@@ -204,12 +204,12 @@ class _Equations:
     def _vector(self, name: str) -> list[Expr]:
         return [self.f.graph.zero + self.model[name].get((a,), 0) for a in range(self.n)]
 
-    def _times(self, matrix: Rows, x: Sequence[Expr]) -> list[Expr]:
+    def _times(self, matrix: MatrixRows, x: Sequence[Expr]) -> list[Expr]:
         return [self._sum(m * y for m, y in zip(row, x, strict=True)) for row in matrix]
 
     def _product(self, g: Elements, x: Sequence[Expr]) -> list[Expr]:
         return [self._sum(g.get((a, b), 0) * x[b] for b in range(self.n)) for a in range(self.n)]
 
-    def _column(self, matrix: Rows, i: int, x: Sequence[Expr]) -> Expr:
+    def _column(self, matrix: MatrixRows, i: int, x: Sequence[Expr]) -> Expr:
         """M^T x at i."""
         return self._sum(row[i] * y for row, y in zip(matrix, x, strict=True))

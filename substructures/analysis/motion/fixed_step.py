@@ -9,11 +9,11 @@ from time import perf_counter
 
 import numpy as np
 
-from substructures.analysis.motion.integration import Function, Motion, Progress
+from substructures.analysis.motion.integration import Function, IntegratedMotion, TimeReport
 from substructures.analysis.motion.request_fields import FixedStep
 from substructures.array import Array
 
-Step = Callable[[Function, float, Array, float], Array]
+StepMethod = Callable[[Function, float, Array, float], Array]
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ def rk4(f: Function, t: float, x: Array, h: float) -> Array:
     return x + h / 6 * (k1 + 2 * (k2 + k3) + k4)
 
 
-def semi_implicit_euler(n: int) -> Step:
+def semi_implicit_euler(n: int) -> StepMethod:
     """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
 
     def step(f: Function, t: float, x: Array, h: float) -> Array:
@@ -52,14 +52,14 @@ def march(
     outputs: Array,
     fixed: FixedStep,
     max_steps: int,
-    progress: Progress | None = None,
-) -> tuple[Motion, Pace]:
+    progress: TimeReport | None = None,
+) -> tuple[IntegratedMotion, Pace]:
     """Steps of size ``fixed.step`` over the span (the last one may be shorter).
 
     Outputs within a step are the ends of shorter steps from its start.
     """
     step = rk4 if fixed.method == "rk4" else semi_implicit_euler(n)
-    motion, wanted = Motion(step_t=[span[0]], step_x=[x]), outputs.tolist()
+    motion, wanted = IntegratedMotion(step_t=[span[0]], step_x=[x]), outputs.tolist()
     count = max(1, math.ceil((span[1] - span[0]) / fixed.step * (1 - 1e-12)))
     longest, t, k, begin = 0.0, span[0], 0, perf_counter()
     with np.errstate(all="ignore"):
@@ -79,7 +79,9 @@ def march(
     return motion, pace
 
 
-def _accepted(motion: Motion, t: float, x: Array, max_steps: int, count: int, progress: Progress | None) -> None:
+def _accepted(
+    motion: IntegratedMotion, t: float, x: Array, max_steps: int, count: int, progress: TimeReport | None
+) -> None:
     if not np.isfinite(x).all():
         advice = "take a smaller 'fixed_step', or leave it out for an integrator that chooses its steps"
         motion.end("failed", f"the motion is not finite at t = {t:.9g} s: {advice}")

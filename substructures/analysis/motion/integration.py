@@ -18,7 +18,7 @@ from substructures.array import Array
 
 Function = Callable[[float, Array], Array]
 #: told the time reached; False stops
-Progress = Callable[[float], bool | None]
+TimeReport = Callable[[float], bool | None]
 
 #: accepted steps that are kept for the judges
 KEPT = 20_000
@@ -28,7 +28,7 @@ STIFF = "try the method 'Radau' for stiff equations"
 
 
 @dataclass(frozen=True)
-class Settings:
+class IntegratorSettings:
     """``advice``: what to change when the integrator gives up, beside state, span and tolerances."""
 
     stepper: Stepper
@@ -47,7 +47,7 @@ class Watch:
 
 
 @dataclass
-class Motion:
+class IntegratedMotion:
     """Results at the wanted times, accepted steps for the judges, and (watch, t, x) of the zeros found."""
 
     t: list[float] = field(default_factory=list)
@@ -90,12 +90,12 @@ def integrate(
     x: Array,
     span: tuple[float, float],
     outputs: Array,
-    settings: Settings,
+    settings: IntegratorSettings,
     watches: Sequence[Watch] = (),
     breaks: Sequence[float] = (),
-    progress: Progress | None = None,
+    progress: TimeReport | None = None,
     enter: Callable[[float, float], None] | None = None,
-) -> Motion:
+) -> IntegratedMotion:
     """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``.
 
     A motion that ends early has the last state that was reached, too.
@@ -130,16 +130,16 @@ class _Run:
         f: Function,
         span: tuple[float, float],
         outputs: Array,
-        settings: Settings,
+        settings: IntegratorSettings,
         watches: Sequence[Watch],
-        progress: Progress | None,
+        progress: TimeReport | None,
     ) -> None:
         self.f, self.settings, self.watches, self.progress = f, settings, watches, progress
         self.outputs = outputs.tolist()
         self.next = 0
         self.levels: list[float] = []
         self.span, self.tiny = span[1] - span[0], 0
-        self.motion = Motion()
+        self.motion = IntegratedMotion()
         self.last: tuple[float, Array] | None = None
 
     def keep_last(self) -> None:

@@ -19,7 +19,7 @@ SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
 @dataclass(frozen=True)
-class States:
+class MotionStates:
     """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,)."""
 
     t: Array
@@ -35,7 +35,7 @@ class States:
         return values | {f"{name}'": self.qd[:, a] for a, name in enumerate(model.coordinates)}
 
 
-def integral_series(model: Model, integrals: FirstIntegrals, states: States) -> dict[str, Array]:
+def integral_series(model: Model, integrals: FirstIntegrals, states: MotionStates) -> dict[str, Array]:
     """All integrals, and the power where there is any, (K,)."""
     source = integrals.program
     found = interpret_in_blocks(source, states.symbols(model), list(source.outputs), len(states.t))
@@ -46,7 +46,7 @@ def integral_series(model: Model, integrals: FirstIntegrals, states: States) -> 
 
 
 def judge(
-    model: Model, integrals: FirstIntegrals, states: States, series: Mapping[str, Array], limit: float
+    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array], limit: float
 ) -> tuple[Check, ...]:
     """Checks of all integrals; ``series``: see integral_series; ``limit``: of the violation over the scale."""
     scales = _Scales(model, states)
@@ -96,7 +96,7 @@ def spread(values: Array) -> Array:
 class _Scales:
     """Sizes that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
 
-    def __init__(self, model: Model, states: States) -> None:
+    def __init__(self, model: Model, states: MotionStates) -> None:
         found = interpret_in_blocks(model.program, states.symbols(model), list(SCALES), len(states.t))
         self.model, speed = model, np.abs(states.qd)
         self.momenta = np.einsum("kab,kb->ka", np.abs(found["metric"]), speed).max(axis=0, initial=0)

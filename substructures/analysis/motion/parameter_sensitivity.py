@@ -19,8 +19,8 @@ from substructures.analysis.equations.formulas import ModelFormulas, require_tre
 from substructures.analysis.equations.kernels import Known, program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.inputs import Along, VaryingInputs, state_names
-from substructures.analysis.motion.integration import Settings, integrate
-from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.integration import IntegratorSettings, integrate
+from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.requests import TAYLOR, SimulationRequest
 from substructures.analysis.motion.simulation import read_tree
 from substructures.analysis.motion.steppers import scipy_stepper
@@ -101,7 +101,7 @@ def sensitivities(
     request: Mapping[str, Any],
     parameters: Sequence[str],
     of_start: bool = False,
-    progress: Report | None = None,
+    progress: ProgressReport | None = None,
     folder: Path | None = None,
 ) -> Trajectory:
     """A trajectory and its derivatives by parameters: series ``d.<parameter>`` (K, 2n), of (q, q').
@@ -121,7 +121,7 @@ def sensitivities(
         f.start(),
         asked.span,
         asked.outputs(),
-        Settings(stepper, asked.max_steps),
+        IntegratorSettings(stepper, asked.max_steps),
         breaks=along.breaks(asked.span),
         progress=share_of(asked.span, progress),
         enter=f.inputs.enter,

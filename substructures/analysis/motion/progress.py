@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from substructures.analysis.motion.integration import Progress
+from substructures.analysis.motion.integration import TimeReport
 
 #: told (time reached - start) / span; False stops
-Report = Callable[[float], bool | None]
+ProgressReport = Callable[[float], bool | None]
 
 
-def share_of(span: tuple[float, float], report: Report | None) -> Progress | None:
+def share_of(span: tuple[float, float], report: ProgressReport | None) -> TimeReport | None:
     """A progress that is told times, for a report that is told shares of the span."""
     if report is None:
         return None

@@ -11,9 +11,9 @@ from scipy.linalg import lapack
 
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, velocity_equations
 from substructures.analysis.motion.inputs import Along, VaryingInputs, read_along
-from substructures.analysis.motion.integration import Motion, Settings, integrate
+from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, spread
-from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.requests import RollingRequest
 from substructures.analysis.motion.steppers import scipy_stepper
 from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory, crossings
@@ -70,7 +70,7 @@ class _Rolling:
 
 
 def simulate_rolling(
-    model: Model, request: Mapping[str, Any], progress: Report | None = None, folder: Path | None = None
+    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
@@ -88,20 +88,22 @@ def simulate_rolling(
     y = np.concatenate((*_start(rolling, asked), (0.0,)))
     if not np.isfinite(rolling.rates(asked.span[0], y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
-        motion = Motion([asked.span[0]], [y], [asked.span[0]], [y], status="failed", message=advice)
+        motion = IntegratedMotion([asked.span[0]], [y], [asked.span[0]], [y], status="failed", message=advice)
     else:
         motion = _moved(rolling, asked, y, progress, folder)
     return _judged(rolling, asked, motion)
 
 
-def _moved(rolling: _Rolling, asked: RollingRequest, y: Array, progress: Report | None, folder: Path | None) -> Motion:
+def _moved(
+    rolling: _Rolling, asked: RollingRequest, y: Array, progress: ProgressReport | None, folder: Path | None
+) -> IntegratedMotion:
     stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
     motion = integrate(
         rolling.rates,
         y,
         asked.span,
         asked.outputs(),
-        Settings(stepper, asked.max_steps, ADVICE),
+        IntegratorSettings(stepper, asked.max_steps, ADVICE),
         rolling.along.watches(rolling.state, folder),
         rolling.along.breaks(asked.span),
         share_of(asked.span, progress),
@@ -148,7 +150,7 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
     return v
 
 
-def _judged(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> Trajectory:
+def _judged(rolling: _Rolling, asked: RollingRequest, motion: IntegratedMotion) -> Trajectory:
     equations, n = rolling.equations, rolling.n
     t, y, results = motion.judged()
     slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
@@ -177,7 +179,7 @@ def _judged(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> Traject
     )
 
 
-def _events(rolling: _Rolling, asked: RollingRequest, motion: Motion) -> tuple[Crossing, ...]:
+def _events(rolling: _Rolling, asked: RollingRequest, motion: IntegratedMotion) -> tuple[Crossing, ...]:
     found = [(k, t, rolling.state(t, y)) for k, t, y in motion.found]
     return crossings(asked.events, found, rolling.n)
 

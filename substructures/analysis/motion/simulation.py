@@ -13,9 +13,9 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.fixed_step import march
 from substructures.analysis.motion.inputs import Along, read_along
-from substructures.analysis.motion.integration import Motion, Settings, integrate
-from substructures.analysis.motion.judges import States, integral_series, judge
-from substructures.analysis.motion.progress import Report, share_of
+from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.judges import MotionStates, integral_series, judge
+from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.requests import TAYLOR, SimulationRequest
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.steppers import Stepper, scipy_stepper
@@ -33,7 +33,7 @@ SINGULAR = (
 
 
 def simulate_tree(
-    model: Model, request: Mapping[str, Any], progress: Report | None = None, folder: Path | None = None
+    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """The motion of a tree from a start over a span of time, with the drift of all its first integrals.
 
@@ -79,9 +79,9 @@ def _moved(
     request: SimulationRequest,
     f: RightHandSide,
     x: Array,
-    progress: Report | None,
+    progress: ProgressReport | None,
     folder: Path | None,
-) -> tuple[Motion, dict[str, float]]:
+) -> tuple[IntegratedMotion, dict[str, float]]:
     begin = perf_counter()
     told = share_of(request.span, progress)
     figures: dict[str, float] = {}
@@ -90,7 +90,7 @@ def _moved(
         motion, pace = march(f, f.n, x, request.span, outputs, request.fixed_step, request.max_steps, told)
         figures |= {"real_time_factor": pace.factor, "longest_step": pace.longest}
     else:
-        settings = Settings(_stepper(along, request, f), request.max_steps)
+        settings = IntegratorSettings(_stepper(along, request, f), request.max_steps)
         watches = along.watches(lambda _, y: y[: 2 * f.n], folder)
         breaks = along.breaks(request.span)
         motion = integrate(f, x, request.span, outputs, settings, watches, breaks, told, f.enter)
@@ -105,7 +105,7 @@ def _stepper(along: Along, request: SimulationRequest, f: RightHandSide) -> Step
 
 
 def _judged(
-    along: Along, request: SimulationRequest, f: RightHandSide, motion: Motion, figures: Mapping[str, float]
+    along: Along, request: SimulationRequest, f: RightHandSide, motion: IntegratedMotion, figures: Mapping[str, float]
 ) -> Trajectory:
     model = along.model
     given = [n for n in request.inputs if n not in along.zero]
@@ -133,11 +133,11 @@ def _judged(
     )
 
 
-def _states(along: Along, f: RightHandSide, t: Array, x: Array) -> States:
+def _states(along: Along, f: RightHandSide, t: Array, x: Array) -> MotionStates:
     n = f.n
     values: dict[str, float | Array] = {**along.values, **along.inputs_at(t, x[:, : 2 * n])}
     work = x[:, 2 * n] if f.has_power else np.zeros(len(t))
-    return States(t, x[:, :n], x[:, n : 2 * n], values, work)
+    return MotionStates(t, x[:, :n], x[:, n : 2 * n], values, work)
 
 
 def _failed(along: Along, request: SimulationRequest, message: str) -> Trajectory:

@@ -12,7 +12,7 @@ import numpy as np
 
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.stability.equilibria_closed import ClosedSearch
-from substructures.analysis.stability.equilibrium_search import EquilibriaRequest, Search
+from substructures.analysis.stability.equilibrium_search import EquilibriaRequest, RestSearch
 from substructures.analysis.stability.linearisation import Linearisation
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.linearise_closed import ClosedLinearisation
@@ -63,7 +63,7 @@ def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equili
     """
     require_moving(model)
     read = read_model(EquilibriaRequest, request or {})
-    search = ClosedSearch(model, read) if model.closures else Search(model, read)
+    search = ClosedSearch(model, read) if model.closures else RestSearch(model, read)
     starts = search.starts()
     held = search.held(starts)
     moving = [a for a in range(model.dof) if a not in held]

@@ -15,7 +15,7 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import multipliers_of
 from substructures.analysis.motion.requests import LoopRequest
-from substructures.analysis.stability.equilibrium_search import RESIDUAL, EquilibriaRequest, Search
+from substructures.analysis.stability.equilibrium_search import RESIDUAL, EquilibriaRequest, RestSearch
 from substructures.array import Array
 from substructures.tree.model import Model
 
@@ -24,7 +24,7 @@ STEPS = 200
 TOLERANCES = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
 
 
-class ClosedSearch(Search):
+class ClosedSearch(RestSearch):
     """Forces, closures and their Jacobians at rest, compiled."""
 
     def __init__(self, model: Model, read: EquilibriaRequest) -> None:

@@ -35,7 +35,7 @@ class EquilibriaRequest(DocumentPart):
     inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
 
 
-class Search:
+class RestSearch:
     """Forces of a tree and their Jacobian at rest, compiled."""
 
     def __init__(self, model: Model, read: EquilibriaRequest) -> None:

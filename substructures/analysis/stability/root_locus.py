@@ -7,18 +7,15 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
 from substructures.analysis.motion.request_fields import Real
 from substructures.analysis.stability.equilibria import equilibria
-from substructures.array import Array
+from substructures.array import Array, ComplexArray
 from substructures.documents import DocumentPart, read_model
 from substructures.errors import InvalidDocument
 from substructures.tree.model import Model
-
-ComplexArray = NDArray[np.complex128]
 
 
 class RootLocusRequest(DocumentPart):

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eig, eigh
 
-from substructures.array import Array
+from substructures.array import Array, ComplexArray
 
-ComplexArray = NDArray[np.complex128]
 Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
 
 #: real parts of this size, relative to the largest eigenvalue, cannot be told from zero (double eigenvalues)
