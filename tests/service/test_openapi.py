@@ -9,7 +9,7 @@ from typing import Any
 from service.app import bare_app
 from service.http import openapi
 
-COMMITTED = Path(openapi.__file__).with_name("openapi.json")
+COMMITTED = Path(openapi.__file__).parents[1] / "openapi.json"
 
 
 def operations() -> list[tuple[str, dict[str, Any]]]:

@@ -28,7 +28,7 @@ BEYOND = 1e30
 SEGMENTS = 10
 
 
-class EndDemands(DocumentPart):
+class End(DocumentPart):
     """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
 
     q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")
@@ -38,7 +38,7 @@ class EndDemands(DocumentPart):
 class OptimalControlRequest(ControlProblem):
     """A problem with demands, bounds and a guess."""
 
-    end: EndDemands = EndDemands()
+    end: End = End()
     bounds: dict[str, tuple[float | None, float | None]] = Field({}, description="least and largest value by control")
     guess: dict[str, Any] = Field({}, description="controls to begin with: one number, or one for each node")
     segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")

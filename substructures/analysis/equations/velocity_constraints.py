@@ -37,7 +37,7 @@ from substructures.part.frames import axis_rotation
 FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
 
-class LinearConstraint(DocumentPart):
+class Linear(DocumentPart):
     """An expression that is zero, linear in the velocities."""
 
     type: Literal["linear"]
@@ -71,7 +71,7 @@ class Closed(DocumentPart):
     name: Name
 
 
-Constraint = Annotated[LinearConstraint | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
+Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
 
 
 class VelocityConstraints(DocumentPart):
@@ -116,7 +116,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
     kinematics = f.kinematics() if framed else {}
     for i, constraint in enumerate(constraints):
         pointer = f"/constraints/{i}"
-        if isinstance(constraint, LinearConstraint):
+        if isinstance(constraint, Linear):
             result.add(constraint.name, linear_row(f, constraint.expression, f"{pointer}/expression"))
         elif isinstance(constraint, Closed):
             _close(f, constraint.name, f"{pointer}/name", result)
