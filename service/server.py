@@ -92,7 +92,7 @@ class _Server(uvicorn.Server):
         self._store = store
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        self._store.stopping.set()
+        self._store.runtime.stopping.set()
         await super().shutdown(sockets)
 
 

@@ -104,7 +104,7 @@ class Once:
 
     async def within_time(self, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        future = self.store.threads.submit(copy_context().run, endpoint)
+        future = self.store.runtime.threads.submit(copy_context().run, endpoint)
         answer = asyncio.wrap_future(future)
         await asyncio.wait({answer}, timeout=max(0, self._due - perf_counter()))
         if answer.done():
@@ -177,7 +177,7 @@ class Once:
             if keeps:
                 self._keep(connection, answer, answer.body)
         if answer.status == 202:  # a job does not wait until somebody looks for one
-            self.store.wake.set()
+            self.store.runtime.wake.set()
         return answer
 
     def _prefers(self, preference: str) -> re.Match[str] | None:

@@ -40,7 +40,7 @@ def needs(scope: str) -> Any:
     async def authorise(request: Request) -> None:
         store = store_of(request)
         given = request.headers.get("authorization")
-        principal = store.authorisations.get(given, scope)
+        principal = store.runtime.authorisations.get(given, scope)
         if principal is None:
             principal = await run_in_threadpool(_authorised, store, given, scope)
         request.state.principal = principal
@@ -51,7 +51,7 @@ def needs(scope: str) -> Any:
 def _authorised(store: Store, given: str | None, scope: str) -> str:
     with store.database.read() as connection:
         principal = keys.authorise(connection, given, scope)
-    store.authorisations.put(given, scope, principal)
+    store.runtime.authorisations.put(given, scope, principal)
     return principal
 
 

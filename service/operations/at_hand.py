@@ -44,7 +44,7 @@ def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
     if body.tell() > BODY:
         return None
     request = read_json(body.reader().read())
-    found: AtHand | None = store.at_hand.get(_key(ref, request))
+    found: AtHand | None = store.caches.evaluations.get(_key(ref, request))
     if found is None or longest(request) > 1 or not found.is_ready(store):
         return None
     return found.evaluation.answer([request], JSON)
@@ -60,7 +60,7 @@ def remember(store: Store, ref: str, request: Any, evaluation: Evaluation) -> No
     at_hand = Sources(sources.model, lambda _, source: programs[source][0])  # nothing is derived anew
     found = AtHand(replace(evaluation, sources=at_hand), programs)
     if found.is_ready(store):
-        store.at_hand.put(_key(ref, request), found)
+        store.caches.evaluations.put(_key(ref, request), found)
 
 
 def _key(ref: str, request: Any) -> tuple[str, ...]:

@@ -63,7 +63,7 @@ def draw_tree(store: Store, tree: Tree, pose: PoseValues | None) -> str:
 
 
 def _kept(store: Store, digest: str, pose: PoseValues | None) -> str | None:
-    return store.pictures.get(digest) if pose is None else None
+    return store.caches.pictures.get(digest) if pose is None else None
 
 
 def _draw(store: Store, digest: str, scene: Scene, pose: PoseValues | None) -> str:
@@ -71,7 +71,7 @@ def _draw(store: Store, digest: str, scene: Scene, pose: PoseValues | None) -> s
     with np.errstate(all="ignore"):  # defaults of any size may be stored; what is not finite is not drawn
         svg = picture(scene.spec, scene.parts, scene.model, None if pose is None else list(pose))
     if pose is None:
-        store.pictures.put(digest, svg)
+        store.caches.pictures.put(digest, svg)
     return svg
 
 

@@ -21,12 +21,12 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
 
 def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
     """What computes them: a tree whose parts have kernels answers before it has one of its own."""
-    found = store.numeric_trees.get(tree.digest)
+    found = store.caches.numeric_trees.get(tree.digest)
     if found is None:
         spec, parts = tree_parts(store, tree)
         store.kernels.prepare(parts.values())
         found = NumericTree(spec, parts, store.kernels.of_part)
-        store.numeric_trees.put(tree.digest, found)
+        store.caches.numeric_trees.put(tree.digest, found)
     parts_used = [m.part for m in found.assembly.mounted]
     return store.kernels.of_tree(model.program, parts_used, lambda: found)
 
@@ -39,8 +39,8 @@ def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
 
 
 def _regressor(store: Store, tree: Tree) -> RegressorModel:
-    found = store.regressors.get(tree.digest)
+    found = store.caches.regressors.get(tree.digest)
     if found is None:
         found = regressor(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.regressors.put(tree.digest, found)
+        store.caches.regressors.put(tree.digest, found)
     return found

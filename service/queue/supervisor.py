@@ -64,7 +64,7 @@ class Supervisor:
     def close(self) -> None:
         """Stop all attempts, queue their items again and end the thread."""
         self._stop.set()
-        self._store.wake.set()
+        self._store.runtime.wake.set()
         self._thread.join(PATIENCE)
         if self._thread.is_alive():  # it ends with the process; its items are taken over when their lease ends
             _log.error("the database has not answered for %g s; the supervisor is left behind", PATIENCE)
@@ -85,18 +85,18 @@ class Supervisor:
     def _await_work(self) -> None:
         """No worker is started before there is something to do."""
         while not self._stop.is_set():
-            self._store.wake.clear()
+            self._store.runtime.wake.clear()
             try:
                 with self._store.database.read() as connection:
                     is_needed = jobs.waiting(connection) > 0
                 if is_needed:
-                    self._store.wake.set()
+                    self._store.runtime.wake.set()
                     return
                 if self._is_due("sweep", SWEEP):
                     sweep(self._store, self._stop)
             except Exception as error:
                 self._complain("the queue cannot be read; it is tried again", error)
-            self._store.wake.wait(POLL)
+            self._store.runtime.wake.wait(POLL)
 
     def _complain(self, what: str, error: Exception) -> None:
         """Log what went wrong, and wait where that may help."""
@@ -113,7 +113,7 @@ class Supervisor:
         free = engine.free
         is_idle = not (self._running or self._ended or self._backlog.attempts)
         if is_idle and free:
-            self._store.wake.wait(POLL)
+            self._store.runtime.wake.wait(POLL)
         for report in engine.reports(NEWS if self._running or not free else 0.0):
             self._hear(report)
         self._check_times(engine)
@@ -129,8 +129,8 @@ class Supervisor:
 
     def _is_round_due(self, free: int, before: int) -> bool:
         """At once when somebody waits; otherwise ends are gathered for a moment."""
-        is_woken = self._store.wake.is_set()
-        self._store.wake.clear()
+        is_woken = self._store.runtime.wake.is_set()
+        self._store.runtime.wake.clear()
         if self._is_due("poll", POLL) or is_woken or (free > 0 and (self._ended or free > before)):
             return True
         return bool(self._ended) and monotonic() - self._played > (SOON if self._is_last_of_job() else GATHER)

@@ -49,7 +49,7 @@ def events(
 
 async def _events(store: Store, job: str, seq: int) -> AsyncIterator[bytes]:
     said = monotonic()
-    while not store.stopping.is_set():
+    while not store.runtime.stopping.is_set():
         found, is_final = await run_in_threadpool(_read, store, job, seq)
         for event in found:
             yield event_text(event)

@@ -84,7 +84,7 @@ def cancel(job: str, body: OptionalJsonBody, store: StoreOf, once: OnceOf) -> Re
         return answer(connection, jobs.cancel(connection, job))
 
     response = once.submit(lambda: commit)
-    store.wake.set()
+    store.runtime.wake.set()
     return response
 
 

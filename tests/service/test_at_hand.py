@@ -26,13 +26,13 @@ def warm(filled: TestClient) -> TestClient:
 def threads(store: Store, monkeypatch: pytest.MonkeyPatch) -> list[object]:
     """The works that threads were given."""
     given: list[object] = []
-    submit = store.threads.submit
+    submit = store.runtime.threads.submit
 
     def spied(*arguments: Any) -> Any:
         given.append(arguments)
         return submit(*arguments)
 
-    monkeypatch.setattr(store.threads, "submit", spied)
+    monkeypatch.setattr(store.runtime.threads, "submit", spied)
     return given
 
 

@@ -11,8 +11,9 @@ from fastapi.testclient import TestClient
 from service.app import open_store
 from service.keys import create
 from service.operations import trees
+from service.runtime import THREADS
 from service.settings import Settings
-from service.store import THREADS, Store
+from service.store import Store
 from substructures import InvalidDocument
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
@@ -101,7 +102,7 @@ def test_work_that_is_given_up_acts_once(
 def test_requests_that_no_thread_is_free_for(filled: TestClient, store: Store) -> None:
     set_limit(store, 0.2)
     gate = Event()
-    others = [store.threads.submit(gate.wait, 10) for _ in range(THREADS)]
+    others = [store.runtime.threads.submit(gate.wait, 10) for _ in range(THREADS)]
     assert filled.post("/v1/trees/cell/evaluations", json=EVALUATION).status_code == 202
     assert filled.post("/v1/trees/cell@1/kernels", json={"quantities": ["metric"]}).status_code == 503
     gate.set()

@@ -92,6 +92,6 @@ def test_events_end_with_the_server(filled: TestClient, store: Store) -> None:
     reader.start()
     reader.join(0.3)
     assert reader.is_alive()
-    store.stopping.set()
+    store.runtime.stopping.set()
     reader.join(5)
     assert [event[2]["state"] for event in parsed(texts[0])] == ["queued"]

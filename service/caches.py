@@ -1,0 +1,47 @@
+"""What is kept decoded in memory, by kind. Content never changes, so a cached value is never out of date."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from service.cache import Cache
+from substructures.expr.program import Program
+from substructures.part.part import Part
+from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.regressor import RegressorModel
+from substructures.tree.model import Model
+
+PICTURES = 16 * 2**20  # characters
+BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
+
+
+@dataclass(frozen=True)
+class Caches:
+    """Decoded values: ``parts`` by digest of the definition, ``models`` by that of the tree, ``derived`` programs by
+    model and quantity, ``regressors`` and ``numeric_trees`` by digest of the tree, ``evaluations`` that are at hand by
+    reference and quantities, ``pictures`` in the standard pose by digest, ``blobs`` by digest.
+    """
+
+    parts: Cache[Part]
+    models: Cache[Model]
+    derived: Cache[Program]
+    regressors: Cache[RegressorModel]
+    numeric_trees: Cache[NumericTree]
+    evaluations: Cache[Any]  # of service.operations.at_hand
+    pictures: Cache[str]
+    blobs: Cache[bytes]
+
+    @classmethod
+    def for_nodes(cls, nodes: int) -> Caches:
+        """Caches that together hold programs of about so many operations."""
+        return cls(
+            parts=Cache(nodes // 4, lambda part: len(part.program)),
+            models=Cache(nodes // 4, lambda model: len(model.program)),
+            derived=Cache(nodes // 4, len),
+            regressors=Cache(nodes // 8, lambda found: len(found.program)),
+            numeric_trees=Cache(nodes // 8, NumericTree.weight),
+            evaluations=Cache(nodes // 8, lambda found: found.weight()),
+            pictures=Cache(PICTURES, len),
+            blobs=Cache(BLOBS, len),
+        )
