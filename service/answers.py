@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
-from collections.abc import AsyncIterator, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
-
-from anyio import CancelScope
-from fastapi import Response
-from fastapi.concurrency import run_in_threadpool
-from fastapi.responses import StreamingResponse
 
 from service import __version__
 
 JSON = "application/json"
 FOR_EVER = "max-age=31536000, immutable"
 REVALIDATE = "no-cache"
-AT_ONCE = 2**20  # bytes that are handed to the connection at a time; a smaller body is sent as a whole
+WHOLE = 2**20  # bytes; a smaller body is sent as a whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +23,6 @@ class Answer:
     body: bytes
     headers: Mapping[str, str] = field(default_factory=dict)
 
-    def response(self) -> Response:
-        """The HTTP response."""
-        return Response(self.body, self.status, dict(self.headers))
-
 
 @dataclass(frozen=True, slots=True)
 class Stream:
@@ -42,40 +32,22 @@ class Stream:
     headers: Mapping[str, str]
     status: int = 200
 
-    def response(self) -> Response:
-        """The HTTP response. The next piece is made while one is sent; when making one fails, the body is cut off."""
-        return StreamingResponse(_ahead(self.pieces), self.status, dict(self.headers))
 
-
-async def _ahead(pieces: Iterator[bytes | memoryview]) -> AsyncIterator[bytes | memoryview]:
-    following = asyncio.ensure_future(run_in_threadpool(_some, pieces))
-    try:
-        while some := await following:
-            following = asyncio.ensure_future(run_in_threadpool(_some, pieces))
-            for piece in some:
-                view = memoryview(piece)
-                for start in range(0, len(view), AT_ONCE):
-                    yield view[start : start + AT_ONCE]
-    finally:
-        with CancelScope(shield=True):  # when the client has gone, a thread may still be reading the request
-            await asyncio.gather(following, return_exceptions=True)
-
-
-def _some(pieces: Iterator[bytes | memoryview]) -> list[bytes | memoryview]:
+def some_of(pieces: Iterator[bytes | memoryview]) -> list[bytes | memoryview]:
     """Some pieces that are worth a change of threads, none at the end."""
     some, size = [], 0
     for piece in pieces:
         some.append(piece)
         size += len(piece)
-        if size > AT_ONCE:
+        if size > WHOLE:
             break
     return some
 
 
 def streamed(pieces: Iterator[bytes | memoryview], content_type: str) -> Answer | Stream:
     """An answer as a whole if it is small, so that its length is told, otherwise as a stream."""
-    begun, headers = _some(pieces), {"Content-Type": content_type}
-    if sum(map(len, begun)) > AT_ONCE:
+    begun, headers = some_of(pieces), {"Content-Type": content_type}
+    if sum(map(len, begun)) > WHOLE:
         return Stream(chain(begun, pieces), headers)
     return Answer(200, b"".join(begun), headers)
 

@@ -1,4 +1,4 @@
-"""Keyset pages: opaque tokens that say where the next page begins, and the links to it."""
+"""Keyset pages: opaque tokens that say where the next page begins."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import hashlib
 from typing import Any
 
 import orjson
-from fastapi import Request
 
 from service.refusals import unprocessable
 from service.settings import Limits
@@ -45,16 +44,3 @@ def limited(page_size: int, limits: Limits) -> int:
         detail = f"page_size is at most {limits.page_size}"
         raise unprocessable("page-size", detail, "/query/page_size", limit=limits.page_size)
     return page_size
-
-
-def next_link(request: Request, token: str | None) -> str | None:
-    """The address of the next page."""
-    if token is None:
-        return None
-    url = request.url.include_query_params(page_token=token)
-    return f"{url.path}?{url.query}"
-
-
-def link_header(link: str | None) -> dict[str, str]:
-    """The Link header of a page."""
-    return {} if link is None else {"Link": f'<{link}>; rel="next"'}

@@ -1,49 +1,171 @@
-"""Endpoints that act: the dependency ``once``, and the time that their work may take."""
+"""Endpoints that act: work at most once per idempotency key, within its time, and committed in one transaction.
+
+Work that takes longer than its limit (``sync_seconds``, or less by ``Prefer: wait=N``) becomes a job, as does work that
+is asked for with ``Prefer: respond-async``: the answer is 202. What was begun in time goes on to its end; its result is
+dropped, and nothing is stored twice.
+"""
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Awaitable, Callable
+import re
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from functools import wraps
 from typing import Annotated, Any
 
 from fastapi import Depends, Header, Request, Response
 
-from service.http.once import Once
+from service import keys
+from service.answers import Answer, Stream
+from service.database.connections import Connection
+from service.http.deadline import Deadline, GivenUp
+from service.http.idempotency import IdempotencyClaim, replayed
 from service.http.requests import RawBody, spooled_body, store_of
+from service.http.responses import response_of
+from service.operations.trees import StaleError
+from service.queries.common import is_conflict
+from service.refusals import Refused
 from service.spool import Spool
 from service.store import Store
 
+#: writes what was prepared, in the transaction of the request, and answers
+Commit = Callable[[Connection], Answer]
 IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
+ATTEMPTS = 8
 
 
-async def once(request: Request, raw: RawBody, idempotency_key: IdempotencyKey = None) -> Once:
-    """The Once of a request."""
-    return Once(request, lambda: (raw,), store_of(request), idempotency_key)
+class Act:
+    """The act of one POST request."""
+
+    def __init__(self, request: Request, body: Callable[[], Iterable[bytes]], store: Store, key: str | None) -> None:
+        """``body``: gives the pieces of the request body."""
+        self.store, self._request = store, request
+        self.principal: str = request.state.principal
+        limits = store.settings.limits
+        wait = self._prefers("wait=([0-9]{1,6})")
+        self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
+        self._claimed = IdempotencyClaim(request, body, store.database, limits, key)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the request asks for nothing of all this: neither for an answer that is kept nor for a job."""
+        return not self._claimed.key and "prefer" not in self._request.headers
+
+    def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
+        """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
+
+        ``deferred`` prepares the job that does the same. Raises Refused 409, 422 or, without one, 503 (took too long).
+        """
+        kept = self._claimed.claim()
+        return replayed(kept) if kept is not None else self._in_time(prepare, deferred, keeps=True)
+
+    def submit(self, prepare: Callable[[], Commit]) -> Response:
+        """As :meth:`run`, without a limit of time."""
+        kept = self._claimed.claim()
+        return replayed(kept) if kept is not None else self._finish(prepare, keeps=True)
+
+    def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
+        """Work that stores nothing: the same request under the same key computes the same answer again.
+
+        The endpoint has to be ``timed``; the time limit of a stream is that of its beginning.
+        """
+        known = self._claimed.claim()
+        if known is not None and known.body is not None:  # it became a job
+            return replayed(known)
+        return self._in_time(work, deferred, keeps=known is None)
+
+    async def within_time(self, endpoint: Callable[[], Response]) -> Response:
+        """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
+        return await self._deadline.within(self.store.runtime.threads, endpoint)
+
+    def require(self, scope: str) -> None:
+        """Raise Refused 403 unless whoever asks has this scope too."""
+        with self.store.database.read() as connection:
+            keys.authorise(connection, self._request.headers.get("authorization"), scope)
+
+    def _in_time(
+        self, work: Callable[[], Commit | Answer | Stream], deferred: Callable[[], Commit] | None, keeps: bool
+    ) -> Response:
+        deadline = self._deadline
+
+        def late() -> Commit | Answer | Stream:
+            if deferred is not None:
+                return deferred()
+            detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; nothing was stored"
+            raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
+
+        def watched() -> Commit | Answer | Stream:
+            if deadline.is_over or (deferred is not None and self._prefers("respond-async")):
+                return late()
+            return deadline.watched(work, late, instead=lambda: self._finish(late, keeps))
+
+        return self._finish(watched, keeps)
+
+    def _finish(self, prepare: Callable[[], Commit | Answer | Stream], keeps: bool) -> Response:
+        """Commit what was prepared, and keep the answer under the key in the same transaction."""
+        try:
+            for _ in range(ATTEMPTS):
+                found = prepare()
+                try:
+                    return response_of(self._stored(found, keeps))
+                except Exception as error:
+                    if not isinstance(error, StaleError) and not is_conflict(error):
+                        raise
+            detail = "others keep changing this resource; try again"
+            raise Refused(409, "conflict", detail, headers={"Retry-After": "1"})
+        except GivenUp:  # somebody else has answered
+            raise
+        except BaseException:
+            self._claimed.release()
+            raise
+
+    def _stored(self, found: Commit | Answer | Stream, keeps: bool) -> Answer | Stream:
+        if isinstance(found, Answer | Stream):
+            if keeps and self._claimed.key:
+                with self.store.database.write() as connection:
+                    self._claimed.keep(connection, found, None)
+            return found
+        with self.store.database.write() as connection:
+            answer = found(connection)
+            if keeps:
+                self._claimed.keep(connection, answer, answer.body)
+        if answer.status == 202:  # a job does not wait until somebody looks for one
+            self.store.runtime.wake.set()
+        return answer
+
+    def _prefers(self, preference: str) -> re.Match[str] | None:
+        """The preference (RFC 7240) if it is asked for."""
+        given = ",".join(self._request.headers.getlist("prefer")).split(",")
+        return next(filter(None, (re.fullmatch(preference, each.strip().lower()) for each in given)), None)
 
 
-class OnceSpooled(Once):
-    """The same for a body of any size, which is in ``spool``."""
+class SpooledAct(Act):
+    """The act of a request with a body of any size, which is in ``spool``."""
 
     def __init__(self, request: Request, spool: Spool, store: Store, key: str | None) -> None:
         super().__init__(request, spool.pieces, store, key)
         self.spool = spool
 
 
-async def once_spooled(request: Request, idempotency_key: IdempotencyKey = None) -> AsyncIterator[OnceSpooled]:
-    """The OnceSpooled of a request."""
+async def act(request: Request, raw: RawBody, idempotency_key: IdempotencyKey = None) -> Act:
+    """The Act of a request, as a dependency."""
+    return Act(request, lambda: (raw,), store_of(request), idempotency_key)
+
+
+async def spooled_act(request: Request, idempotency_key: IdempotencyKey = None) -> AsyncIterator[SpooledAct]:
+    """The SpooledAct of a request, as a dependency."""
     async with spooled_body(request) as spool:
-        yield OnceSpooled(request, spool, store_of(request), idempotency_key)
+        yield SpooledAct(request, spool, store_of(request), idempotency_key)
 
 
-OnceOf = Annotated[Once, Depends(once)]
-OnceSpooledOf = Annotated[OnceSpooled, Depends(once_spooled)]
+ActOf = Annotated[Act, Depends(act)]
+SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
 def timed(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response]]:
-    """An endpoint whose work, done by its parameter ``once``, is given up when it takes too long."""
+    """An endpoint whose work, done by its parameter ``act``, is given up when it takes too long."""
 
     @wraps(endpoint)
-    async def watched(*, once: Once, **arguments: Any) -> Response:
-        return await once.within_time(lambda: endpoint(once=once, **arguments))
+    async def watched(*, act: Act, **arguments: Any) -> Response:
+        return await act.within_time(lambda: endpoint(act=act, **arguments))
 
     return watched

@@ -1,16 +1,15 @@
-"""Dependencies of the routes: store, authorisation, bodies of limited size, conditional answers."""
+"""Dependencies of the routes: store, authorisation, bodies of limited size."""
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, closing
 from typing import Annotated, Any
 
-from fastapi import Depends, Request, Response
+from fastapi import Depends, Request
 from fastapi.concurrency import run_in_threadpool
 
 from service import keys
-from service.answers import FOR_EVER, REVALIDATE, Answer
 from service.refusals import Refused
 from service.spool import Spool
 from service.store import Store
@@ -120,13 +119,3 @@ def optional_json_body(request: Request, raw: RawBody) -> Any:
 
 JsonBody = Annotated[Any, Depends(json_body)]
 OptionalJsonBody = Annotated[Any, Depends(optional_json_body)]
-
-
-def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
-    """304 when the client has the representation already, otherwise make it."""
-    headers = {"ETag": tag, "Cache-Control": FOR_EVER if immutable else REVALIDATE, "Vary": "Accept"}
-    known = [item.strip().removeprefix("W/") for item in request.headers.get("if-none-match", "").split(",")]
-    if tag in known or "*" in known:
-        return Response(status_code=304, headers=headers)
-    answer = make()
-    return Response(answer.body, answer.status, {**answer.headers, **headers})

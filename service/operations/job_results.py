@@ -16,7 +16,7 @@ from service.summaries import PartContent
 from substructures.documents import read_json, write_json
 
 #: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned
-BASE, IS_EXACT = "base", "is_exact"
+BASE_REVISION, IS_EXACT = "base", "is_exact"
 
 
 def keep(connection: Connection, ended: Iterable[tuple[Attempt, Outcome]]) -> None:
@@ -44,7 +44,7 @@ def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> 
     coupled = trees.TreeContent(
         told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
     )
-    tree, _ = trees.store(connection, coupled, item.get(BASE), bool(item.get(IS_EXACT)))
+    tree, _ = trees.store(connection, coupled, item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from fastapi import Request, Response
 
 from service.answers import Answer, etag
-from service.http.requests import conditional
+from service.http.responses import conditional
 from service.pages.html import Html, html, link, tag
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Header, Request, Response
 
 from service.answers import REVALIDATE, json_answer
 from service.http.requests import JsonBody, StoreOf, needs
+from service.http.responses import response_of
 from service.operations import catalogue
 from service.queries import aliases
 from service.refusals import not_found
@@ -27,7 +28,7 @@ def list_aliases(name: str, store: StoreOf) -> Response:
         catalogue.check_name(connection, name)
         rows = aliases.list_aliases(connection, name)
         items = [alias_view(name, row, aliases.history(connection, name, row.alias)) for row in rows]
-    return json_answer(dump({"items": items})).response()
+    return response_of(json_answer(dump({"items": items})))
 
 
 @router.get("/{alias}", response_model=AliasView, dependencies=READ)
@@ -38,7 +39,7 @@ def get_alias(name: str, alias: str, store: StoreOf) -> Response:
         if row is None:
             raise not_found(f"there is no alias '{name}@{alias}'", "unknown-alias")
         view = alias_view(name, row, aliases.history(connection, name, alias))
-    return json_answer(dump(view), headers={"ETag": catalogue.alias_tag(row), "Cache-Control": REVALIDATE}).response()
+    return response_of(json_answer(dump(view), headers={"ETag": catalogue.alias_tag(row), "Cache-Control": REVALIDATE}))
 
 
 @router.put("/{alias}", response_model=AliasView, dependencies=WRITE, openapi_extra=body_of("AliasRequest"))
@@ -57,4 +58,4 @@ def put_alias(
         row = catalogue.set_alias(connection, name, alias, wanted.version, if_match, principal)
         view = alias_view(name, row, aliases.history(connection, name, alias))
     status = 201 if row.revision == 1 and if_match is None else 200
-    return json_answer(dump(view), status, {"ETag": catalogue.alias_tag(row)}).response()
+    return response_of(json_answer(dump(view), status, {"ETag": catalogue.alias_tag(row)}))

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Request, Response
 
 from service.analyses.numbers import ANALYSES, Analysis
 from service.analyses.results import JSON, MEDIA_TYPES
-from service.http.acting import OnceOf, timed
+from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.negotiation import MEDIA_TYPES as PRINTED
 from service.negotiation import choose_media_type
@@ -27,10 +27,10 @@ FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
 
 def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
     @timed
-    def run(ref: str, request: Request, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+    def run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
-        return once.compute(lambda: analyse(store, ref, name, body, media), deferred(once, "analyse", item, "/request"))
+        return act.compute(lambda: analyse(store, ref, name, body, media), deferred(act, "analyse", item, "/request"))
 
     return run
 
@@ -61,11 +61,11 @@ for _name, _analysis in ANALYSES.items():
     responses={**printed(PRINTED), **ACCEPTED},
 )
 @timed
-def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, style: StyleOf) -> Response:
+def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf, style: StyleOf) -> Response:
     """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
 
     Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.
     """
     how = {"format": style.format, "form": style.form, "bind": style.bind}
     item = {"tree": ref, "quantity": "velocity-equations", "request": body, **how}
-    return once.compute(lambda: velocity_equations(store, ref, body, style), deferred(once, "export", item, "/request"))
+    return act.compute(lambda: velocity_equations(store, ref, body, style), deferred(act, "export", item, "/request"))

@@ -7,7 +7,7 @@ from typing import Any
 
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
-from service.http.once import Commit, Once
+from service.http.acting import Act, Commit
 from service.operations import jobs
 from service.queries.jobs import Job
 from service.schemas.jobs import JobView
@@ -37,7 +37,7 @@ def committed(store: Store, submission: jobs.JobSubmission, principal: str) -> C
 
 
 def deferred(
-    once: Once, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
+    act: Act, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
 ) -> Callable[[], Commit]:
     """What prepares the job that does what a request asks for; arguments as of ``jobs.prepare_one``.
 
@@ -45,8 +45,8 @@ def deferred(
     """
 
     def prepare() -> Commit:
-        once.require("jobs")
-        submission = jobs.prepare_one(once.store, kind, item, step, members)
-        return committed(once.store, submission, once.principal)
+        act.require("jobs")
+        submission = jobs.prepare_one(act.store, kind, item, step, members)
+        return committed(act.store, submission, act.principal)
 
     return prepare

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag, json_answer
-from service.http.requests import StoreOf, conditional, needs
+from service.http.requests import StoreOf, needs
+from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
 from service.queries import content

@@ -8,10 +8,11 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
-from service.http.acting import OnceOf
+from service.http.acting import ActOf
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
+from service.http.responses import link_header, next_link, response_of
 from service.operations import jobs
-from service.paging import limited, link_header, next_link, read_token, write_token
+from service.paging import limited, read_token, write_token
 from service.queries import jobs as rows
 from service.queries import results
 from service.refusals import not_found
@@ -38,11 +39,11 @@ FILE: dict[int | str, Any] = {
 
 
 @router.post("", status_code=202, response_model=JobView, dependencies=JOBS, openapi_extra=body_of("JobRequest"))
-def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Queue a job. 202 when it is on the disk; before that every item has been checked."""
     if isinstance(body, dict) and body.get("kind") in jobs.STORING:
-        once.require("write")
-    return once.submit(lambda: committed(store, jobs.prepare(store, body), once.principal))
+        act.require("write")
+    return act.submit(lambda: committed(store, jobs.prepare(store, body), act.principal))
 
 
 @router.get("", response_model=JobPage, dependencies=READ)
@@ -63,27 +64,27 @@ def list_jobs(
     token = write_token(search, found[size - 1].id) if len(found) > size else None
     link = next_link(request, token)
     view = {"items": items, "next_page_token": token, "links": {"next": link}}
-    return json_answer(dump(view), headers={**FRESH, **link_header(link)}).response()
+    return response_of(json_answer(dump(view), headers={**FRESH, **link_header(link)}))
 
 
 @router.get("/{job}", response_model=JobView, dependencies=READ)
 def get_job(job: str, store: StoreOf) -> Response:
     """A job with its progress."""
     with store.database.read() as connection:
-        return answer(connection, jobs.find(connection, job)).response()
+        return response_of(answer(connection, jobs.find(connection, job)))
 
 
 @router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
-def cancel(job: str, body: OptionalJsonBody, store: StoreOf, once: OnceOf) -> Response:
+def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
     read_model(CancelRequest, body)
 
     def commit(connection: Connection) -> Answer:
-        if jobs.find(connection, job).principal != once.principal:
-            once.require("admin")
+        if jobs.find(connection, job).principal != act.principal:
+            act.require("admin")
         return answer(connection, jobs.cancel(connection, job))
 
-    response = once.submit(lambda: commit)
+    response = act.submit(lambda: commit)
     store.runtime.wake.set()
     return response
 
@@ -108,7 +109,7 @@ def list_items(
     token = write_token(search, found[size - 1].position) if len(found) > size else None
     link = next_link(request, token)
     view = {"items": views, "next_page_token": token, "links": {"next": link}}
-    return json_answer(dump(view), headers={**FRESH, **link_header(link)}).response()
+    return response_of(json_answer(dump(view), headers={**FRESH, **link_header(link)}))
 
 
 router.add_api_route(
@@ -132,4 +133,4 @@ def get_file(job: str, position: int, name: str, store: StoreOf) -> Response:
         content = results.get_file(connection, item.key, name) if item.summary is not None else None
     if content is None:
         raise not_found(f"item {position} has no file '{name[:80]}'", "unknown-file")
-    return Answer(200, content, {"Content-Type": media_type(item, name)}).response()
+    return response_of(Answer(200, content, {"Content-Type": media_type(item, name)}))

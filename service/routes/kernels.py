@@ -7,7 +7,7 @@ from time import perf_counter
 from fastapi import APIRouter, Response
 
 from service.answers import Answer, json_answer
-from service.http.acting import OnceOf, timed
+from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.operations import trees
 from service.operations.sources import sources_of
@@ -28,7 +28,7 @@ router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
     openapi_extra=body_of("KernelsRequest"),
 )
 @timed
-def compile_kernels(ref: str, body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Compile a tree for evaluations of these quantities together. 201 when something was compiled, else 200.
 
     Without this a tree is compiled in the background after its first evaluation, and at once for many states.
@@ -51,4 +51,4 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, once: OnceOf) -> R
         status = 201 if any(row["new"] for row in rows) else 200
         return json_answer(dump({"digest": tree.digest, "kernels": rows}), status)
 
-    return once.compute(work)
+    return act.compute(work)

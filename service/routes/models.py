@@ -8,9 +8,9 @@ from fastapi import APIRouter, Request, Response
 
 from service.analyses.formulas import QUANTITIES
 from service.answers import JSON, Answer, Stream, etag
-from service.http.acting import OnceSpooled, OnceSpooledOf
-from service.http.once import Commit
-from service.http.requests import StoreOf, conditional, media_type, needs
+from service.http.acting import Commit, SpooledAct, SpooledActOf
+from service.http.requests import StoreOf, media_type, needs
+from service.http.responses import conditional, response_of
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
@@ -32,7 +32,7 @@ RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}, **ACCEPTED}
 
 
 @router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
-async def evaluate(ref: str, request: Request, once: OnceSpooledOf) -> Response:
+async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
     """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
 
     npz: arrays by the names of the JSON request, nested ones joined by dots (`inputs.tau.arm.q1`, `parameters.arm.m`).
@@ -51,16 +51,16 @@ async def evaluate(ref: str, request: Request, once: OnceSpooledOf) -> Response:
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
-    if sent == wanted == JSON and once.is_plain and is_pinned(ref):
-        found = at_hand.answer(once.store, ref, once.spool)
+    if sent == wanted == JSON and act.is_plain and is_pinned(ref):
+        found = at_hand.answer(act.store, ref, act.spool)
         if found is not None:
-            return found.response()
-    return await once.within_time(lambda: _evaluate(ref, sent, wanted, once))
+            return response_of(found)
+    return await act.within_time(lambda: _evaluate(ref, sent, wanted, act))
 
 
-def _evaluate(ref: str, sent: str, wanted: str, once: OnceSpooled) -> Response:
+def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
     """The evaluation in a thread."""
-    store, body, limits = once.store, once.spool, once.store.settings.limits
+    store, body, limits = act.store, act.spool, act.store.settings.limits
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
@@ -75,15 +75,15 @@ def _evaluate(ref: str, sent: str, wanted: str, once: OnceSpooled) -> Response:
         return answer
 
     def later() -> Commit:
-        once.require("jobs")
+        act.require("jobs")
         requests, form = read_requests(body, sent, limits), "arrow" if wanted == ARROW else "npz"
         if sent == JSON:
             (given,) = requests
-            return deferred(once, "evaluate", {"tree": ref, "request": given, "format": form}, "/request")()
-        submission = uploads.prepare(store, tree, evaluation.sources, requests, form, once.principal)
-        return committed(store, submission, once.principal)
+            return deferred(act, "evaluate", {"tree": ref, "request": given, "format": form}, "/request")()
+        submission = uploads.prepare(store, tree, evaluation.sources, requests, form, act.principal)
+        return committed(store, submission, act.principal)
 
-    return once.compute(work, later)
+    return act.compute(work, later)
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

@@ -8,7 +8,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag
-from service.http.requests import StoreOf, conditional, needs
+from service.http.requests import StoreOf, needs
+from service.http.responses import conditional
 from service.operations import catalogue, pictures, trees
 
 MEDIA_TYPE = "image/svg+xml"

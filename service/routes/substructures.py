@@ -9,10 +9,11 @@ from fastapi import APIRouter, Query, Request, Response
 from service.addresses import version_path
 from service.answers import Answer, etag, json_answer
 from service.database.connections import Connection
-from service.http.acting import OnceOf, timed
-from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, conditional, needs
+from service.http.acting import ActOf, timed
+from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
+from service.http.responses import conditional, link_header, next_link, response_of
 from service.operations import catalogue
-from service.paging import limited, link_header, next_link
+from service.paging import limited
 from service.queries import aliases, content
 from service.queries.catalogue import SORTS, CatalogueSearch, Version
 from service.refusals import unprocessable
@@ -37,7 +38,7 @@ def names_of(connection: Connection, version: Version) -> list[str]:
     "", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION, responses=ACCEPTED
 )
 @timed
-def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     definition = Definition.read(body)
 
@@ -51,7 +52,7 @@ def submit(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
 
         return commit
 
-    return once.run(prepare, deferred(once, "derive", body))
+    return act.run(prepare, deferred(act, "derive", body))
 
 
 @router.get("", response_model=VersionPage, dependencies=READ)
@@ -76,7 +77,7 @@ def search(
         page = catalogue.search(connection, wanted, size, page_token)
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.versions))
     link = next_link(request, page.next_token)
-    return json_answer(dump(page_view(page, names, link)), headers=link_header(link)).response()
+    return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)
@@ -100,7 +101,7 @@ def get_definition(ref: str, request: Request, store: StoreOf) -> Response:
 
 
 @router.post("/{ref}/yank", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("YankRequest", False))
-def yank(ref: str, body: OptionalJsonBody, once: OnceOf) -> Response:
+def yank(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
     """Withdraw a version: it stays usable by number and digest but is no longer offered as the latest."""
     wanted = read_model(YankRequest, body)
 
@@ -108,4 +109,4 @@ def yank(ref: str, body: OptionalJsonBody, once: OnceOf) -> Response:
         version = catalogue.yank(connection, ref, wanted.reason)
         return json_answer(dump(version_view(version, names_of(connection, version))))
 
-    return once.submit(lambda: commit)
+    return act.submit(lambda: commit)

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Response
 
 from service.answers import Answer, json_answer
 from service.http.requests import StoreOf, needs
+from service.http.responses import response_of
 from service.metrics import CONTENT_TYPE
 from service.queries.jobs import counts
 from service.refusals import Refused
@@ -23,7 +24,7 @@ OK = json_answer(b'{"status":"ok"}', headers={"Cache-Control": "no-store"})
 @router.get("/livez", response_model=Health)
 async def livez() -> Response:
     """The process answers; the database is not touched."""
-    return OK.response()
+    return response_of(OK)
 
 
 @router.get("/readyz", response_model=Health)
@@ -32,7 +33,7 @@ def readyz(store: StoreOf) -> Response:
     store.database.ping()
     if not store.database.has_room:
         raise Refused(503, "database-unavailable", "the disk of the database is full", headers={"Retry-After": "30"})
-    return OK.response()
+    return response_of(OK)
 
 
 @router.get("/metrics", dependencies=READ, response_class=Response)
@@ -40,11 +41,11 @@ def metrics(store: StoreOf) -> Response:
     """Metrics for Prometheus."""
     with store.database.read() as connection:
         store.metrics.queue(counts(connection))
-    return Answer(200, store.metrics.text(), {"Content-Type": CONTENT_TYPE}).response()
+    return response_of(Answer(200, store.metrics.text(), {"Content-Type": CONTENT_TYPE}))
 
 
 @router.get("/v1/limits", response_model=LimitsView, dependencies=READ)
 def limits(store: StoreOf) -> Response:
     """Every limit with its value."""
     shown = store.settings.limits.model_dump() | FORMAT_LIMITS
-    return json_answer(dump(shown)).response()
+    return response_of(json_answer(dump(shown)))

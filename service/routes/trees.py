@@ -7,15 +7,15 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from service.addresses import BASE, tree_path
+from service.addresses import tree_path
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
-from service.http.acting import OnceOf, timed
-from service.http.once import Commit, Once
-from service.http.requests import JsonBody, StoreOf, conditional, needs
+from service.http.acting import Act, ActOf, Commit, timed
+from service.http.requests import JsonBody, StoreOf, needs
+from service.http.responses import conditional, link_header, next_link, response_of
 from service.operations import trees
-from service.operations.job_results import IS_EXACT
-from service.paging import limited, link_header, next_link, read_token, write_token
+from service.operations.job_results import BASE_REVISION, IS_EXACT
+from service.paging import limited, read_token, write_token
 from service.queries.trees import page
 from service.references import parse_reference
 from service.routes.bodies import body_of
@@ -29,7 +29,7 @@ IfMatch = Annotated[str | None, Header(description="ETag of the tree that is to 
 
 
 def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
-    """What ``Once`` runs: prepare a revision, then store it and answer it."""
+    """What ``Act`` runs: prepare a revision, then store it and answer it."""
 
     def prepared() -> Commit:
         ready = prepare()
@@ -43,15 +43,15 @@ def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
     return prepared
 
 
-def changed(once: Once, change: Callable[[], trees.TreeChange]) -> Response:
+def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
     """Store a changed tree, at once or by a job."""
 
     def later() -> Commit:
         found = change()
-        members = {BASE: found.base.revision, IS_EXACT: found.is_exact}
-        return deferred(once, "assemble", found.document, found.step, members)()
+        members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
+        return deferred(act, "assemble", found.document, found.step, members)()
 
-    return once.run(revision(lambda: trees.prepare_change(once.store, change())), later)
+    return act.run(revision(lambda: trees.prepare_change(act.store, change())), later)
 
 
 @router.post(
@@ -63,9 +63,9 @@ def changed(once: Once, change: Callable[[], trees.TreeChange]) -> Response:
     responses=ACCEPTED,
 )
 @timed
-def create(body: JsonBody, store: StoreOf, once: OnceOf) -> Response:
+def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
-    return once.run(revision(lambda: trees.prepare(store, body)), deferred(once, "assemble", body))
+    return act.run(revision(lambda: trees.prepare(store, body)), deferred(act, "assemble", body))
 
 
 @router.get("", response_model=TreePage, dependencies=READ)
@@ -83,7 +83,7 @@ def list_trees(
     token = write_token("trees", found[size - 1].name) if len(found) > size else None
     link = next_link(request, token)
     view = {"items": [tree_item(t) for t in found[:size]], "next_page_token": token, "links": {"next": link}}
-    return json_answer(dump(view), headers=link_header(link)).response()
+    return response_of(json_answer(dump(view), headers=link_header(link)))
 
 
 @router.get("/{ref}", response_model=TreeView, dependencies=READ)
@@ -109,15 +109,15 @@ def is_pinned(ref: str) -> bool:
     responses=ACCEPTED,
 )
 @timed
-def add_coupling(ref: str, body: JsonBody, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
+def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Couple one more instance onto the tree: a new revision."""
-    return changed(once, lambda: trees.coupling(store, ref, body, if_match))
+    return changed(act, lambda: trees.coupling(store, ref, body, if_match))
 
 
 @router.delete(
     "/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE, responses=ACCEPTED
 )
 @timed
-def remove_coupling(ref: str, instance: str, store: StoreOf, once: OnceOf, if_match: IfMatch = None) -> Response:
+def remove_coupling(ref: str, instance: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
-    return changed(once, lambda: trees.removal(store, ref, instance, if_match))
+    return changed(act, lambda: trees.removal(store, ref, instance, if_match))

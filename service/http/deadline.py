@@ -1,0 +1,94 @@
+"""The time that the work of a request may take, and what is answered in its place when it takes longer.
+
+A thread cannot be stopped: what was begun in time goes on to its end, which the limits on sizes bound. So the event
+loop watches the thread that works, and when the time is over it lets another one answer; whoever comes first, the work
+or the clock, takes the right to answer, and the other one finds it gone.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from concurrent.futures import Executor
+from contextvars import copy_context
+from threading import Lock
+from time import perf_counter
+from typing import TypeVar
+
+from fastapi import Response
+from fastapi.concurrency import run_in_threadpool
+
+T = TypeVar("T")
+_log = logging.getLogger(__name__)
+
+
+class GivenUp(Exception):
+    """The work took too long, and another thread has answered; the cause is the error in which it ended, if any."""
+
+
+class Deadline:
+    """``seconds`` from now."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self._due = perf_counter() + seconds
+        self._lock = Lock()
+        self._instead: Callable[[], Response] | None = None  # while there is work that can be given up
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is over."""
+        return perf_counter() >= self._due
+
+    def watched(self, work: Callable[[], T], late: Callable[[], T], instead: Callable[[], Response]) -> T:
+        """What ``work`` gives, or ``late`` when it looks at the clock itself and raises TimeoutError.
+
+        ``instead`` answers if the time is over before the work is done; then GivenUp is raised here, whatever the work
+        ends with.
+        """
+        with self._lock:
+            self._instead = instead
+        try:
+            found = work()
+        except TimeoutError as error:
+            self._finish(error)
+            return late()
+        except BaseException as error:
+            self._finish(error)
+            raise
+        self._finish(None)
+        return found
+
+    def _finish(self, error: BaseException | None) -> None:
+        """The work has ended. Raises GivenUp when it was too late."""
+        if self._take() is None:
+            raise GivenUp from error
+
+    def _take(self) -> Callable[[], Response] | None:
+        """Take the right to answer: what is to be done instead of the work in progress; None without any."""
+        with self._lock:
+            instead, self._instead = self._instead, None
+        return instead
+
+    async def within(self, threads: Executor, endpoint: Callable[[], Response]) -> Response:
+        """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
+        future = threads.submit(copy_context().run, endpoint)
+        answer = asyncio.wrap_future(future)
+        await asyncio.wait({answer}, timeout=max(0, self._due - perf_counter()))
+        if answer.done():
+            return answer.result()
+        if future.cancel():  # all threads have other work: too late for this one
+            return await run_in_threadpool(endpoint)
+        instead = self._take()
+        if instead is None:  # the work is done or not begun, and the rest is short
+            return await answer
+        answer.add_done_callback(_tell)
+        return await run_in_threadpool(instead)
+
+
+def _tell(abandoned: asyncio.Future[Response]) -> None:
+    """Nobody waits for abandoned work any more, so the log has the error in which it ended."""
+    error = abandoned.exception()
+    if error is not None and error.__cause__ is not None and not isinstance(error.__cause__, TimeoutError):
+        _log.warning("work that was given up ended in an error: %r", error.__cause__)

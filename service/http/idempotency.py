@@ -1,0 +1,94 @@
+"""``Idempotency-Key``: a POST that is sent twice acts once; the answer is kept in the transaction that acts.
+
+::
+
+    claim (own transaction) -> prepare (computes, stores nothing) -> commit + answer kept (one transaction)
+        |                          '-- fails: the claim is given up, the request may be sent again
+        |-- answered already: the same answer again
+        |-- other request under this key: 422
+        '-- in flight: 409
+"""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections.abc import Callable, Iterable
+from datetime import timedelta
+from functools import cached_property
+
+import orjson
+from fastapi import Request, Response
+
+from service.answers import Answer, Stream
+from service.database.connections import Connection, Database
+from service.queries import idempotency
+from service.refusals import Refused
+from service.settings import Limits
+
+
+class IdempotencyClaim:
+    """The claim of a request on its key; without a key there is nothing to claim or to keep."""
+
+    def __init__(
+        self,
+        request: Request,
+        body: Callable[[], Iterable[bytes]],
+        database: Database,
+        limits: Limits,
+        key: str | None,
+    ) -> None:
+        """``body``: gives the pieces of the request body."""
+        self.key = key or ""
+        self._request, self._body, self._database, self._limits = request, body, database, limits
+        self._principal: str = request.state.principal
+        self._owner = secrets.token_hex(8)
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        request = self._request
+        seen = [request.method, request.url.path, request.url.query]
+        seen += [request.headers.get(name, "") for name in ("content-type", "accept")]
+        found = hashlib.sha256("\n".join(seen).encode() + b"\n")
+        for piece in self._body():
+            found.update(piece)
+        return found.hexdigest()
+
+    def claim(self) -> idempotency.Entry | None:
+        """Claim the key, or what was answered under it already. Raises Refused 409 or 422."""
+        if not self.key:
+            return None
+        lifetime = timedelta(hours=self._limits.idempotency_hours)
+        # who takes a claim over too early is fenced off: the first to finish is the only one
+        lease = timedelta(seconds=15 + 2 * self._limits.sync_seconds)
+        with self._database.write() as connection:
+            idempotency.forget(connection, lifetime, lease)
+            entry = idempotency.claim(connection, self._principal, self.key, self._fingerprint, self._owner)
+        if entry is None:
+            return None
+        if entry.fingerprint != self._fingerprint:
+            raise Refused(422, "idempotency-key-reused", "this Idempotency-Key belongs to another request")
+        if entry.status is None:
+            detail = "the first request with this Idempotency-Key is still being served"
+            raise Refused(409, "idempotency-in-flight", detail, headers={"Retry-After": "1"})
+        return entry
+
+    def keep(self, connection: Connection, answer: Answer | Stream, body: bytes | None) -> None:
+        """Keep an answer, without its ``body`` where it can be computed again. Raises Refused 409."""
+        if not self.key:
+            return
+        kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), body)
+        if not idempotency.finish(connection, self._principal, self.key, self._owner, kept):
+            raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
+
+    def release(self) -> None:
+        """Give the claim up: the request may be sent again."""
+        if self.key:
+            with self._database.write() as connection:
+                idempotency.release(connection, self._principal, self.key, self._owner)
+
+
+def replayed(entry: idempotency.Entry) -> Response:
+    """The answer that was kept."""
+    headers = {**orjson.loads(entry.headers or "{}"), "Idempotency-Replayed": "true"}
+    return Response(entry.body, entry.status or 200, headers)
