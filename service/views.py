@@ -28,7 +28,7 @@ def tree_path(tree: Tree) -> str:
 
 
 def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
-    """A version (the HTTP contract, section 2)."""
+    """A version (contract.md, section 2)."""
     path = version_path(version)
     return {
         "name": version.name,
@@ -110,7 +110,7 @@ def alias_view(name: str, alias: Alias, history: Sequence[Change]) -> dict[str, 
 
 
 def tree_view(tree: Tree) -> bytes:
-    """The JSON of a tree (the HTTP contract, section 3): names and links, then the stored summary as it is."""
+    """The JSON of a tree (contract.md, section 3): names and links, then the stored summary as it is."""
     path = tree_path(tree)
     quantities = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
     names = {
