@@ -18,7 +18,7 @@ _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations",
 
 
 def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
-    """A version (the HTTP contract, section 2)."""
+    """A version (contract.md, section 2)."""
     path = version_path(version)
     return {
         "name": version.name,
@@ -100,7 +100,7 @@ def alias_view(name: str, alias: Alias, history: Sequence[AliasChange]) -> dict[
 
 
 def tree_view(tree: Tree) -> bytes:
-    """The JSON of a tree (the HTTP contract, section 3): names and links, then the stored summary as it is."""
+    """The JSON of a tree (contract.md, section 3): names and links, then the stored summary as it is."""
     path = tree_path(tree)
     quantities = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
     names = {

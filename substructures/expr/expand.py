@@ -1,4 +1,4 @@
-"""The canonical expanded form (mathematics.md, section 8.5), and the exact zero test.
+"""The canonical expanded form (notation.md, section 8.5), and the exact zero test.
 
 A formula becomes a sum of terms: number * powers of symbols * cos or sin of a combination of angles (products of
 trigonometric functions are turned into sums), over a denominator where there is one. Classes of formulas:

@@ -1,4 +1,4 @@
-"""Values of functions at one secret random point of a prime field (mathematics.md, section 8.3).
+"""Values of functions at one secret random point of a prime field (notation.md, section 8.3).
 
 A node of the expression graph carries the value of its formula in the field of a random 120-bit prime,
 with random values for symbols and, for every angle, a random point on the circle. Two formulas with equal

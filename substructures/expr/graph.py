@@ -1,4 +1,4 @@
-"""Scalar expressions as a hash-consed graph: one node per function (mathematics.md, section 8).
+"""Scalar expressions as a hash-consed graph: one node per function (notation.md, section 8).
 
 Every node carries the fingerprint of its formula (see :mod:`substructures.expr.fingerprint`), and the graph
 keeps one node per fingerprint. Building a formula that is equal, as a function, to an existing one (or to its

@@ -1,4 +1,4 @@
-"""sin, cos and tan of linear combinations of angles (mathematics.md, section 8.1 and 8.3).
+"""sin, cos and tan of linear combinations of angles (notation.md, sections 8.1 and 8.3).
 
 >>> graph = Graph()
 >>> q = graph.symbol("q")

@@ -1,4 +1,4 @@
-"""Kinematic base functions U_ka and Omega_ka by one algebraic recursion (mathematics.md, section 3)."""
+"""Kinematic base functions U_ka and Omega_ka by one algebraic recursion (notation.md, section 3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The direct form of metric, Christoffel symbols and gravity forces in numbers (mathematics.md, section 4).
+"""The direct form of metric, Christoffel symbols and gravity forces in numbers (notation.md, section 4).
 
 Written on purpose without the recursion that generates the formulas: joint axes and points in world coordinates, one
 sum over bodies, full tensors. It is the yardstick of the certificates. Batch axis N first.

@@ -1,4 +1,4 @@
-"""Mass, first and second moment of bodies and of everything they carry (mathematics.md, section 5)."""
+"""Mass, first and second moment of bodies and of everything they carry (notation.md, section 5)."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def composites(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...]) -> 
 
     One pass from the leaves to the base; ``bodies`` are given about the body frame origins. Joints that are parallel
     all the way to the base never need J_xx and J_yy alone, only their sum, which their turns leave as it is
-    (mathematics.md, section 8.4).
+    (notation.md, section 8.4).
     """
     total: list[Inertia] = list(bodies)
     parallel = _parallel_to_root(joints)

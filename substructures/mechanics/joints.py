@@ -1,4 +1,4 @@
-"""The joint row (mathematics.md, section 2): from frame p to frame k by A(psi, theta), Z and Ehat(phi)."""
+"""The joint row (notation.md, section 2): from frame p to frame k by A(psi, theta), Z and Ehat(phi)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def links(joints: tuple[OneDofJoint, ...]) -> tuple[Link, ...]:
 def lean_rotation(constant: Matrix, c: S, s: S) -> Rotation:
     """Ehat(phi) A with as few operations as possible, from A and (cos phi, sin phi).
 
-    Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (mathematics.md, section 8.4);
+    Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (notation.md, section 8.4);
     a turn about the first axis stays a factor of its own; any other A is multiplied out.
     """
     if _turns_about(constant, 2):

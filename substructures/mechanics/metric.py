@@ -1,4 +1,4 @@
-"""Metric, Christoffel symbols and gravity forces from base functions and composites (mathematics.md, section 5)."""
+"""Metric, Christoffel symbols and gravity forces from base functions and composites (notation.md, section 5)."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ def lean(part: Part, program: Program) -> Program:
     """A program of stored formulas with the part's own masses and moments in place of the inertia symbols.
 
     The symbols stand for the inertia of every body with whatever is mounted on it; the own values alone fold the
-    program to its lean form (mathematics.md, section 6).
+    program to its lean form (notation.md, section 6).
     """
     graph = Graph()
     own = Stored(replay(part.program, graph, {}, ("inertia.m", "inertia.s", "inertia.J")))

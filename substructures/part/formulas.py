@@ -1,4 +1,4 @@
-"""What is stored of a substructure, as formulas of its own coordinates and parameters (mathematics.md, section 6).
+"""What is stored of a substructure, as formulas of its own coordinates and parameters (notation.md, section 6).
 
 The inertia (m, s, J) of every moving part enters as ten symbols, to which its own values and whatever a host mounts on
 it are bound later; binding the own values alone folds the program to its lean form.

@@ -156,7 +156,7 @@ class PointKinematics:
 def applied_forces(
     m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]
 ) -> tuple[list[Expr], Expr]:
-    """(generalised forces of joint laws, actuators and springs; potential energy of all springs)."""
+    """(generalised forces of joint laws, actuators and springs; potential energy): notation.md, section 7."""
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
     potential = zero

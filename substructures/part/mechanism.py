@@ -1,4 +1,4 @@
-"""A definition with all its formulas in a graph: joints, inertias, frames and loads (mathematics.md, section 2)."""
+"""A definition with all its formulas in a graph: joints, inertias, frames and loads (notation.md, section 2)."""
 
 from __future__ import annotations
 

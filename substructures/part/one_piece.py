@@ -15,7 +15,7 @@ from substructures.part.mechanism import Mechanism, mechanism
 
 
 def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = (0, 0, 0)) -> Program:
-    """Metric, Christoffel symbols and gravity forces of a definition whose base is at rest (mathematics.md, section 5).
+    """Metric, Christoffel symbols and gravity forces of a definition whose base is at rest (notation.md, section 5).
 
     ``gravity``: acceleration in base axes; numbers or expressions in the definition's parameters.
     Raises InvalidDocument.

@@ -8,7 +8,7 @@ as formulas again, for a small multiple of the operations of ID. The direction i
 velocity, acceleration and input, with the same kind and unit and ``d.`` before its name: ``d.arm.q1`` [rad, m],
 ``d.arm.q1'`` [rad/s, m/s], ``d.arm.q1''`` [rad/s^2, m/s^2], ``d.tau.arm.q1`` [N m, N], ``d.arm.u`` for an input u.
 Forward dynamics q'' = FD(q, q', tau) satisfies ID(q, q', FD, tau) = 0, hence g d(FD) = -dID at q'' = FD with dq'' = 0.
-(mathematics.md, section 7: the perturbation equations.)
+(notation.md, section 7: the perturbation equations.)
 """
 
 from __future__ import annotations

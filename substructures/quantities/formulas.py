@@ -60,7 +60,7 @@ DERIVED = tuple(_FORMULAS)
 
 
 def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
-    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7).
+    """A quantity of DERIVED as a program with an output of that name (notation.md, section 7).
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;

@@ -1,4 +1,4 @@
-"""The regressor: what a tree's inverse dynamics is linear in (mathematics.md, section 7).
+"""The regressor: what a tree's inverse dynamics is linear in (notation.md, section 7).
 
     Y(q, q', q'')_ai pi_i = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a(gravity)
 

@@ -2,7 +2,7 @@
 
 Works from the stored programs alone: the inside of a substructure (its E, Z, own U, Omega, metric, Christoffel
 symbols and composites) is replayed with its symbols renamed or bound; only the host's columns are carried to its
-joints, where their products with the stored momenta give the coupled entries (mathematics.md, sections 5 and 6).
+joints, where their products with the stored momenta give the coupled entries (notation.md, sections 5 and 6).
 Measured against expressing those products in the interface frame (f, n, K), this needs fewer operations.
 """
 

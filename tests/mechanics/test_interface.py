@@ -1,6 +1,6 @@
 """What is stored of a substructure, term by term: coupling evaluated formulas = evaluating coupled ones.
 
-The blocks of mathematics.md, section 6, from the stored interface functions f, n, K, kappa, F, N in numbers,
+The blocks of notation.md, section 6, from the stored interface functions f, n, K, kappa, F, N in numbers,
 against the coupled model of a host and a guest.
 """
 

@@ -1,4 +1,4 @@
-"""Theorems of mechanics on random trees at random states (mathematics.md, section 9)."""
+"""Theorems of mechanics on random trees at random states (notation.md, section 9)."""
 
 # ruff: noqa: N806 -- symbols of the notation
 

@@ -1,4 +1,4 @@
-"""The adjoint equations of optimal control as formulas (mathematics.md, section 7).
+"""The adjoint equations of optimal control as formulas (notation.md, section 7).
 
 With the Hamiltonian H = lambda_0 l + lambda_q . q' + lambda_qd . q'' and q'' from the equations of motion
 
