@@ -18,10 +18,10 @@ from service.analyses.numbers import ANALYSES
 from service.jobs.kinds import KINDS
 from service.negotiation import FORMS, MEDIA_TYPES
 from service.settings import Limits
-from substructures.derived import DERIVED
-from substructures.evaluation import QUANTITIES as EVALUATED
-from substructures.model import KINEMATICS, MOMENTUM
-from substructures.regressor import OUTPUTS
+from substructures.quantities.evaluation import QUANTITIES as EVALUATED
+from substructures.quantities.formulas import DERIVED
+from substructures.quantities.regressor import OUTPUTS
+from substructures.tree.model import KINEMATICS, MOMENTUM
 
 FOLDER = Path(service.__file__).parent
 PAGE = (FOLDER / "contract.md").read_text()

@@ -13,8 +13,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 import service
+from service.database.tables import metadata
 from service.store import Store
-from service.tables import metadata
 from substructures import catalogue
 from substructures.documents import write_json
 
