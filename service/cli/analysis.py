@@ -14,7 +14,7 @@ from service.analyses.numbers import ANALYSES, require_object
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.cli.jobs import Add, add_server, read_document
+from service.cli.options import Add, add_server, read_document
 from service.operations import models
 from service.operations.analyses import printed
 from service.operations.models import Style
@@ -33,14 +33,15 @@ from substructures.tree.model import couple
 SUFFIXES = (".yaml", ".yml", ".json")
 
 
-def add_commands(commands: Any, add: Add) -> None:
-    """Add both commands to a parser."""
-    command = add(commands, "simulate", _simulate, "simulate a tree and judge the motion by its first integrals")
+def _add_simulate(command: argparse.ArgumentParser) -> None:
+    command.set_defaults(command=_simulate)
     _add_tree(command)
     command.add_argument("request", type=Path, help="request, JSON or YAML: q, qd, span, ...")
     _add_output(command)
 
-    command = add(commands, "analyse", _analyse, "formulas and numbers that follow from the equations of motion")
+
+def _add_analyse(command: argparse.ArgumentParser) -> None:
+    command.set_defaults(command=_analyse)
     _add_tree(command)
     command.add_argument("what", help=f"numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...")
     command.add_argument("request", type=Path, nargs="?", help="request of numbers, JSON or YAML")
@@ -174,3 +175,6 @@ def _part(index: int, instance: Instance, folder: Path) -> Part:
         message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
         raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)
     return derive(Definition.read(catalogue.load(name)))
+
+
+ADD: Add = {"simulate": _add_simulate, "analyse": _add_analyse}

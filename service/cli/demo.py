@@ -5,6 +5,7 @@ Published: P. Corke, Robotics Toolbox for Python, ``tests/test_DHRobot.py``; Pum
 
 from __future__ import annotations
 
+import argparse
 import math
 import tempfile
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from service.cli.options import Add
 from service.server import background
 from service.settings import Settings
 from substructures.client import Client
@@ -117,3 +119,10 @@ def compare(title: str, found: Sequence[Sequence[Any]], published: Sequence[Sequ
     agrees = worst <= ROUNDING
     print(f"{title}: {worst:.1e} ({'agrees: rounding of the published figures' if agrees else 'DISAGREES'})")
     return agrees
+
+
+def _add_demo(command: argparse.ArgumentParser) -> None:
+    command.set_defaults(command=lambda _: run())
+
+
+ADD: Add = {"demo": _add_demo}

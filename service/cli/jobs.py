@@ -1,30 +1,25 @@
-"""The commands ``substructures jobs``, ``backup`` and ``restore``."""
+"""The command ``jobs``: submit, watch and read batch jobs of a server."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from math import nan
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
+from service.cli.options import Add, add_action, add_server, named, read_document, read_from
 from service.cli.progress import counted, follow
-from service.database.backup import backup, restore
-from service.settings import from_environment
 from substructures.client import Client
 from substructures.client.connection import step
 from substructures.client.jobs import FORMATS, PATIENCE
-from substructures.documents import read_json, read_yaml
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
 
-Add = Callable[[Any, str, Callable[[argparse.Namespace], int], str], argparse.ArgumentParser]
-SERVER = "http://127.0.0.1:8000"
 EPILOG = """\
 {"kind": "evaluate", "items": [{"tree": "swing", "request": {"quantities": ["metric"], "q": [[0, 0], [1, 0]]}}]}
 {"kind": "simulate", "template": {"tree": "swing", "request": {"q": [0, 0], "span": [0, 5], "step": 0.05}},
@@ -45,16 +40,14 @@ document: 'substructures openapi', or /openapi.json of a server.
 """
 
 
-def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentParser], None]) -> None:
-    """Add the commands to a parser."""
-    jobs = commands.add_parser("jobs", help="submit, watch and read batch jobs")
+def _add_jobs(jobs: argparse.ArgumentParser) -> None:
     actions = jobs.add_subparsers(title="actions", required=True, metavar="ACTION")
-    command = add(actions, "submit", _submit, "queue the job in a file")
+    command = add_action(actions, "submit", _submit, "queue the job in a file")
     command.add_argument("file", type=Path, help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML')
     command.formatter_class, command.epilog = argparse.RawDescriptionHelpFormatter, EPILOG
     _add_wait(command)
     add_server(command)
-    command = add(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
+    command = add_action(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
     command.add_argument("tree", help="name of a tree")
     command.add_argument(
         "file", type=Path, help="states: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml"
@@ -63,7 +56,7 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
     command.add_argument("--format", choices=tuple(FORMATS), default="npz", help="of the results (npz)")
     _add_wait(command)
     add_server(command)
-    command = add(actions, "list", _list, "list jobs, the newest first")
+    command = add_action(actions, "list", _list, "list jobs, the newest first")
     command.add_argument("--state", help="only those in this state")
     command.add_argument("--kind", help="only those of this kind")
     command.add_argument("--count", type=_count, default=20, help="how many (20)")
@@ -74,19 +67,12 @@ def register(commands: Any, add: Add, add_database: Callable[[argparse.ArgumentP
         ("watch", _watch, "follow a job until it has ended"),
         ("result", _result, "print what came of every item, or save all files"),
     ):
-        command = add(actions, name, run, text)
+        command = add_action(actions, name, run, text)
         command.add_argument("id")
         add_server(command)
         if run is _watch:
             _add_patience(command)
     command.add_argument("--output", type=Path, help="save everything there is as this zip file")
-    command = add(commands, "backup", _backup, "copy the SQLite store to a file, also while a server runs")
-    command.add_argument("file", type=Path)
-    add_database(command)
-    command = add(commands, "restore", _restore, "put a backup in the place of the SQLite store")
-    command.add_argument("file", type=Path)
-    command.add_argument("--overwrite", action="store_true", help="replace a store that is there")
-    add_database(command)
 
 
 def _add_wait(command: argparse.ArgumentParser) -> None:
@@ -115,32 +101,6 @@ def _patience(text: str) -> float:
     return seconds
 
 
-def add_server(command: argparse.ArgumentParser) -> None:
-    """The options of every command that talks to a server."""
-    command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
-    command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
-
-
-def read_document(path: Path) -> Any:
-    """A document in JSON or YAML. Raises InvalidDocument naming the file."""
-    with path.open("rb") as file, _named(path):
-        return _read(path, file)
-
-
-def _read(path: Path, file: IO[bytes]) -> Any:
-    return read_json(file.read()) if path.suffix == ".json" else read_yaml(file.read())
-
-
-@contextmanager
-def _named(path: Path) -> Iterator[None]:
-    """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
-    try:
-        yield
-    except InvalidDocument as error:
-        faults = [Fault(f"{path}#{f.pointer}" if f.pointer else str(path), f.code, f.message) for f in error.faults]
-        raise InvalidDocument(faults) from None
-
-
 def _client(options: argparse.Namespace) -> Client:
     return Client(options.server, options.key)
 
@@ -163,7 +123,7 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
 
     Raises InvalidDocument naming the file.
     """
-    with path.open("rb") as file, _named(path):
+    with path.open("rb") as file, named(path):
         if path.suffix == ".npz":
             arrays = read_npz(file, sys.maxsize)
             texts = {name: x.tolist() for name, x in arrays.items() if x.dtype.kind == "U"}
@@ -172,7 +132,7 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
             reader = arrow.Reader(file, sys.maxsize)
             yield {name: json.loads(text) for name, text in reader.metadata.items()}, reader
         else:
-            states = _read(path, file)
+            states = read_from(path, file)
             if not isinstance(states, dict):
                 raise InvalidDocument.at("", "object-expected", "an object with 'quantities', 'q', ... is needed")
             yield {}, states
@@ -220,16 +180,4 @@ def _result(options: argparse.Namespace) -> int:
     return 0
 
 
-def _backup(options: argparse.Namespace) -> int:
-    print(f"{options.file}: {backup(_database(options), options.file):,} bytes")
-    return 0
-
-
-def _restore(options: argparse.Namespace) -> int:
-    restore(options.file, _database(options), options.overwrite)
-    print(f"{options.file} restored")
-    return 0
-
-
-def _database(options: argparse.Namespace) -> str:
-    return from_environment(os.environ, database=options.database).database
+ADD: Add = {"jobs": _add_jobs}

@@ -1,0 +1,31 @@
+"""What is told about the errors in which a command may end."""
+
+from __future__ import annotations
+
+import httpx2
+from sqlalchemy.exc import DBAPIError
+
+from service.database.connections import DatabaseError, told
+from service.database.migrate import MigrationError
+from service.refusals import Refused
+from service.settings import SettingsError
+from substructures.client import ProblemError
+from substructures.errors import InvalidDocument, SubstructuresError
+
+EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
+
+
+def told_of(error: Exception) -> list[str] | None:
+    """The lines that tell of an error; None for one that nobody expects."""
+    match error:
+        case InvalidDocument():
+            return [f"{fault.pointer or '/'}: {fault.message}" for fault in error.faults]
+        case DBAPIError():
+            return [f"the database refused: {told(error)}"]
+        case httpx2.HTTPError():
+            return [f"no answer from the server: {error}"]
+        case OSError():
+            return [f"{error.filename or 'error'}: {error.strerror or error}"]
+        case ValueError() | OverflowError():
+            return [str(error)]
+    return [str(error)] if isinstance(error, EXPECTED) else None

@@ -1,0 +1,66 @@
+"""Options that commands share, and documents that they read."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+from service.settings import Settings, from_environment
+from substructures.documents import read_json, read_yaml
+from substructures.errors import Fault, InvalidDocument
+
+SERVER = "http://127.0.0.1:8000"
+
+Run = Callable[[argparse.Namespace], int]
+#: adds the arguments of commands to their parsers, by name of the command
+Add = Mapping[str, Callable[[argparse.ArgumentParser], None]]
+
+
+def add_action(actions: Any, name: str, run: Run, text: str) -> argparse.ArgumentParser:
+    """One more action of a command that is a group of them."""
+    command: argparse.ArgumentParser = actions.add_parser(name, help=text, description=text)
+    command.set_defaults(command=run)
+    return command
+
+
+def add_server(command: argparse.ArgumentParser) -> None:
+    """The options of every command that talks to a server."""
+    command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
+    command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
+
+
+def add_database(command: argparse.ArgumentParser) -> None:
+    """The option of every command that works on a database."""
+    default = Settings().database
+    command.add_argument("--database", help=f"URL: sqlite:///FILE or postgresql://... ({default})")
+
+
+def settings_of(options: argparse.Namespace) -> Settings:
+    """Settings from the environment, with those of the command line in their place. Raises SettingsError."""
+    names = ("host", "port", "database", "engine", "engine_address", "workers")
+    return from_environment(os.environ, **{name: getattr(options, name, None) for name in names})
+
+
+def read_document(path: Path) -> Any:
+    """A document in JSON or YAML. Raises InvalidDocument naming the file."""
+    with path.open("rb") as file, named(path):
+        return read_from(path, file)
+
+
+def read_from(path: Path, file: IO[bytes]) -> Any:
+    """A document in JSON or YAML, by the ending of its name. Raises InvalidDocument."""
+    return read_json(file.read()) if path.suffix == ".json" else read_yaml(file.read())
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
+    try:
+        yield
+    except InvalidDocument as error:
+        faults = [Fault(f"{path}#{f.pointer}" if f.pointer else str(path), f.code, f.message) for f in error.faults]
+        raise InvalidDocument(faults) from None
