@@ -1,5 +1,5 @@
 """The shell around the science: HTTP, database and command line. Imports ``substructures``, never the reverse."""
 
-from importlib.metadata import version
+from substructures import __version__
 
-__version__ = version("substructures")
+__all__ = ["__version__"]

@@ -1,5 +1,35 @@
 """Multibody dynamics from stored formulas that couple (P. Maisser's algebraised Lagrange formalism).
 
+The equations of motion of a tree of rigid bodies, g_ab q''^b + Gamma_abc q'^b q'^c = Q_a, come about in five steps:
+
+=============  ======================  ===========================================================================
+step           folder                  what is there
+=============  ======================  ===========================================================================
+definition     part.definition         what a mechanism is, as a document: bodies, joints, ports, loads, parameters
+part           part                    its formulas, derived once and stored: U_ka and Omega_ka by
+                                       mechanics.base_functions, own g_ab and Gamma_abc by mechanics.metric, and
+                                       what couples them to any host; all outputs are listed in part.formulas
+tree           tree                    parts on ports of parts: tree.coupling makes g_ab, Gamma_abc and the gravity
+                                       forces of the whole out of the stored formulas; the outputs of a model are
+                                       listed in tree.model
+quantities     quantities              what a model can be asked, as formulas and as numbers of one state or many
+analysis       analysis                what follows: first integrals, motion, closed loops, stability, control
+=============  ======================  ===========================================================================
+
+Where the symbols of the notation (notation.md) are made:
+
+=============  ================================================================================================
+U, Omega       partial velocities: mechanics.base_functions (recursion), carried to hosts in tree.coupling
+g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.metric.metric_column
+Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: mechanics.metric.christoffel_block
+Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: part.loads.applied_forces
+               (own forces of a part) and tree.coupling (gravity, and wrenches on what others carry)
+=============  ================================================================================================
+
+Below all of them: printers (programs as text), compile (programs as machine code), mechanics (one recursion over any
+scalar), expr (formulas as graphs and programs), documents (JSON and YAML with exact numbers). Beside them: catalogue
+(mechanisms with sources), formats (npz, Arrow), client (of the HTTP service).
+
 >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
 >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))
 >>> tree = TreeSpec.read({"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]})
@@ -7,13 +37,32 @@
 ('p.q1',)
 """
 
-from substructures import catalogue
-from substructures.errors import Fault, InvalidDocument, InvalidProgram, MissingValue, SubstructuresError, TooLarge
-from substructures.expr.program import Program
-from substructures.part.definition import Definition
-from substructures.part.part import Formula, Part, derive
-from substructures.tree.document import Instance, TreeSpec, read_instance
-from substructures.tree.model import Model, couple
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
+    from substructures import catalogue
+    from substructures.analysis.equations.first_integrals import first_integrals
+    from substructures.analysis.simulate import simulate
+    from substructures.analysis.stability.equilibria import equilibria
+    from substructures.analysis.stability.linearise import linearise
+    from substructures.errors import (
+        Fault,
+        InvalidDocument,
+        InvalidProgram,
+        MissingValue,
+        SubstructuresError,
+        TooLarge,
+    )
+    from substructures.expr.program import Program
+    from substructures.part.definition import Definition
+    from substructures.part.part import Formula, Part, derive
+    from substructures.printers import render
+    from substructures.quantities.evaluation import evaluate
+    from substructures.tree.document import Instance, TreeSpec, read_instance
+    from substructures.tree.model import Model, couple
 
 __all__ = [
     "Definition",
@@ -29,8 +78,51 @@ __all__ = [
     "SubstructuresError",
     "TooLarge",
     "TreeSpec",
+    "__version__",
     "catalogue",
     "couple",
     "derive",
+    "equilibria",
+    "evaluate",
+    "first_integrals",
+    "linearise",
     "read_instance",
+    "render",
+    "simulate",
 ]
+
+__version__: str
+
+_WHERE = {
+    "analysis.equations.first_integrals": ("first_integrals",),
+    "analysis.simulate": ("simulate",),
+    "analysis.stability.equilibria": ("equilibria",),
+    "analysis.stability.linearise": ("linearise",),
+    "errors": ("Fault", "InvalidDocument", "InvalidProgram", "MissingValue", "SubstructuresError", "TooLarge"),
+    "expr.program": ("Program",),
+    "part.definition": ("Definition",),
+    "part.part": ("Formula", "Part", "derive"),
+    "printers": ("render",),
+    "quantities.evaluation": ("evaluate",),
+    "tree.document": ("Instance", "TreeSpec", "read_instance"),
+    "tree.model": ("Model", "couple"),
+}
+_MODULE_OF = {name: module for module, names in _WHERE.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported when it is first asked for: a client of the service does not wait for SciPy."""
+    if name == "__version__":
+        value: Any = import_module("importlib.metadata").version("substructures")
+    elif name == "catalogue":
+        return import_module("substructures.catalogue")
+    elif name in _MODULE_OF:
+        value = getattr(import_module(f"substructures.{_MODULE_OF[name]}"), name)
+    else:
+        raise AttributeError(f"module 'substructures' has no attribute '{name}'")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,47 @@
+"""The package as its users import it: every public name, nothing heavy before it is asked for, the client alone."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import substructures
+
+SOURCE = Path(substructures.__file__ or "").read_text()
+
+
+@pytest.mark.parametrize("name", substructures.__all__)
+def test_public_names(name: str) -> None:
+    value = getattr(substructures, name)
+    assert name in dir(substructures)
+    if isinstance(value, type):
+        assert value.__name__ == name
+
+
+def test_unknown_name() -> None:
+    with pytest.raises(AttributeError, match="'substructures' has no attribute 'simulat'"):
+        getattr(substructures, "simulat")  # noqa: B009 a type checker would refuse the attribute
+
+
+def test_what_type_checkers_see_is_what_there_is() -> None:
+    (block,) = (node for node in ast.parse(SOURCE).body if isinstance(node, ast.If))
+    seen = {
+        (node.module, alias.name) for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    there = {(f"substructures.{module}", name) for module, names in substructures._WHERE.items() for name in names}
+    assert seen == there | {("substructures", "catalogue")}
+
+
+def test_client_beside_a_service_of_ones_own(tmp_path: Path) -> None:
+    """The client imports nothing of the service, so a user's file ``service.py`` does not get in its way."""
+    (tmp_path / "service.py").write_text("raise RuntimeError('the service of somebody else')")
+    (tmp_path / "use.py").write_text(
+        "from substructures.client import Client\nimport sys\nClient('http://127.0.0.1:9').close()\n"
+        "print(*(name for name in ('fastapi', 'sqlalchemy', 'scipy', 'sympy', 'service') if name in sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "use.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.stdout.strip(), done.stderr) == ("", "")
