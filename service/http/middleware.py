@@ -23,6 +23,7 @@ class Conventions:
         self.app, self.allowed_hosts, self.metrics = app, allowed_hosts, metrics
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve a request; other events of the server pass."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return

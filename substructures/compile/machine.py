@@ -84,6 +84,7 @@ class MachineKernel(Kernel):
         threads: int = 1,
         out: Array | None = None,
     ) -> Blocks:
+        """By machine code, ``width`` states in a vector. Raises ValueError for an ``out`` of another shape."""
         columns = list(columns)
         batch = batch_shape(values, columns)
         count = prod(batch)

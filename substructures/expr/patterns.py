@@ -9,13 +9,21 @@ class Node(Protocol):
     """What is looked at of an expression (:class:`substructures.expr.graph.Expr`)."""
 
     @property
-    def op(self) -> str: ...
+    def op(self) -> str:
+        """Name of the operation."""
+
     @property
-    def args(self) -> tuple[Self, ...]: ...
+    def args(self) -> tuple[Self, ...]:
+        """Operands."""
+
     @property
-    def value(self) -> Any: ...
+    def value(self) -> Any:
+        """Of a number or symbol."""
+
     @property
-    def is_number(self) -> bool: ...
+    def is_number(self) -> bool:
+        """Whether it is an exact number."""
+
     def __neg__(self) -> Self: ...
     def __sub__(self, other: Self) -> Self: ...
     def __mul__(self, other: Self) -> Self: ...

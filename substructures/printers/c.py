@@ -22,12 +22,15 @@ class C(Code):
     functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
 
     def pi(self) -> Piece:
+        """pi as a double: C99 has no constant for it."""
         return Piece("3.141592653589793")
 
     def power(self, a: Piece, n: int) -> Piece:
+        """``pow``, which is exact for integer exponents of small numbers."""
         return Piece(f"pow({a.text}, {float(n)!r})")
 
     def render(self, listing: Listing, name: str) -> str:
+        """A source file with one function; arrays are zeroed first where elements are zero."""
         head = ["// C99. Inputs and outputs are described here by the names that the user gave them."]
         head += [*self.comments(name), "#include <math.h>", "#include <stddef.h>", ""]
         if any(op[0] == "sign" for op in self.program.operations):

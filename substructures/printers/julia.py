@@ -17,11 +17,14 @@ class Julia(Matlab):
     functions: ClassVar[Mapping[str, str]] = {"atan2": "atan"}
 
     def head(self, name: str) -> list[str]:
+        """The signature, below what describes the arguments."""
         return [*self.comments(name), f"function {self.function_name(name)}(x)"]
 
     def tail(self) -> list[str]:
+        """The named tuple of all arrays."""
         results = ", ".join(f"{v} = {v}" for v in self.variables.values())
         return [f"    return (; {results})", "end"]
 
     def dimensions(self, shape: tuple[int, ...]) -> str:
+        """Arguments of zeros(); a vector has one axis."""
         return ", ".join(map(str, shape))

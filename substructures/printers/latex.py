@@ -34,18 +34,23 @@ class Latex(Language):
         self.letter = next(x for x in ("t", "w", "z", r"\mathfrak{t}") if not any(n.startswith(x) for n in self.names))
 
     def symbol(self, n: int) -> Piece:
+        """A name in italics with subscripts, dots for rates."""
         return Piece(self.names[n])
 
     def temporary(self, n: int) -> Piece:
+        """A letter that no symbol begins with, with a number below."""
         return Piece(f"{self.letter}_{{{n}}}")
 
     def pi(self) -> Piece:
+        """The Greek letter."""
         return Piece(r"\pi")
 
     def parentheses(self, text: str) -> str:
+        """Parentheses that grow with what they hold."""
         return rf"\left({text}\right)"
 
     def number(self, value: Fraction) -> Piece:
+        """A fraction, or a decimal number where that is exact and shorter."""
         if value < 0:
             return Piece("-" + self.number(-value).text, NEGATION)
         if value.denominator == 1:
@@ -54,18 +59,22 @@ class Latex(Language):
         return Piece(text) if text else Piece(rf"\frac{{{value.numerator}}}{{{value.denominator}}}", PRODUCT)
 
     def mul(self, a: Piece, b: Piece) -> Piece:
+        """A thin space, or a dot before digits."""
         left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
         sign = r" \cdot " if right[0].isdigit() or right.startswith(r"\frac") else r" \, "
         return Piece(left + sign + right, PRODUCT)
 
     def div(self, a: Piece, b: Piece) -> Piece:
+        """A fraction."""
         return Piece(rf"\frac{{{a.text}}}{{{b.text}}}", PRODUCT)
 
     def power(self, a: Piece, n: int) -> Piece:
+        """An exponent."""
         # a dotted or subscripted name needs no parentheses, a power does
         return Piece(f"{self.inside(a, ATOM)}^{{{n}}}", POWER)
 
     def call(self, op: str, args: list[Piece]) -> Piece:
+        """A root sign, bars of an absolute value, or the function's name."""
         if op == "sqrt":
             return Piece(rf"\sqrt{{{args[0].text}}}")
         if op == "abs":
@@ -73,6 +82,7 @@ class Latex(Language):
         return Piece(self.functions[op] + self.parentheses(", ".join(a.text for a in args)))
 
     def render(self, listing: Listing, name: str) -> str:
+        """An ``aligned`` environment; comments say what the symbols are."""
         lines = [f"% {comment(name)}"]
         lines += [
             f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"

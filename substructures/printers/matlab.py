@@ -19,6 +19,7 @@ class Matlab(Code):
     opening, closing = "(", ")"
 
     def symbol(self, n: int) -> Piece:
+        """An element of the argument x, counted from 1."""
         return Piece(f"x{self.opening}{n + 1}{self.closing}")
 
     def head(self, name: str) -> list[str]:
@@ -35,6 +36,7 @@ class Matlab(Code):
         return ", ".join(map(str, (*shape, *(1,) * (2 - len(shape)))))
 
     def render(self, listing: Listing, name: str) -> str:
+        """A function file."""
         body = [f"t{n} = {text};" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             body += self._fill(self.variables[output], array, listing.entries[output])

@@ -24,13 +24,16 @@ class Python(Code):
     power_sign = "**"
 
     def pi(self) -> Piece:
+        """The constant of numpy."""
         return Piece("np.pi")
 
     def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function of numpy, some of which have longer names there."""
         names = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2"}
         return Piece(f"np.{names.get(op, op)}({', '.join(a.text for a in args)})")
 
     def render(self, listing: Listing, name: str) -> str:
+        """A module with one function, whose arrays have the axes of a batch first."""
         function = self.function_name(name)
         inputs = [f"    {s.name!a}," for s in self.program.symbols]
         lines = [*_IMPORT, *self.comments(name), "", "INPUTS = (", *inputs, ")", "", "", f"def {function}(x):"]

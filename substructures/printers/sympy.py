@@ -24,6 +24,7 @@ class SymPy(Code):
     functions: ClassVar[Mapping[str, str]] = {"abs": "Abs"}
 
     def number(self, value: Fraction) -> Piece:
+        """An exact number: a plain integer, or a Rational."""
         if value < 0:
             return Piece("-" + self.number(-value).text, NEGATION)
         if value.denominator == 1:
@@ -31,10 +32,12 @@ class SymPy(Code):
         return Piece(f"Rational({value.numerator}, {value.denominator})")
 
     def div(self, a: Piece, b: Piece) -> Piece:
+        """a / b, exact also for two integers."""
         # two plain integers would make a float
         return Language.div(self, Piece(f"Integer({a.text})") if a.text.isdigit() else a, b)
 
     def render(self, listing: Listing, name: str) -> str:
+        """A module that builds immutable arrays of expressions."""
         lines = [
             '"""Generated code: formulas of a mechanism."""',
             "",

@@ -25,12 +25,15 @@ class Text(Language):
         self.prefix = prefix(self.names)
 
     def symbol(self, n: int) -> Piece:
+        """The user's name, as formulas write it."""
         return Piece(self.names[n])
 
     def temporary(self, n: int) -> Piece:
+        """A prefix that no symbol has, with a number."""
         return Piece(f"{self.prefix}{n}")
 
     def number(self, value: Fraction) -> Piece:
+        """A fraction of small numbers, otherwise an exact decimal number where there is a short one."""
         if value > 0 and value.denominator > _FRACTIONS:
             text = decimal_text(value)
             if text is not None:
@@ -38,6 +41,7 @@ class Text(Language):
         return super().number(value)
 
     def render(self, listing: Listing, name: str) -> str:
+        """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
         lines = [f"# {comment(name)}"]
         lines += [
             f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
