@@ -32,3 +32,9 @@ def parse_reference(text: str) -> Reference | None:
         return None
     name, number, digest, alias = match.groups()
     return Reference(name, int(number) if number else None, digest, alias)
+
+
+def is_pinned(text: str) -> bool:
+    """Whether a text is a reference that means the same content for ever."""
+    reference = parse_reference(text)
+    return reference is not None and reference.is_pinned

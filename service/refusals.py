@@ -34,6 +34,10 @@ class Refused(Exception):
         self.faults, self.headers, self.members = tuple(faults), dict(headers or {}), members
 
 
+class StaleError(Exception):
+    """A resource was changed while a change of it was being prepared: prepare again."""
+
+
 def not_found(detail: str, code: str = "not-found") -> Refused:
     """404."""
     return Refused(404, code, detail)

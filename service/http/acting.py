@@ -21,9 +21,8 @@ from service.http.deadline import Deadline, GivenUp
 from service.http.idempotency import IdempotencyClaim, replayed
 from service.http.requests import RawBody, spooled_body, store_of
 from service.http.responses import response_of
-from service.operations.trees import StaleError
 from service.queries.common import is_conflict
-from service.refusals import Refused
+from service.refusals import Refused, StaleError
 from service.spool import Spool
 from service.store import Store
 

@@ -74,12 +74,6 @@ def _resolved(connection: Connection, ref: Reference, text: str = "") -> catalog
     return version
 
 
-def is_pinned(text: str) -> bool:
-    """Whether a reference means the same content for ever."""
-    ref = parse_reference(text)
-    return ref is not None and ref.is_pinned
-
-
 def search(connection: Connection, wanted: catalogue.CatalogueSearch, size: int, token: str | None) -> Page:
     """A page of the latest versions. Raises Refused 422 for a token of another search."""
     column = wanted.sort.lstrip("-")

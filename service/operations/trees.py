@@ -14,8 +14,8 @@ from service.operations import catalogue
 from service.queries import catalogue as versions
 from service.queries import content, trees
 from service.queries.common import now
-from service.references import Reference, parse_reference
-from service.refusals import Refused, not_found
+from service.references import Reference, is_pinned, parse_reference
+from service.refusals import Refused, StaleError, not_found
 from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
@@ -23,10 +23,6 @@ from substructures.errors import Fault, InvalidDocument
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
-
-
-class StaleError(Exception):
-    """The tree was changed while the change was being prepared: prepare again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +75,7 @@ def coupling(store: Store, text: str, data: Any, if_match: str | None = None) ->
     base, spec = _existing(store, text, if_match)
     instances = spec.get("instances", [])
     grown = {**spec, "instances": [*instances, data]}
-    return TreeChange(grown, base, _is_pinned(text), f"/instances/{len(instances)}")
+    return TreeChange(grown, base, is_pinned(text), f"/instances/{len(instances)}")
 
 
 def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> TreeChange:
@@ -92,7 +88,7 @@ def removal(store: Store, text: str, instance: str, if_match: str | None = None)
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
     kept = [each for each in instances if each["name"] != instance]
-    return TreeChange({**spec, "instances": kept}, base, _is_pinned(text), "")
+    return TreeChange({**spec, "instances": kept}, base, is_pinned(text), "")
 
 
 def prepare_change(store: Store, change: TreeChange) -> Revision:
@@ -106,11 +102,6 @@ def prepare_change(store: Store, change: TreeChange) -> Revision:
 def _within(fault: Fault, step: str) -> Fault:
     """The fault as seen from the instance document alone."""
     return Fault(fault.pointer.removeprefix(step), fault.code, fault.message)
-
-
-def _is_pinned(text: str) -> bool:
-    ref = parse_reference(text)
-    return ref is not None and ref.is_pinned
 
 
 def tree_tag(tree: trees.Tree) -> str:

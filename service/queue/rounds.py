@@ -13,11 +13,11 @@ from typing import Any
 
 from service.database.connections import Connection
 from service.jobs.engine import Outcome
-from service.operations import job_results, trees
+from service.operations import job_results
 from service.queries import job_events, jobs, queue
 from service.queries.attempts import Attempt, Changes, Lost
 from service.queries.common import is_outage
-from service.refusals import Refused, problem
+from service.refusals import Refused, StaleError, problem
 from substructures.documents import write_json
 
 #: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers:
@@ -190,7 +190,7 @@ def _fault(connection: Connection, good: Sequence[tuple[Attempt, Outcome]]) -> M
     try:
         with connection.begin_nested():
             job_results.keep(connection, good)
-    except trees.StaleError as error:
+    except StaleError as error:
         return problem(Refused(409, "conflict", str(error)))
     except Exception as error:
         if is_outage(error):  # the database, not the item

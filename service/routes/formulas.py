@@ -12,6 +12,7 @@ from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
 from service.queries import content
+from service.references import is_pinned
 from service.refusals import not_found
 from service.routes.bodies import printed
 from service.routes.style import StyleOf
@@ -32,7 +33,7 @@ def list_formulas(ref: str, request: Request, store: StoreOf) -> Response:
         version = catalogue.find(connection, ref)
         rows = content.list_formulas(connection, version.digest)
     tag = etag(version.digest, "formulas")
-    return conditional(request, tag, catalogue.is_pinned(ref), lambda: json_answer(dump(formulas_view(version, rows))))
+    return conditional(request, tag, is_pinned(ref), lambda: json_answer(dump(formulas_view(version, rows))))
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -67,4 +68,4 @@ def get_formula(
             chosen = lean(part, chosen)
         return models.printed(models.bound(chosen, part.parameters, style.bind), style, part.coordinates)
 
-    return conditional(request, tag, catalogue.is_pinned(ref), make)
+    return conditional(request, tag, is_pinned(ref), make)

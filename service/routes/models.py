@@ -15,11 +15,11 @@ from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import Evaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
+from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
-from service.routes.trees import is_pinned
 from service.schemas.numbers import EvaluationResult
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW

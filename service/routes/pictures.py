@@ -11,6 +11,7 @@ from service.answers import Answer, etag
 from service.http.requests import StoreOf, needs
 from service.http.responses import conditional
 from service.operations import catalogue, pictures, trees
+from service.references import is_pinned
 
 MEDIA_TYPE = "image/svg+xml"
 #: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own
@@ -34,7 +35,7 @@ def substructure_picture(ref: str, request: Request, store: StoreOf, q: Q = None
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
     pose = pictures.read_pose(q, version.dof)
-    pinned = catalogue.is_pinned(ref)
+    pinned = is_pinned(ref)
     return _answer(request, version.digest, pose, pinned, lambda: pictures.draw_part(store, version, pose))
 
 
@@ -44,7 +45,7 @@ def tree_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Res
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
     pose = pictures.read_pose(q, tree.dof)
-    pinned = catalogue.is_pinned(ref)
+    pinned = is_pinned(ref)
     return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
 
 

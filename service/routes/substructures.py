@@ -16,6 +16,7 @@ from service.operations import catalogue
 from service.paging import limited
 from service.queries import aliases, content
 from service.queries.catalogue import SORTS, CatalogueSearch, Version
+from service.references import is_pinned
 from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import ACCEPTED, deferred
@@ -97,7 +98,7 @@ def get_definition(ref: str, request: Request, store: StoreOf) -> Response:
         version = catalogue.find(connection, ref)
         definition = content.get_definition(connection, version.digest) or b""
     tag = etag(version.digest, "definition")
-    return conditional(request, tag, catalogue.is_pinned(ref), lambda: json_answer(definition))
+    return conditional(request, tag, is_pinned(ref), lambda: json_answer(definition))
 
 
 @router.post("/{ref}/yank", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("YankRequest", False))

@@ -17,7 +17,7 @@ from service.operations import trees
 from service.operations.job_results import BASE_REVISION, IS_EXACT
 from service.paging import limited, read_token, write_token
 from service.queries.trees import page
-from service.references import parse_reference
+from service.references import is_pinned
 from service.routes.bodies import body_of
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.resources import TreePage, TreeView
@@ -92,12 +92,6 @@ def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
     return conditional(request, trees.tree_tag(tree), is_pinned(ref), lambda: json_answer(tree_view(tree)))
-
-
-def is_pinned(ref: str) -> bool:
-    """Whether the reference means the same revision for ever."""
-    parsed = parse_reference(ref)
-    return parsed is not None and parsed.is_pinned
 
 
 @router.post(
