@@ -124,6 +124,11 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
     part, model = derive(Definition.read(definition)), model_of(definition)
     request = request_for(model, seed)
     formulas = evaluate(model, request)
+    paths: list[list[int]] = []
+    for c, joint in enumerate(part.skeleton.joints):
+        paths.append([*(paths[joint.parent] if joint.parent >= 0 else []), c])
+    entries = {("Q", c) for c in range(part.dof)} | {("g", a, c) for c, path in enumerate(paths) for a in path}
+    entries |= {("Gamma", a, b, c) for c, path in enumerate(paths) for a in path[:-1] for b in path}
     values = {c: request["q"][:, i] for i, c in enumerate(part.coordinates)}
     x = interpret(part.program, values | {"": np.zeros(3)}, ROWS)
 
@@ -138,6 +143,7 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
         return int(some[0]) if some[0] in (0, 1) else float(some[0])
 
     def check(found: dict[tuple[Any, ...], Any], i: Any) -> None:
+        assert found.keys() == entries
         names = {"g": "metric", "Gamma": "christoffel", "Q": "gravity"}
         for key, value in found.items():
             expected = formulas[names[key[0]]][(i, *key[1:])]
