@@ -73,6 +73,8 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("a list for a number", ("bodies", 1, "mass"), [1], "number-expected", ""),
     ("negative mass", ("bodies", 1, "mass"), -2, "negative-mass", "b2"),
     ("negative mass by a formula", ("bodies", 1, "mass"), "1 - 2", "negative-mass", "b2"),
+    ("mass beyond all doubles", ("bodies", 1, "mass"), "(10^62)^5", "number-not-finite", "b2"),
+    ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
     ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
