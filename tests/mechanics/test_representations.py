@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import GRAVITY, Plain, model_of
+from random_trees import GRAVITY, Plain, model_of, random_states
 from samples import SEEDS, flat, pair, request_for, same
 
 from substructures import Definition, Part, derive
@@ -20,6 +21,7 @@ from substructures.mechanics.inertia import Inertia, composites
 from substructures.mechanics.joints import Joint, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
+from substructures.one_piece import derive_in_one_piece
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -73,6 +75,21 @@ def test_parameters_may_differ_from_state_to_state() -> None:
         {k: x[1:2] for k, x in lists.items()},
         1e-14,
     )
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_same_derived_in_one_piece(seed: int) -> None:
+    """Without coupling, and without the symbols for inertia."""
+    _, symbolic = pair(seed, 0.3)
+    model = model_of(symbolic)
+    states = random_states(np.random.default_rng(seed), 3, model.dof)
+    expected = evaluate(model, {"quantities": ["metric", "christoffel", "gravity"], **states})
+    whole = derive_in_one_piece(Definition.read(symbolic), tuple(Decimal(str(x)) for x in GRAVITY))
+    values = {name: float(p["value"]) for name, p in symbolic["parameters"].items()}
+    values |= {c.removeprefix("x."): states["q"][:, a] for a, c in enumerate(model.coordinates)}
+    found = interpret(whole, values | {"": np.zeros(3)})
+    assert not any(s.kind == "inertia" for s in whole.symbols)
+    same({name: expected[name] for name in ("metric", "christoffel", "gravity")}, found, 1e-11)
 
 
 # --- one recursion for every scalar
