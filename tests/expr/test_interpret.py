@@ -12,7 +12,7 @@ from random_expressions import collected
 from substructures.errors import InvalidDocument, MissingValue
 from substructures.expr.bind import bind
 from substructures.expr.graph import Graph
-from substructures.expr.interpret import constant, interpret
+from substructures.expr.interpret import constant, interpret, interpret_in_blocks
 from substructures.expr.program import Formulas, Program, Symbol
 from substructures.expr.trigonometry import cos, sin
 
@@ -47,6 +47,18 @@ def test_batches(arm: Program) -> None:
     for i in np.ndindex(2, 3):
         np.testing.assert_array_equal(batch["metric"][i], interpret(arm, {**POINT, "arm.q": q[i]})["metric"])
     np.testing.assert_array_equal(batch["metric"], np.swapaxes(batch["metric"], -1, -2))
+
+
+@pytest.mark.parametrize("memory", [1, 30, 10**6])
+def test_blocks_of_states(arm: Program, memory: int) -> None:
+    """The last block is shorter than the others; numbers hold for all states."""
+    values = {**POINT, "arm.q": np.linspace(-1, 1, 11), "l2": np.linspace(1, 2, 11)}
+    expected = interpret(arm, values)
+    found = interpret_in_blocks(arm, values, list(arm.outputs), 11, memory)
+    assert found.keys() == expected.keys()
+    for name, array in expected.items():
+        np.testing.assert_array_equal(found[name], array)
+    assert interpret_in_blocks(arm, POINT, ["energy"], 3)["energy"].tolist() == [0.5 * np.sin(0.4)] * 3
 
 
 def test_missing_and_irregular_values(arm: Program) -> None:
