@@ -16,6 +16,7 @@ from substructures.evaluation import evaluate
 from substructures.expr.bind import bind
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
+from substructures.lean import lean
 from substructures.mechanics.base_functions import base_functions
 from substructures.mechanics.inertia import Inertia, composites
 from substructures.mechanics.joints import Joint, links
@@ -78,18 +79,20 @@ def test_parameters_may_differ_from_state_to_state() -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_the_same_derived_in_one_piece(seed: int) -> None:
-    """Without coupling, and without the symbols for inertia."""
+def test_the_same_alone_and_derived_in_one_piece(seed: int) -> None:
+    """Without coupling: stored formulas with the own inertia bound, and formulas that never had symbols for it."""
     _, symbolic = pair(seed, 0.3)
-    model = model_of(symbolic)
+    part, model = derive(Definition.read(symbolic)), model_of(symbolic)
     states = random_states(np.random.default_rng(seed), 3, model.dof)
     expected = evaluate(model, {"quantities": ["metric", "christoffel", "gravity"], **states})
     whole = derive_in_one_piece(Definition.read(symbolic), tuple(Decimal(str(x)) for x in GRAVITY))
     values = {name: float(p["value"]) for name, p in symbolic["parameters"].items()}
     values |= {c.removeprefix("x."): states["q"][:, a] for a, c in enumerate(model.coordinates)}
     found = interpret(whole, values | {"": np.zeros(3)})
-    assert not any(s.kind == "inertia" for s in whole.symbols)
+    alone = lean(part, part.program.select(["metric", "christoffel"]))
+    assert not any(s.kind == "inertia" for s in (*whole.symbols, *alone.symbols))
     same({name: expected[name] for name in ("metric", "christoffel", "gravity")}, found, 1e-11)
+    same({n: expected[n] for n in ("metric", "christoffel")}, interpret(alone, values | {"": np.zeros(3)}), 1e-11)
 
 
 # --- one recursion for every scalar
