@@ -200,6 +200,16 @@ def test_what_is_fixed_to_a_mounted_interface_is_a_link() -> None:
     assert {name for name in Y.parameters if name.startswith("tool.")} >= {"tool.m", "tool.cx", "tool.Ixx"}
 
 
+def test_an_interface_that_carries_nothing_is_no_link() -> None:
+    arms = [
+        {"name": "a", "substructure": "planar-2r"},
+        {"name": "b", "substructure": "planar-2r", "at": "a.flange"},
+    ]
+    spec, parts = of({"name": "t", "gravity": GRAVITY, "instances": arms})
+    links = [name.rsplit(".", 1)[0] for name in check(spec, parts, 0).names[::10]]
+    assert links == [f"{arm}.{body}" for arm in "ab" for body in parts["a"].bodies]
+
+
 def test_refusals() -> None:
     spec, parts = of({"name": "t", "instances": [{"name": "x", "substructure": "planar-2r"}]})
     with pytest.raises(TooLarge):
