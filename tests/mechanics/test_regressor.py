@@ -77,6 +77,7 @@ def test_catalogue(name: str) -> None:
     Y = check(spec, parts, rotors(parts["x"]))
     links = dict.fromkeys(entry.rsplit(".", 1)[0] for entry in Y.names)
     assert Y.names == tuple(f"{link}.{entry}" for link in links for entry in TEN)
+    assert Y.parameters.keys() == {s.name for s in Y.program.symbols if s.kind == "parameter"}
 
 
 @pytest.mark.parametrize("number", range(8))
