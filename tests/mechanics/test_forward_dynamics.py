@@ -145,7 +145,8 @@ def test_tiny_and_huge_masses_are_not_singular() -> None:
 
 def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
     model = random_model(2)
-    request = Q | {"q": np.random.default_rng(0).uniform(-1, 1, (7, model.dof))}
+    q, qd = np.random.default_rng(0).uniform(-1, 1, (2, 7, model.dof))
+    request = Q | {"q": q, "qd": qd}
     expected = evaluate(model, request)["forward_dynamics"]
 
     def small(model: Model, name: str) -> Any:
