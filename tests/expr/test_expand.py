@@ -183,6 +183,14 @@ def test_sizes_are_bounded_before_the_work_is_done() -> None:
     assert time.perf_counter() - start < 5
 
 
+def test_coefficients_are_bounded() -> None:
+    g = Graph()
+    x, n = g.symbol("x"), g.number(2**2100 + 1)
+    for factor in (n, 1 / n):
+        with pytest.raises(TooLarge, match="coefficient"):
+            expand((x + factor) * (x + n + 1))
+
+
 def test_deep_and_nested_expressions_need_no_recursion() -> None:
     g = Graph()
     e = g.symbol("x")
