@@ -159,6 +159,10 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
     for name in DERIVED:
         with pytest.raises(TooLarge):
             derived(model, name, 3)
+    with pytest.raises(TooLarge, match="kinetic_energy"):
+        evaluate(
+            model, request | {"quantities": ["kinetic_energy"]}, sources=Sources(model, lambda m, n: derived(m, n, 3))
+        )
 
 
 def test_cholesky_leaves_the_other_states_alone() -> None:
