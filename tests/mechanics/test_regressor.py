@@ -16,7 +16,7 @@ from random_trees import GRAVITY, Kind, Plain, random_definition, random_states,
 
 from substructures import Definition, InvalidDocument, MissingValue, Part, TooLarge, TreeSpec, catalogue, couple, derive
 from substructures.derived import derived
-from substructures.evaluation import evaluate
+from substructures.evaluation import Sources, evaluate
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
@@ -199,6 +199,22 @@ def test_what_is_fixed_to_a_mounted_interface_is_a_link() -> None:
     Y = check(spec, parts, 0)
     assert Y.names[-10:] == tuple(f"tool.base.{e}" for e in TEN)
     assert {name for name in Y.parameters if name.startswith("tool.")} >= {"tool.m", "tool.cx", "tool.Ixx"}
+
+
+def test_parameters_that_the_motion_does_not_feel() -> None:
+    """A wheel about its axis: Theta_xx is no parameter of the model, but J_xx = (Theta_yy + Theta_zz - Theta_xx)/2."""
+    wheel = {"name": "wheel", "parent": "base", "joint": {"type": "revolute"}, "mass": 1}
+    definition = {
+        "name": "wheel",
+        "parameters": {"a": {"value": 1}},
+        "bodies": [wheel | {"inertia": {"xx": "a", "yy": 1, "zz": 1}}],
+    }
+    spec, parts = of({"name": "t", "instances": [{"name": "x", "definition": definition}]})
+    model = couple(spec, parts)
+    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    assert "x.a" not in model.parameters
+    request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
+    assert evaluate(model, request, sources=sources)["inertial_parameters"][4] == 0.75
 
 
 def test_an_interface_that_carries_nothing_is_no_link() -> None:
