@@ -10,6 +10,7 @@ from bad_documents import GOOD, Path, Plain, cell, changed, pointer_of, request
 
 from substructures import Definition, InvalidDocument, TooLarge, TreeSpec, couple, derive
 from substructures.evaluation import evaluate
+from substructures.skeleton import christoffel_entries
 
 B: Path = ("bodies", 1)
 J: Path = ("bodies", 0, "joint")
@@ -188,6 +189,12 @@ def test_a_mechanism_too_large_to_derive() -> None:
         derive(Definition.read(long_chain(200)))
     assert raised.value.size == sum(n * n for n in range(201))
     assert "limit" in str(raised.value)
+
+
+def test_what_counts_as_a_christoffel_symbol() -> None:
+    """a and revolute b on the path to c: a slide, on it a hinge that carries a slide, and another hinge on the first."""
+    assert christoffel_entries([(-1, 1)]) == 0
+    assert christoffel_entries([(-1, 1), (0, 0), (1, 1), (0, 0)]) == 0 + 2 * 1 + 3 * 1 + 2 * 1
 
 
 def test_a_tree_too_large_to_couple() -> None:
