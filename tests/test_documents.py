@@ -70,6 +70,8 @@ def test_the_place_of_too_deep_nesting(read: Any, pointer: str) -> None:
 def test_limits_are_inclusive(read: Any) -> None:
     assert read(b"[" + b"7" * MAX_DIGITS + b"]") == [int("7" * MAX_DIGITS)]
     assert read(b"[1e399]") == [Decimal("1e399")]
+    assert read(b"[0." + b"0" * 700 + b"1e1000]") == [Decimal("1e299")]
+    assert read(b"[" + b"{}, [[]], " * MAX_DEPTH + b"0]") == [{}, [[]]] * MAX_DEPTH + [0]
     read(b"[" * MAX_DEPTH + b"]" * MAX_DEPTH)
 
 
@@ -153,6 +155,10 @@ def test_canonical_bytes() -> None:
         "c": {},
         "d": [],
     }
+    assert (
+        write_json([Decimal("7" * MAX_DIGITS), int("7" * MAX_DIGITS)])
+        == f"[{'7' * MAX_DIGITS},{'7' * MAX_DIGITS}]".encode()
+    )
     expected = '{"a":[1000,0,0.0000001,null,true,"\u00e9"],"b":1.5,"c":{},"d":[]}'
     assert write_json(data) == expected.encode()
 

@@ -192,7 +192,7 @@ def test_a_mechanism_too_large_to_derive() -> None:
 
 
 def test_what_counts_as_a_christoffel_symbol() -> None:
-    """a and revolute b on the path to c: a slide, on it a hinge that carries a slide, and another hinge on the first."""
+    """a and revolute b on the path to c: a slide, on it a hinge that carries a slide, and one more hinge."""
     assert christoffel_entries([(-1, 1)]) == 0
     assert christoffel_entries([(-1, 1), (0, 0), (1, 1), (0, 0)]) == 0 + 2 * 1 + 3 * 1 + 2 * 1
 
