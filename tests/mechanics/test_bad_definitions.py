@@ -172,8 +172,9 @@ def test_parameters_with_impossible_defaults_are_a_warning() -> None:
 
 def test_a_definition_that_is_no_object() -> None:
     for data in ([], "x", 3, None):
-        with pytest.raises(InvalidDocument):
+        with pytest.raises(InvalidDocument) as raised:
             Definition.read(data)
+        assert [(f.pointer, f.code) for f in raised.value.faults] == [("", "object-expected")]
 
 
 def test_too_many_bodies() -> None:
