@@ -13,7 +13,7 @@ from substructures.errors import InvalidDocument, MissingValue
 from substructures.expr.bind import bind
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import constant, interpret, interpret_in_blocks
-from substructures.expr.program import Formulas, Program, Symbol
+from substructures.expr.program import Formulas, Output, Program, Symbol
 from substructures.expr.trigonometry import cos, sin
 
 
@@ -38,6 +38,25 @@ def test_every_operation() -> None:
     for n in names:
         assert values[n] == getattr(np, numpy.get(n, n))(0.3)
     assert values["atan2"] == np.arctan2(-0.8, 0.3)
+
+
+def test_arithmetic() -> None:
+    x, y = 0.3, -0.8
+    expected = {
+        ("add", 0, 1): x + y,
+        ("sub", 0, 1): x - y,
+        ("mul", 0, 1): x * y,
+        ("div", 0, 1): x / y,
+        ("neg", 1): -y,
+        ("powi", 1, 3): y**3,
+        ("powi", 0, -2): x**-2,
+        ("int", "-7"): -7.0,
+        ("rat", "-3", "8"): -0.375,
+    }
+    output = Output((len(expected),), tuple((k,) for k in range(len(expected))), tuple(range(2, 2 + len(expected))))
+    symbols = (Symbol("x", "parameter"), Symbol("y", "parameter"))
+    found = interpret(Program(symbols, (("sym", 0), ("sym", 1), *expected), {"f": output}), {"x": x, "y": y})["f"]
+    np.testing.assert_allclose(found, list(expected.values()), rtol=1e-15)
 
 
 def test_batches(arm: Program) -> None:
