@@ -57,6 +57,14 @@ def test_a_cycle_of_hosts() -> None:
     assert {f.code for f in raised.value.faults} == {"cycle"}
 
 
+def test_a_binding_that_no_formula_needs_is_read_all_the_same() -> None:
+    part = derive(Definition.read(changed(GOOD, (("parameters", "spare"), {"value": 1}))))
+    tree = TreeSpec.read(changed(TREE, ((*INSTANCE, "parameters", "spare"), "2*(")))
+    with pytest.raises(InvalidDocument) as raised:
+        couple(tree, {"one": part, "two": part})
+    assert [(f.pointer, f.code) for f in raised.value.faults] == [("/instances/1/parameters/spare", "bad-expression")]
+
+
 def test_a_binding_that_makes_a_divisor_zero() -> None:
     part = derive(Definition.read(changed(GOOD, (("bodies", 0, "joint", "tau"), "1/l"))))
     tree = TreeSpec.read(changed(TREE, ((*INSTANCE, "parameters", "l"), 0)))
