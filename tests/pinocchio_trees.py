@@ -11,14 +11,23 @@ import numpy as np
 import pinocchio as pin
 from independent import inertia_of, value, values
 
-from substructures.part.topology import CHAINS
-
 Plain = dict[str, Any]
 Array = Any
 
 UNIT = {
     "P": (pin.JointModelPX, pin.JointModelPY, pin.JointModelPZ),
     "R": (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ),
+}
+#: (kind, axis) of the joints that a joint type is made of, from the parent to the body
+CHAINS = {
+    "revolute": ("Rz",),
+    "prismatic": ("Pz",),
+    "fixed": (),
+    "universal": ("Rz", "Ry"),
+    "spherical": ("Rz", "Ry", "Rx"),
+    "cylindrical": ("Rz", "Pz"),
+    "planar": ("Px", "Py", "Rz"),
+    "free": ("Px", "Py", "Pz", "Rz", "Ry", "Rx"),
 }
 
 
@@ -75,13 +84,13 @@ def _add(engine: Engine, body: Plain) -> None:
     place = place * _seat(joint)
     names = joint.get("coordinate", [])
     names = [names] if isinstance(names, str) else names
-    for (s, axis), name in zip(CHAINS[joint["type"]], names, strict=True):
-        n = np.eye(3)[axis]
-        kind: Any = UNIT["P" if s else "R"][axis]()
+    for (letter, axis), name in zip(CHAINS[joint["type"]], names, strict=True):
+        n = np.eye(3)["xyz".index(axis)]
+        kind: Any = UNIT[letter]["xyz".index(axis)]()
         if "axis" in joint:
             n = values(joint["axis"])
             n = n / np.linalg.norm(n)
-            kind = pin.JointModelPrismaticUnaligned(n) if s else pin.JointModelRevoluteUnaligned(n)
+            kind = pin.JointModelPrismaticUnaligned(n) if letter == "P" else pin.JointModelRevoluteUnaligned(n)
         place = place * placed(turn(n, value(joint.get("phi", 0))), n * value(joint.get("tau", 0)))
         parent = engine.model.addJoint(parent, kind, place, name)
         engine.index[name] = engine.model.joints[parent].idx_v

@@ -52,20 +52,26 @@ def test_numbers_are_exact(read: Any) -> None:
         (b'{"a": 1e400}', "/a", "number", "column 7"),
         (b'{"a": 1e-400}', "/a", "number", "column 7"),
         (b'{"a": [1e999999999999]}', "/a/0", "number", "column 8"),
-        (b'{"a": ' + b"[" * MAX_DEPTH + b"]" * MAX_DEPTH + b"}", None, "nesting", "column 70"),
     ],
 )
-def test_refusals_have_pointer_and_place(read: Any, data: bytes, pointer: str | None, code: str, place: str) -> None:
+def test_refusals_have_pointer_and_place(read: Any, data: bytes, pointer: str, code: str, place: str) -> None:
     found = fault_of(read, data)
-    assert found[1] == code
-    assert pointer is None or found[0] == pointer
+    assert found[:2] == (pointer, code)
     assert place in found[2]
+
+
+@pytest.mark.parametrize(("read", "pointer"), [(read_json, ""), (read_yaml, "/a" + "/0" * (MAX_DEPTH - 1))])
+def test_the_place_of_too_deep_nesting(read: Any, pointer: str) -> None:
+    data = b'{"a": ' + b"[" * MAX_DEPTH + b"]" * MAX_DEPTH + b"}"
+    assert fault_of(read, data) == (pointer, "nesting", "nested deeper than 64 levels (line 1, column 70)")
 
 
 @READERS
 def test_limits_are_inclusive(read: Any) -> None:
     assert read(b"[" + b"7" * MAX_DIGITS + b"]") == [int("7" * MAX_DIGITS)]
     assert read(b"[1e399]") == [Decimal("1e399")]
+    assert read(b"[0." + b"0" * 700 + b"1e1000]") == [Decimal("1e299")]
+    assert read(b"[" + b"{}, [[]], " * MAX_DEPTH + b"0]") == [{}, [[]]] * MAX_DEPTH + [0]
     read(b"[" * MAX_DEPTH + b"]" * MAX_DEPTH)
 
 
@@ -149,6 +155,10 @@ def test_canonical_bytes() -> None:
         "c": {},
         "d": [],
     }
+    assert (
+        write_json([Decimal("7" * MAX_DIGITS), int("7" * MAX_DIGITS)])
+        == f"[{'7' * MAX_DIGITS},{'7' * MAX_DIGITS}]".encode()
+    )
     expected = '{"a":[1000,0,0.0000001,null,true,"\u00e9"],"b":1.5,"c":{},"d":[]}'
     assert write_json(data) == expected.encode()
 

@@ -22,8 +22,11 @@ from substructures.tree.closures import ROWS
 TYPES = tuple(ROWS)
 
 
-def closed_model(seed: int) -> Model:
-    """A random tree of two random parts, one on the other, with a closure of every type between random frames."""
+def closed_model(seed: int, bare: bool = False) -> Model:
+    """A random tree of two random parts, one on the other, with a closure of every type between random frames.
+
+    ``bare``: all of them between the last frames of the parts, without placement and axis.
+    """
     rng = np.random.default_rng(seed)
     definitions = [random_definition(rng, Kind(3, depth=5), f"part{i}") for i in range(2)]
     parts = {f"x{i}": derive(Definition.read(d)) for i, d in enumerate(definitions)}
@@ -34,9 +37,12 @@ def closed_model(seed: int) -> Model:
         closure: Plain = {"name": f"c{k}", "type": kind, "from": str(rng.choice(frames))}
         closure["to"] = str(rng.choice([*frames, "world"]))
         closure["placement"] = {"position": vector(rng), "rpy": vector(rng, 3)}
+        if bare:
+            closure = {"name": f"c{k}", "type": kind}
+            closure |= {"from": f"x0.{parts['x0'].frames[-1]}", "to": f"x1.{parts['x1'].frames[-1]}"}
         if kind == "rod":
             closure["length"] = "L/2"
-        elif kind in ("pin", "planar", "universal"):
+        elif not bare and kind in ("pin", "planar", "universal"):
             closure["axis"] = [0.6, 0, 0.8]
         closures.append(closure)
     document = {
@@ -87,16 +93,53 @@ def test_cross_products_equal_derivatives(seed: int) -> None:
         np.testing.assert_allclose(found[name], expected, rtol=0, atol=1e-12 * max(1, np.abs(expected).max()))
 
 
-def test_residuals_are_the_distances_of_the_frames() -> None:
-    """Against position and rotation of the frames, for closures without placement and axis."""
-    model = one_loop([{"name": "c", "type": kind, "from": "x.coupler_end", "to": "x.rocker"} for kind in ("weld",)])
-    x = {n: 0.3 + 0.1 * k for k, n in enumerate(model.coordinates)} | defaults(model)
-    out = interpret(model.program, x, ["position", "rotation", "closure.residual"])
-    a, b = model.frames.index("x.coupler_end"), model.frames.index("x.rocker")
-    R, d = out["rotation"][a], out["position"][b] - out["position"][a]
-    np.testing.assert_allclose(out["closure.residual"][:3], R.T @ d, atol=1e-15)
-    turned = R.T @ out["rotation"][b]
-    np.testing.assert_allclose(out["closure.residual"][3:], [-turned[1, 2], turned[0, 2], turned[1, 0]], atol=1e-15)
+#: what every joint leaves no freedom: places, then turns
+JOINTS = {
+    "revolute": "x y z rx ry",
+    "prismatic": "x y rx ry rz",
+    "spherical": "x y z",
+    "fixed": "x y z rx ry rz",
+    "cylindrical": "x y rx ry",
+    "universal": "x y z cross",
+    "planar": "z rx ry",
+    "rod": "length",
+}
+SAME = {"pin": "revolute", "slider": "prismatic", "ball": "spherical", "weld": "fixed"}
+
+
+def rows_by_hand(d: Any, m: Any, length: float) -> dict[str, tuple[float, Any, float]]:
+    """Residual, direction and alignment of every row from d = r_B - r_A and the axes m of B, in the axes of A."""
+    e = np.eye(3)
+    return {
+        **{name: (d[i], e[i], 0.0) for i, name in enumerate("xyz")},
+        "length": ((d @ d - length**2) / (2 * length), d / length, 0.0),
+        "rx": (-m[2, 1], -np.cross(m[2], e[1]), m[2, 2]),
+        "ry": (m[2, 0], np.cross(m[2], e[0]), m[2, 2]),
+        "rz": (m[0, 1], np.cross(m[0], e[1]), m[0, 0]),
+        "cross": (m[1, 2], np.cross(m[1], e[2]), 0.0),
+    }
+
+
+def test_rows_from_place_and_motion_of_the_frames() -> None:
+    """Also G_a = direction . (u_a or w_a): a multiplier is a force or a moment on B, its reaction acts on A."""
+    model = closed_model(43, bare=True)
+    x = {s.name: 0.5 for s in model.program.symbols} | {n: 0.3 + 0.1 * k for k, n in enumerate(model.coordinates)}
+    out = interpret(model.program, x | {"L": 1.4})
+    a, b = (model.frames.index(name) for name in (model.closures[0].start, model.closures[0].end))
+    (A, B), (r_A, r_B) = out["rotation"][[a, b]], out["position"][[a, b]]
+    d, M = A.T @ (r_B - r_A), A.T @ B
+    w = out["Omega"][b] @ M.T - out["Omega"][a]
+    u = out["U"][b] @ M.T - out["U"][a] - np.cross(out["Omega"][a], d)
+    expected = rows_by_hand(d, M.T, 0.7)
+    names = [name for kind in TYPES for name in JOINTS[SAME.get(kind, kind)].split()]
+    assert len(out["closure.residual"]) == len(names)
+    for k, name in enumerate(names):
+        residual, direction, alignment = expected[name]
+        np.testing.assert_allclose(out["closure.residual"][k], residual, atol=1e-15, err_msg=name)
+        np.testing.assert_allclose(out["closure.direction"][k], direction, atol=1e-15, err_msg=name)
+        np.testing.assert_allclose(out["closure.alignment"][k], alignment, atol=1e-15, err_msg=name)
+        twists = u if name in ("x", "y", "z", "length") else w
+        np.testing.assert_allclose(out["closure.jacobian"][k], twists @ direction, atol=1e-14, err_msg=name)
 
 
 def defaults(model: Model) -> Plain:

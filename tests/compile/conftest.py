@@ -61,6 +61,7 @@ def _deviation(compiled: Program, values: Mapping[str, Any], found: Mapping[str,
             sizes[i] = _magnitude(operation, results.__getitem__, sizes.__getitem__)
         worst = 0.0
         for name, array in found.items():
+            np.testing.assert_array_equal(np.isnan(array), np.isnan(expected[name]), err_msg=name)
             for index, entry, _ in compiled.outputs[name].expanded():
                 error = np.abs(array[(..., *index)] - expected[name][(..., *index)])
                 worst = max(worst, float(np.max(np.where(error > 0, error / (EPS * sizes[entry]), 0), initial=0)))

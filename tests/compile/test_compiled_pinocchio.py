@@ -29,6 +29,7 @@ def compare(model: Model, definition: Plain, numbers: dict[str, float], count: i
     q, qd = np.random.default_rng(count).uniform(-3, 3, (2, count, model.dof))
     kernel = compile_program(model.program, ["metric", "gravity", "christoffel"])
     found = kernel.evaluate(numbers, columns=[(model.coordinates, q)])
+    assert all(np.isfinite(found[name]).all() for name in ("metric", "gravity", "christoffel"))
     engine, names = engine_of(definition, gravity), [c.removeprefix("x.") for c in model.coordinates]
     order = engine.order(names)
     place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))

@@ -31,7 +31,9 @@ FEW = 4.0
 def all_agree(model: Model, values: dict[str, Any], deviation: Callable[..., float]) -> float:
     kernel = compile_program(model.program, list(model.program.outputs))
     assert kernel.compiled
-    return deviation(model.program, values, kernel.evaluate(values))
+    found = kernel.evaluate(values)
+    assert found.keys() == model.program.outputs.keys()
+    return deviation(model.program, values, found)
 
 
 @pytest.mark.parametrize("name", TREES)

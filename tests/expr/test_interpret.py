@@ -12,8 +12,8 @@ from random_expressions import collected
 from substructures.errors import InvalidDocument, MissingValue
 from substructures.expr.bind import bind
 from substructures.expr.graph import Graph
-from substructures.expr.interpret import constant, interpret
-from substructures.expr.program import Formulas, Program, Symbol
+from substructures.expr.interpret import constant, interpret, interpret_in_blocks
+from substructures.expr.program import Formulas, Output, Program, Symbol
 from substructures.expr.trigonometry import cos, sin
 
 
@@ -40,6 +40,25 @@ def test_every_operation() -> None:
     assert values["atan2"] == np.arctan2(-0.8, 0.3)
 
 
+def test_arithmetic() -> None:
+    x, y = 0.3, -0.8
+    expected = {
+        ("add", 0, 1): x + y,
+        ("sub", 0, 1): x - y,
+        ("mul", 0, 1): x * y,
+        ("div", 0, 1): x / y,
+        ("neg", 1): -y,
+        ("powi", 1, 3): y**3,
+        ("powi", 0, -2): x**-2,
+        ("int", "-7"): -7.0,
+        ("rat", "-3", "8"): -0.375,
+    }
+    output = Output((len(expected),), tuple((k,) for k in range(len(expected))), tuple(range(2, 2 + len(expected))))
+    symbols = (Symbol("x", "parameter"), Symbol("y", "parameter"))
+    found = interpret(Program(symbols, (("sym", 0), ("sym", 1), *expected), {"f": output}), {"x": x, "y": y})["f"]
+    np.testing.assert_allclose(found, list(expected.values()), rtol=1e-15)
+
+
 def test_batches(arm: Program) -> None:
     q = np.linspace(-1, 1, 6).reshape(2, 3)
     batch = interpret(arm, {**POINT, "arm.q": q})
@@ -47,6 +66,18 @@ def test_batches(arm: Program) -> None:
     for i in np.ndindex(2, 3):
         np.testing.assert_array_equal(batch["metric"][i], interpret(arm, {**POINT, "arm.q": q[i]})["metric"])
     np.testing.assert_array_equal(batch["metric"], np.swapaxes(batch["metric"], -1, -2))
+
+
+@pytest.mark.parametrize("memory", [1, 30, 10**6])
+def test_blocks_of_states(arm: Program, memory: int) -> None:
+    """The last block is shorter than the others; numbers hold for all states."""
+    values = {**POINT, "arm.q": np.linspace(-1, 1, 11), "l2": np.linspace(1, 2, 11)}
+    expected = interpret(arm, values)
+    found = interpret_in_blocks(arm, values, list(arm.outputs), 11, memory)
+    assert found.keys() == expected.keys()
+    for name, array in expected.items():
+        np.testing.assert_array_equal(found[name], array)
+    assert interpret_in_blocks(arm, POINT, ["energy"], 3)["energy"].tolist() == [0.5 * np.sin(0.4)] * 3
 
 
 def test_missing_and_irregular_values(arm: Program) -> None:

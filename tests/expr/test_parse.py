@@ -141,4 +141,5 @@ def test_long_flat_expressions() -> None:
     g = Graph()
     x = g.symbol("x")
     assert parse(g, "+".join(["x"] * 4000), {"x": x}.get) is 4000 * x
+    assert parse(g, "+".join(["(x)"] * 200), {"x": x}.get) is 200 * x
     assert parse(g, "-" * 9998 + "x", {"x": x}.get) is x

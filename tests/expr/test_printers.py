@@ -191,8 +191,8 @@ def test_sizes_are_known_before(format_: str, form: str, mixed: Program) -> None
 
 
 def test_unknown_formats_and_forms(mixed: Program) -> None:
-    for kwargs in ({"format": "exe"}, {"format": "c", "form": "long"}):
-        with pytest.raises(InvalidDocument):
+    for kwargs, culprit in (({"format": "exe"}, "exe"), ({"format": "c", "form": "long"}, "long")):
+        with pytest.raises(InvalidDocument, match=culprit):
             render(mixed, **kwargs)
 
 

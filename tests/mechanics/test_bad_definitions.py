@@ -9,6 +9,7 @@ import pytest
 from bad_documents import GOOD, Path, Plain, cell, changed, pointer_of, request
 
 from substructures import Definition, InvalidDocument, TooLarge, TreeSpec, couple, derive
+from substructures.part.topology import christoffel_entries
 from substructures.quantities.evaluation import evaluate
 
 B: Path = ("bodies", 1)
@@ -73,6 +74,8 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("a list for a number", ("bodies", 1, "mass"), [1], "number-expected", ""),
     ("negative mass", ("bodies", 1, "mass"), -2, "negative-mass", "b2"),
     ("negative mass by a formula", ("bodies", 1, "mass"), "1 - 2", "negative-mass", "b2"),
+    ("mass beyond all doubles", ("bodies", 1, "mass"), "(10^62)^5", "number-not-finite", "b2"),
+    ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
     ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
@@ -169,8 +172,9 @@ def test_parameters_with_impossible_defaults_are_a_warning() -> None:
 
 def test_a_definition_that_is_no_object() -> None:
     for data in ([], "x", 3, None):
-        with pytest.raises(InvalidDocument):
+        with pytest.raises(InvalidDocument) as raised:
             Definition.read(data)
+        assert [(f.pointer, f.code) for f in raised.value.faults] == [("", "object-expected")]
 
 
 def test_too_many_bodies() -> None:
@@ -186,6 +190,12 @@ def test_a_mechanism_too_large_to_derive() -> None:
         derive(Definition.read(long_chain(200)))
     assert raised.value.size == sum(n * n for n in range(201))
     assert "limit" in str(raised.value)
+
+
+def test_what_counts_as_a_christoffel_symbol() -> None:
+    """a and revolute b on the path to c: a slide, on it a hinge that carries a slide, and one more hinge."""
+    assert christoffel_entries([(-1, 1)]) == 0
+    assert christoffel_entries([(-1, 1), (0, 0), (1, 1), (0, 0)]) == 0 + 2 * 1 + 3 * 1 + 2 * 1
 
 
 def test_a_tree_too_large_to_couple() -> None:

@@ -9,7 +9,7 @@ import pytest
 from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good, pointer_of, request
 
 from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Sources, check, evaluate
 from substructures.quantities.regressor import regressor
 
 INSTANCE: Path = ("instances", 1)
@@ -55,6 +55,14 @@ def test_a_cycle_of_hosts() -> None:
         couple(tree, {"one": good(), "two": good()})
     assert sorted(f.pointer for f in raised.value.faults) == ["/instances/0/at", "/instances/1/at"]
     assert {f.code for f in raised.value.faults} == {"cycle"}
+
+
+def test_a_binding_that_no_formula_needs_is_read_all_the_same() -> None:
+    part = derive(Definition.read(changed(GOOD, (("parameters", "spare"), {"value": 1}))))
+    tree = TreeSpec.read(changed(TREE, ((*INSTANCE, "parameters", "spare"), "2*(")))
+    with pytest.raises(InvalidDocument) as raised:
+        couple(tree, {"one": part, "two": part})
+    assert [(f.pointer, f.code) for f in raised.value.faults] == [("/instances/1/parameters/spare", "bad-expression")]
 
 
 def test_a_binding_that_makes_a_divisor_zero() -> None:
@@ -118,12 +126,22 @@ def test_request_with_a_fault(change: Plain, pointer: str, code: str, culprit: s
     faults = [f for f in raised.value.faults if f.pointer == pointer]
     assert faults, raised.value.faults
     assert any(code in f.code and culprit in f.message for f in faults), faults
+    with pytest.raises(InvalidDocument) as checked:
+        check(Sources(cell()), request(**change))
+    assert checked.value.faults == raised.value.faults
+
+
+def test_a_request_without_faults_is_checked() -> None:
+    states = check(Sources(cell()), request(q=ZEROS))
+    assert (states.count, states.single) == (3, False)
 
 
 def test_a_parameter_without_a_value_is_named() -> None:
     with pytest.raises(MissingValue) as raised:
         evaluate(cell(), request(parameters={}))
     assert raised.value.name == "one.free"
+    with pytest.raises(MissingValue, match=r"one\.free"):
+        check(Sources(cell()), request(parameters={}))
 
 
 def test_too_many_states() -> None:

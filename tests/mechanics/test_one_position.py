@@ -7,13 +7,23 @@ from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import Kind, Plain, model_of, random_definition, random_states
+from random_trees import Kind, Plain, model_of, random_definition, random_states, tree_of
 
-from substructures import Model
+from substructures import Definition, Model, couple, derive
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, Evaluator, evaluate, interpreted
+from substructures.quantities.evaluation import (
+    QUANTITIES,
+    REGRESSOR,
+    Evaluator,
+    Sources,
+    cost,
+    evaluate,
+    interpreted,
+    numbers_per_state,
+)
+from substructures.quantities.regressor import regressor
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
@@ -63,3 +73,27 @@ def test_the_axis_of_states_is_dropped_for_one_state_only() -> None:
     for qd, shape in ((zero, ()), (zero[None], ()), (np.zeros((2, model.dof)), (2,))):
         answer = evaluate(model, {"quantities": ["metric"], "q": zero, "qd": qd})
         assert answer["metric"].shape == (*shape, model.dof, model.dof)
+
+
+def test_the_size_of_an_answer_is_known_before() -> None:
+    """The numbers of every quantity exactly, and at most so many without any formulas."""
+    definition = random_definition(np.random.default_rng(78), Kind(3, joints=("revolute", "prismatic"), massive=True))
+    spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
+    model = couple(spec, parts)
+    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    x = random_states(np.random.default_rng(1), 1, model.dof)
+    state = {key: rows[0] for key, rows in x.items()} | {"along": {"q": x["q"][0]}}
+    for name in QUANTITIES:
+        found = evaluate(model, state | {"quantities": [name]}, sources=sources)[name]
+        size = sum(np.size(array) for array in (found.values() if isinstance(found, dict) else [found]))
+        assert cost(sources, [name])[1] == size <= numbers_per_state([name], model.dof, len(model.frames)), name
+    assert cost(sources, ["metric", "momentum"])[1] == model.dof**2 + 6
+
+
+def test_operations_of_an_answer() -> None:
+    """A slide of mass m: its metric is the symbol m, its gravity force -(10 m)."""
+    slide = {"name": "slide", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": "m"}
+    model = model_of({"name": "slide", "parameters": {"m": {"value": 2}}, "bodies": [slide]}, (0, 0, -10))
+    assert cost(Sources(model), ["metric"]) == (1, 1)
+    assert cost(Sources(model), ["gravity"]) == (4, 1)
+    assert cost(Sources(model), ["metric", "gravity"]) == (4, 2)

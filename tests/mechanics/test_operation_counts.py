@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures.part.one_piece import derive_in_one_piece
 
 FILE = Path(__file__).with_name("operation_counts.json")
 Plain = dict[str, Any]
@@ -139,6 +140,13 @@ def test_six_joints_with_14_parameters_need_at_most_the_figures_to_reach() -> No
     assert len(six.parameters) == 14
     assert six.operations["metric"] <= 755
     assert six.operations["christoffel"] <= 1271
+
+
+def test_parallel_axes_need_only_the_sum_of_two_moments() -> None:
+    """Planar 3R, metric and Christoffel symbols together; with J_xx and J_yy apart 80 and 67."""
+    definition = Definition.read(catalogue.load("planar-3r"))
+    assert derive(definition).program.count(["metric", "christoffel"])["total"] <= 58
+    assert derive_in_one_piece(definition).count(["metric", "christoffel"])["total"] <= 52
 
 
 @pytest.mark.parametrize("rows", [FOURTEEN, GENERAL], ids=["14 parameters", "general"])

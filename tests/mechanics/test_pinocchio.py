@@ -19,7 +19,8 @@ QUANTITIES = ["metric", "gravity", "coriolis", "bias", "inverse_dynamics", "kine
 
 
 def deviation(found: np.ndarray, expected: np.ndarray) -> float:
-    """Largest deviation relative to the largest entry."""
+    """Largest deviation relative to the largest entry; NaN, which no maximum shows, is none at all."""
+    assert np.isfinite(found).all()
     return float(np.abs(found - expected).max(initial=0) / max(np.abs(expected).max(initial=0), 1e-2))
 
 

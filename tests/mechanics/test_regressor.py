@@ -19,7 +19,7 @@ from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.replay import replay
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Sources, evaluate
 from substructures.quantities.formulas import derived
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.quantities.states import default_number
@@ -77,6 +77,7 @@ def test_catalogue(name: str) -> None:
     Y = check(spec, parts, rotors(parts["x"]))
     links = dict.fromkeys(entry.rsplit(".", 1)[0] for entry in Y.names)
     assert Y.names == tuple(f"{link}.{entry}" for link in links for entry in TEN)
+    assert Y.parameters.keys() == {s.name for s in Y.program.symbols if s.kind == "parameter"}
 
 
 @pytest.mark.parametrize("number", range(8))
@@ -198,6 +199,32 @@ def test_what_is_fixed_to_a_mounted_interface_is_a_link() -> None:
     Y = check(spec, parts, 0)
     assert Y.names[-10:] == tuple(f"tool.base.{e}" for e in TEN)
     assert {name for name in Y.parameters if name.startswith("tool.")} >= {"tool.m", "tool.cx", "tool.Ixx"}
+
+
+def test_parameters_that_the_motion_does_not_feel() -> None:
+    """A wheel about its axis: Theta_xx is no parameter of the model, but J_xx = (Theta_yy + Theta_zz - Theta_xx)/2."""
+    wheel = {"name": "wheel", "parent": "base", "joint": {"type": "revolute"}, "mass": 1}
+    definition = {
+        "name": "wheel",
+        "parameters": {"a": {"value": 1}},
+        "bodies": [wheel | {"inertia": {"xx": "a", "yy": 1, "zz": 1}}],
+    }
+    spec, parts = of({"name": "t", "instances": [{"name": "x", "definition": definition}]})
+    model = couple(spec, parts)
+    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    assert "x.a" not in model.parameters
+    request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
+    assert evaluate(model, request, sources=sources)["inertial_parameters"][4] == 0.75
+
+
+def test_an_interface_that_carries_nothing_is_no_link() -> None:
+    arms = [
+        {"name": "a", "substructure": "planar-2r"},
+        {"name": "b", "substructure": "planar-2r", "at": "a.flange"},
+    ]
+    spec, parts = of({"name": "t", "gravity": GRAVITY, "instances": arms})
+    links = [name.rsplit(".", 1)[0] for name in check(spec, parts, 0).names[::10]]
+    assert links == [f"{arm}.{body}" for arm in "ab" for body in parts["a"].bodies]
 
 
 def test_refusals() -> None:

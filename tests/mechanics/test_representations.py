@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import GRAVITY, Plain, model_of
+from random_trees import GRAVITY, Plain, model_of, random_states
 from samples import SEEDS, flat, pair, request_for, same
 
 from substructures import Definition, Part, derive
@@ -19,6 +20,8 @@ from substructures.mechanics.inertia import Inertia, composites
 from substructures.mechanics.joints import OneDofJoint, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
+from substructures.part.alone import lean
+from substructures.part.one_piece import derive_in_one_piece
 from substructures.quantities.evaluation import evaluate
 
 
@@ -75,6 +78,23 @@ def test_parameters_may_differ_from_state_to_state() -> None:
     )
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_same_alone_and_derived_in_one_piece(seed: int) -> None:
+    """Without coupling: stored formulas with the own inertia bound, and formulas that never had symbols for it."""
+    _, symbolic = pair(seed, 0.3)
+    part, model = derive(Definition.read(symbolic)), model_of(symbolic)
+    states = random_states(np.random.default_rng(seed), 3, model.dof)
+    expected = evaluate(model, {"quantities": ["metric", "christoffel", "gravity"], **states})
+    whole = derive_in_one_piece(Definition.read(symbolic), tuple(Decimal(str(x)) for x in GRAVITY))
+    values = {name: float(p["value"]) for name, p in symbolic["parameters"].items()}
+    values |= {c.removeprefix("x."): states["q"][:, a] for a, c in enumerate(model.coordinates)}
+    found = interpret(whole, values | {"": np.zeros(3)})
+    alone = lean(part, part.program.select(["metric", "christoffel"]))
+    assert not any(s.kind == "inertia" for s in (*whole.symbols, *alone.symbols))
+    same({name: expected[name] for name in ("metric", "christoffel", "gravity")}, found, 1e-11)
+    same({n: expected[n] for n in ("metric", "christoffel")}, interpret(alone, values | {"": np.zeros(3)}), 1e-11)
+
+
 # --- one recursion for every scalar
 
 
@@ -124,6 +144,11 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
     part, model = derive(Definition.read(definition)), model_of(definition)
     request = request_for(model, seed)
     formulas = evaluate(model, request)
+    paths: list[list[int]] = []
+    for c, joint in enumerate(part.skeleton.joints):
+        paths.append([*(paths[joint.parent] if joint.parent >= 0 else []), c])
+    entries = {("Q", c) for c in range(part.dof)} | {("g", a, c) for c, path in enumerate(paths) for a in path}
+    entries |= {("Gamma", a, b, c) for c, path in enumerate(paths) for a in path[:-1] for b in path}
     values = {c: request["q"][:, i] for i, c in enumerate(part.coordinates)}
     x = interpret(part.program, values | {"": np.zeros(3)}, ROWS)
 
@@ -138,6 +163,7 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
         return int(some[0]) if some[0] in (0, 1) else float(some[0])
 
     def check(found: dict[tuple[Any, ...], Any], i: Any) -> None:
+        assert found.keys() == entries
         names = {"g": "metric", "Gamma": "christoffel", "Q": "gravity"}
         for key, value in found.items():
             expected = formulas[names[key[0]]][(i, *key[1:])]

@@ -43,6 +43,39 @@ def test_round_trips_of_storage(seed: int) -> None:
         assert np.array_equal(flat(evaluate(loaded, request))[name], x), name
 
 
+def test_the_index_of_stored_formulas() -> None:
+    """Quantity, body, coordinate, shape, symmetry and operations of formulas of a crane: a mast, a universal joint."""
+    joints = [("mast", "base", "revolute", "q1"), ("boom", "mast", "universal", ["a", "b"])]
+    bodies = [
+        {"name": name, "parent": parent, "joint": {"type": kind, "coordinate": coordinate, "d": 1}, "mass": 1}
+        for name, parent, kind, coordinate in joints
+    ]
+    ports = [{"name": "hook", "body": "boom", "position": [2, 0, 0]}]
+    part = derive(Definition.read({"name": "crane", "bodies": bodies, "ports": ports}))
+    found = {(f.output, f.index): f for f in part.formulas()}
+    places = {
+        ("U", (1, 0)): ("U", "boom", "q1", (3,), "none"),
+        ("Omega", (2, 2)): ("Omega", "boom", "b", (3,), "none"),
+        ("kappa", (0, 2)): ("kappa", "boom", "q1", (3,), "none"),
+        ("F", (1, 2)): ("F", "boom", "a", (3,), "none"),
+        ("R", (0,)): ("R", "mast", None, (3, 3), "none"),
+        ("subtree.J", (2,)): ("subtree", "boom", None, (3, 3), "none"),
+        ("port.r", (0,)): ("port", "hook", None, (3,), "none"),
+        ("port.Omega", (0, 1)): ("port", "hook", "a", (3,), "none"),
+        ("metric", (0, 2)): ("metric", None, "q1", (), "symmetric"),
+        ("christoffel", (0, 1, 2)): ("christoffel", None, "q1", (), "christoffel"),
+        ("composite.m", ()): ("composite", None, None, (), "none"),
+    }
+    for place, expected in places.items():
+        f = found[place]
+        assert (f.quantity, f.body, f.coordinate, f.shape, f.symmetry) == expected, place
+    assert found["subtree.m", (0,)].operations == 1
+    elements = {(name, i) for name, output in part.program.outputs.items() for i in output.index}
+    lists = ("tilt", "turn", "full", "frame.", "load.")
+    covered = {(f.output, i) for f in found.values() for _, i in elements if i[: len(f.index)] == f.index}
+    assert {(name, i) for name, i in elements if not any(x in name for x in lists)} == elements & covered
+
+
 SCRIPT = """
 import json, sys
 from substructures import Definition, TreeSpec, couple, derive

@@ -13,7 +13,7 @@ import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
 
-from service.http import spool
+from service import spool
 from service.operations import batches
 from service.settings import Limits
 from service.store import Store
