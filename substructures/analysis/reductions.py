@@ -32,6 +32,9 @@ class Reduction(ABC):
 
     ``close``: a position is singular when the share of the smallest singular value in the largest one has fallen to
     this part of what it was at best along the motion.
+
+    Residuals that count as none get smaller with the square of that part: a residual r leaves q uncertain by r / S and
+    q' by q' r / S^2, S the smallest singular value.
     """
 
     close = 1e-4
@@ -68,8 +71,18 @@ class Reduction(ABC):
     def land(self, t: float, y: Array) -> tuple[Array, Array]:
         """The state of y (q, q'), on the closures; s stays there. Raises Singular."""
         q, qd = self.unpack(t, y)
-        q, qd, _ = project(self.s, t, q, qd, self.rows)
+        part = min(1.0, self._share() / self.best_share) if self.best_share else 1.0
+        q, qd, _ = project(self.s, t, q, qd, self.rows, part**2 * CLOSED / 100)
         return q, qd
+
+    def is_singular(self, part: float = 0) -> bool:
+        """Whether s is at a singular position, or beside one: at less than this part of the best share."""
+        return self.rank > 0 and not self._share() > max(100 * RANK, max(part, self.close) * self.best_share)
+
+    def _share(self) -> float:
+        """The smallest singular value that does not vanish everywhere, over the largest, where s is."""
+        values = svdvals(self.s.G) if self.rank else np.ones(1)
+        return 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
 
     def _acceleration(self) -> tuple[Array, float]:
         """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
@@ -85,12 +98,10 @@ class Reduction(ABC):
         """Rows that stay independent; all other rows depend on them."""
         if not self.rank:
             return
-        values = svdvals(self.s.G)
-        share = 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
-        self.best_share = max(self.best_share, share)
-        if not share > max(100 * RANK, self.close * self.best_share):
+        self.best_share = max(self.best_share, self._share())
+        if self.is_singular():
             raise Singular(SINGULAR)
-        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * values[self.rank - 1]:
+        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * svdvals(self.s.G)[self.rank - 1]:
             pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
             self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
 
@@ -126,6 +137,7 @@ class Partitioned(Reduction):
 
     def __init__(self, s: Constrained, rank: int) -> None:
         super().__init__(s, rank)
+        self.best_pivots = 0.0
         self._partition()
 
     def _partition(self) -> None:
@@ -154,23 +166,29 @@ class Partitioned(Reduction):
             s.move(t, q, qd)
             residual, before = s.phi[self.rows], size
             size = float(np.abs(residual).max(initial=0))
-            if size <= CLOSED / 10 or before / 2 < size <= ROUNDING:
+            opening = s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows]
+            change, part = self._solve(np.stack((residual, opening), axis=1))
+            if size <= part**2 * CLOSED / 10 or before / 2 < size <= ROUNDING:
                 break
-            q[self.dependent] -= self._solve(residual)
+            q[self.dependent] -= change[:, 0]
         else:
             raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
-        qd[self.dependent] = -self._solve(s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows])
+        qd[self.dependent] = -change[:, 1]
         self.near = q
         s.move(t, q, qd)
         return q, qd
 
-    def _solve(self, b: Array) -> Array:
+    def _solve(self, b: Array) -> tuple[Array, float]:
+        """x with G_d x = b, and the smallest pivot of G_d over the largest, as a part of the best along the motion."""
         if not self.rank:
-            return b
-        _, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
+            return b, 1.0
+        lu, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
         if info or not np.isfinite(x).all():
             raise Singular("the independent coordinates do not determine the others: " + SINGULAR)
-        return np.asarray(x, dtype=np.float64)
+        pivots = np.abs(lu.diagonal())
+        share = float(pivots.min() / pivots.max())
+        self.best_pivots = max(self.best_pivots, share)
+        return np.asarray(x, dtype=np.float64), share / self.best_pivots
 
     def rates(self, t: float, y: Array) -> Array:
         _, qd = self.unpack(t, y)

@@ -43,7 +43,7 @@ def asked(folder: Path, cpu: str, contraction: str) -> Any:
 def test_values() -> None:
     assert Setting.read({}) == Setting.read({CPU: "", "PATH": "/bin"}) == Setting("native", True)
     assert Setting.read({CPU: "x86-64-v3", "SUBSTRUCTURES_CONTRACTION": "off"}) == Setting("x86-64-v3", False)
-    with pytest.raises(ValueError, match="SUBSTRUCTURES_CPU: 'znver4' is none of native, x86-64, .*none"):
+    with pytest.raises(ValueError, match=r"SUBSTRUCTURES_CPU: 'znver4' is none of native, x86-64, .*none"):
         Setting.read({CPU: "znver4"})
     with pytest.raises(ValueError, match="SUBSTRUCTURES_CONTRACTION: 'no' is none of on, off"):
         Setting.read({"SUBSTRUCTURES_CONTRACTION": "no"})
@@ -52,7 +52,7 @@ def test_values() -> None:
 def test_what_the_machine_cannot_run_is_refused() -> None:
     assert Setting().level([]) is None
     assert Setting("x86-64").level(["sse", "sse2"]) == LEVELS["x86-64"]
-    with pytest.raises(ValueError, match="'x86-64-v4' needs avx512f, .* which this machine's CPU does not have"):
+    with pytest.raises(ValueError, match=r"'x86-64-v4' needs avx512f, .* which this machine's CPU does not have"):
         Setting("x86-64-v4").level(LEVELS["x86-64-v3"].needs)
 
 
