@@ -25,6 +25,7 @@ from substructures.states import Array
 WORN = 0.3
 #: residuals that are as small as rounding lets them be, where lengths are large [m, 1]
 ROUNDING = 1e-10
+UNDETERMINED = "the independent coordinates do not determine the others: " + SINGULAR
 
 
 class Reduction(ABC):
@@ -166,29 +167,44 @@ class Partitioned(Reduction):
             s.move(t, q, qd)
             residual, before = s.phi[self.rows], size
             size = float(np.abs(residual).max(initial=0))
-            opening = s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows]
-            change, part = self._solve(np.stack((residual, opening), axis=1))
-            if size <= part**2 * CLOSED / 10 or before / 2 < size <= ROUNDING:
+            factor = self._factor()
+            if (size <= CLOSED / 10 and size <= self._part(factor) ** 2 * CLOSED / 10) or before / 2 < size <= ROUNDING:
                 break
-            q[self.dependent] -= change[:, 0]
+            q[self.dependent] -= self._solve(factor, residual)
         else:
             raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
-        qd[self.dependent] = -change[:, 1]
+        opening = s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows]
+        qd[self.dependent] = -self._solve(factor, opening)
         self.near = q
         s.move(t, q, qd)
         return q, qd
 
-    def _solve(self, b: Array) -> tuple[Array, float]:
-        """x with G_d x = b, and the smallest pivot of G_d over the largest, as a part of the best along the motion."""
+    def _factor(self) -> tuple[Array, NDArray[np.int32]]:
+        """L U of the columns G_d of the dependent coordinates, and the order of its rows."""
         if not self.rank:
-            return b, 1.0
-        lu, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
-        if info or not np.isfinite(x).all():
-            raise Singular("the independent coordinates do not determine the others: " + SINGULAR)
-        pivots = np.abs(lu.diagonal())
+            return np.ones((0, 0)), np.zeros(0, dtype=np.int32)
+        lu, order, info = lapack.dgetrf(self.s.G[np.ix_(self.rows, self.dependent)])
+        if info:
+            raise Singular(UNDETERMINED)
+        return lu, order
+
+    def _part(self, factor: tuple[Array, NDArray[np.int32]]) -> float:
+        """The smallest pivot over the largest, as a part of the best along the motion."""
+        if not self.rank:
+            return 1.0
+        pivots = np.abs(factor[0].diagonal())
         share = float(pivots.min() / pivots.max())
         self.best_pivots = max(self.best_pivots, share)
-        return np.asarray(x, dtype=np.float64), share / self.best_pivots
+        return share / self.best_pivots
+
+    def _solve(self, factor: tuple[Array, NDArray[np.int32]], b: Array) -> Array:
+        """x with G_d x = b. Raises Singular."""
+        if not self.rank:
+            return b
+        x, _ = lapack.dgetrs(*factor, b)
+        if not np.isfinite(x).all():
+            raise Singular(UNDETERMINED)
+        return np.asarray(x, dtype=np.float64)
 
     def rates(self, t: float, y: Array) -> Array:
         _, qd = self.unpack(t, y)
