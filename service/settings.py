@@ -8,11 +8,14 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
 
 PREFIX = "SUBSTRUCTURES_"
 LIMIT_PREFIX = "LIMIT_"
 CLIENT = ("key",)  # variables of the commands that talk to a server; no settings of a server
+#: variables of the compiler of kernels, see :mod:`substructures.compile.setting`
+COMPILER = tuple(name[len(PREFIX) :].lower() for name in VARIABLES)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 # Bounds of limits are what a database, a kernel and a clock can still be told: 2^62, a year, a century.
@@ -94,11 +97,11 @@ class Settings(BaseModel):
 def from_environment(environment: Mapping[str, str], **overrides: object) -> Settings:
     """Settings from ``SUBSTRUCTURES_*`` variables; ``overrides`` that are not None win.
 
-    Variables of the client are left alone. Raises SettingsError naming the variable, also for one that no setting has
-    (a typing error would go unnoticed).
+    Variables of the client are left alone, those of the compiler are checked only. Raises SettingsError naming the
+    variable, also for one that no setting has (a typing error would go unnoticed).
     """
     given = {name[len(PREFIX) :].lower(): text for name, text in environment.items() if name.startswith(PREFIX)}
-    given = {name: text for name, text in given.items() if name not in CLIENT}
+    given = {name: text for name, text in given.items() if name not in (*CLIENT, *COMPILER)}
     prefix = LIMIT_PREFIX.lower()
     values: dict[str, object] = {name: text for name, text in given.items() if not name.startswith(prefix)}
     if "allowed_hosts" in given:
@@ -106,10 +109,13 @@ def from_environment(environment: Mapping[str, str], **overrides: object) -> Set
     values["limits"] = {name[len(prefix) :]: text for name, text in given.items() if name.startswith(prefix)}
     values.update({name: value for name, value in overrides.items() if value is not None})
     try:
+        Setting.read(environment)
         return Settings.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
         raise SettingsError(f"{_variable(first['loc'])}: {message_of(first)}") from None
+    except ValueError as error:
+        raise SettingsError(str(error)) from None
 
 
 def _variable(location: tuple[int | str, ...]) -> str:

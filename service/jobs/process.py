@@ -17,6 +17,7 @@ from service.jobs.engine import AttemptReport, Work
 from service.jobs.kinds import failed
 from service.jobs.wire import Message, MessageReader, WireError, read_report, work_frame
 from service.refusals import Refused
+from substructures.compile.setting import VARIABLES
 
 #: what a runner gets of the environment; nothing that says where the database is, and no credentials
 ENVIRONMENT = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "TMPDIR", "LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONHOME")
@@ -35,7 +36,7 @@ CLOSE = 0.7
 
 def environment() -> dict[str, str]:
     """The environment of a runner."""
-    result = {name: os.environ[name] for name in ENVIRONMENT if name in os.environ}
+    result = {name: os.environ[name] for name in (*ENVIRONMENT, *VARIABLES) if name in os.environ}
     if ROOT.name not in ("site-packages", "dist-packages"):  # not installed: run from a checkout
         result["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), result.get("PYTHONPATH"))))
     return result | dict.fromkeys(THREADS, "1")

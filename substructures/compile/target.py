@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from substructures.compile.setting import NONE, setting
+
 try:
     import llvmlite
     import llvmlite.binding as llvm
@@ -20,38 +22,47 @@ LEVEL = 1
 
 
 def available() -> bool:
-    """Whether machine code can be made here."""
-    return llvm is not None
+    """Whether machine code can be made here, and is wanted. Raises ValueError for a setting that is unknown."""
+    return llvm is not None and setting().cpu != NONE
 
 
 @dataclass(frozen=True)
 class Host:
-    """What compiled code depends on. ``width``: states in a vector."""
+    """What compiled code depends on. ``width``: states in a vector; ``contraction``: of products with sums."""
 
     triple: str
     cpu: str
     features: str
     compiler: str
     width: int
+    contraction: bool = True
 
     @property
     def identity(self) -> str:
-        """One line of text; equal for equal machine code."""
-        return "\n".join((self.triple, self.cpu, self.features, self.compiler, str(self.width)))
+        """A text; equal for equal machine code."""
+        words = (self.triple, self.cpu, self.features, self.compiler, str(self.width))
+        return "\n".join(words if self.contraction else (*words, "no contraction"))
 
 
 @cache
 def host() -> Host:
-    """This machine: 8 doubles for AVX-512, 4 for AVX2, 2 otherwise."""
+    """This machine, or as much of it as the setting takes: 8 doubles for AVX-512, 4 for AVX2, 2 otherwise.
+
+    Raises ValueError where this CPU cannot run what the setting asks for.
+    """
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     try:
         features = llvm.get_host_cpu_features()
     except RuntimeError:  # LLVM does not know them on this platform: what every such CPU has
         features = llvm.FeatureMap()
-    width = 8 if features.get("avx512f") else 4 if features.get("avx2") else 2
     compiler = f"llvmlite {llvmlite.__version__}, LLVM {'.'.join(map(str, llvm.llvm_version_info))}, level {LEVEL}"
-    return Host(llvm.get_process_triple(), llvm.get_host_cpu_name(), features.flatten(), compiler, width)
+    triple, wanted = llvm.get_process_triple(), setting()
+    level = wanted.level([name for name, there in features.items() if there])
+    if level is not None:
+        return Host(triple, wanted.cpu, "", compiler, level.width, wanted.contraction)
+    width = 8 if features.get("avx512f") else 4 if features.get("avx2") else 2
+    return Host(triple, llvm.get_host_cpu_name(), features.flatten(), compiler, width, wanted.contraction)
 
 
 def new_machine() -> Any:
@@ -67,6 +78,8 @@ machine = cache(new_machine)
 
 def assemble(text: str) -> bytes:
     """Object code of a module in LLVM assembly."""
+    if not host().contraction:  # the word is a flag only: names and numbers of the assembly do not contain it
+        text = text.replace(" contract ", " ")
     with llvm.create_context() as context, llvm.parse_assembly(text, context) as module:
         module.triple = host().triple
         return bytes(machine().emit_object(module))

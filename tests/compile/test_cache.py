@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 
 import substructures.compile as package
 from substructures.compile import cache, compile_program, engine, target
@@ -19,7 +20,7 @@ from substructures.compile.recipe import Recipe
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 
-pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
+pytestmark = NEEDS_MACHINE_CODE
 VALUES = {"m": 2.0, "x": np.linspace(-1, 1, 21)}
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from independent import by_coordinate, value, values
+from machine_code import NEEDS_MACHINE_CODE
 from random_trees import GRAVITY, Kind, model_of, random_definition
 
 from substructures import catalogue
@@ -17,7 +18,7 @@ from substructures.tree.model import Model
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
 
-pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
+pytestmark = NEEDS_MACHINE_CODE
 
 Plain = dict[str, Any]
 

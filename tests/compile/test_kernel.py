@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 
 from substructures.compile import Kernel, compile_program, target
 from substructures.compile.lowering import lower
@@ -84,6 +85,7 @@ def test_integer_powers(width: int) -> None:
     agree(compile_program(program, ["x"], width=width), program, values)
 
 
+@NEEDS_MACHINE_CODE
 @WIDTHS
 @pytest.mark.parametrize("part", [1, 3, 1000])
 def test_stages_levels_and_symmetries(mixture: Program, width: int, part: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,6 +211,7 @@ def test_many_callers_at_once(mixture: Program) -> None:
                 np.testing.assert_array_equal(found, reference)
 
 
+@NEEDS_MACHINE_CODE
 def test_without_llvmlite(mixture: Program, monkeypatch: pytest.MonkeyPatch) -> None:
     compiled = compile_program(mixture, list(mixture.outputs))
     monkeypatch.setattr(target, "llvm", None)

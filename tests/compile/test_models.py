@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 
 from substructures import catalogue
 from substructures.compile import compile_program, engine, target
 from substructures.tree.model import Model
 
-pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
+pytestmark = NEEDS_MACHINE_CODE
 
 HUMANOID = tuple((i["name"], i["substructure"], i["at"]) for i in catalogue.load_tree("humanoid")["instances"])
 TREES: dict[str, tuple[tuple[str, str, str], ...]] = {

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 from mpmath import mp
 
 from substructures.compile import compile_program, sincos
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 
-pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
+pytestmark = NEEDS_MACHINE_CODE
 
 
 @pytest.fixture

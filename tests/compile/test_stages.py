@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 
 from substructures.compile import compile_program
 from substructures.compile.lowering import lower
@@ -15,7 +16,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program
 
-pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
+pytestmark = NEEDS_MACHINE_CODE
 STAGES = (("m", "I"), ("x", "t"), ("v",), ("a", "f"))
 NAMES = ("parameter", "inertia", "coordinate", "time", "velocity", "acceleration", "input")
 KINDS = dict(zip((n for names in STAGES for n in names), NAMES, strict=True))

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from machine_code import NEEDS_MACHINE_CODE
 
 from substructures.compile import compile_program, target
 
@@ -69,11 +70,11 @@ print(json.dumps({"count": count, "finite": finite, "peak": 1024 * int(status["V
 """
 
 
+@NEEDS_MACHINE_CODE
 @pytest.mark.deep
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of memory is read from /proc")
 def test_ten_million_states_in_less_than_one_gibibyte() -> None:
     """Their results alone would fill 3.1 GiB."""
-    pytest.importorskip("llvmlite", reason="llvmlite has no wheel for this machine")
     child = subprocess.run([sys.executable, "-c", MANY], capture_output=True, text=True, check=True, timeout=600)
     found = json.loads(child.stdout)
     assert (found["count"], found["finite"]) == (10**7, True)

@@ -12,6 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
+from service.jobs import process
 from service.queue.retention import sweep
 from service.schemas.resources import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
@@ -231,6 +232,22 @@ def test_settings_from_the_environment() -> None:
 def test_limits_have_bounds(name: str, value: str) -> None:
     with pytest.raises(SettingsError, match=f"SUBSTRUCTURES_LIMIT_{name.upper()}"):
         from_environment({f"SUBSTRUCTURES_LIMIT_{name.upper()}": value})
+
+
+def test_the_setting_of_the_compiler() -> None:
+    """It is no setting of the server, but a wrong one is told at the start."""
+    known = {"SUBSTRUCTURES_CPU": "x86-64", "SUBSTRUCTURES_CONTRACTION": "off"}
+    assert from_environment(known) == Settings()
+    for name in known:
+        with pytest.raises(SettingsError, match=f"{name}: 'znver5' is none of"):
+            from_environment({name: "znver5"})
+
+
+def test_runners_have_the_setting_of_the_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SUBSTRUCTURES_CPU", "none")
+    monkeypatch.setenv("SUBSTRUCTURES_DATABASE", "sqlite:///other.db")
+    assert process.environment()["SUBSTRUCTURES_CPU"] == "none"
+    assert "SUBSTRUCTURES_DATABASE" not in process.environment()
 
 
 def test_no_limit_breaks_a_server(tmp_path: Path) -> None:

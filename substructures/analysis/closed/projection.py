@@ -131,18 +131,21 @@ def _rate_message(s: Constrained, fixed: Collection[str]) -> str:
     )
 
 
-def project(s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int64]) -> tuple[Array, Array, Factor]:
+def project(
+    s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int64], closed: float = CLOSED / 100
+) -> tuple[Array, Array, Factor]:
     """The nearest state in the metric that meets the independent ``rows``; for states that nearly do.
 
-    dq = -g^-1 G^T mu with G dq = -phi, repeated, and one step of the same kind for the velocities; s stays at the
-    result. Returns the factors of [g G^T; G 0] there. Raises Singular.
+    dq = -g^-1 G^T mu with G dq = -phi, repeated until residuals are below ``closed`` or no longer halved, and one step
+    of the same kind for the velocities; s stays at the result. Returns the factors of [g G^T; G 0] there. Raises
+    Singular.
     """
     s.move(t, q, qd)
     factor = s.factor(rows)
     nothing, size = np.zeros(s.n), np.inf
     for _ in range(8):
         before, size = size, _largest(s.phi[rows])
-        if size <= CLOSED / 100 or before / 2 < size:
+        if size <= closed or before / 2 < size:
             break
         q = q + factor.solve(nothing, -s.phi[rows])[0]
         s.move(t, q, qd)

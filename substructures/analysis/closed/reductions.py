@@ -25,6 +25,7 @@ from substructures.mechanics.accelerations import RANK
 WORN = 0.3
 #: residuals that are as small as rounding lets them be, where lengths are large [m, 1]
 ROUNDING = 1e-10
+UNDETERMINED = "the independent coordinates do not determine the others: " + SINGULAR
 
 
 class Reduction(ABC):
@@ -32,6 +33,9 @@ class Reduction(ABC):
 
     ``close``: a position is singular when the share of the smallest singular value in the largest one has fallen to
     this part of what it was at best along the motion.
+
+    Residuals that count as none get smaller with the square of that part: a residual r leaves q uncertain by r / S and
+    q' by q' r / S^2, S the smallest singular value.
     """
 
     close = 1e-4
@@ -68,8 +72,18 @@ class Reduction(ABC):
     def land(self, t: float, y: Array) -> tuple[Array, Array]:
         """The state of y (q, q'), on the closures; s stays there. Raises Singular."""
         q, qd = self.unpack(t, y)
-        q, qd, _ = project(self.s, t, q, qd, self.rows)
+        part = min(1.0, self._share() / self.best_share) if self.best_share else 1.0
+        q, qd, _ = project(self.s, t, q, qd, self.rows, part**2 * CLOSED / 100)
         return q, qd
+
+    def is_singular(self, part: float = 0) -> bool:
+        """Whether s is at a singular position, or beside one: at less than this part of the best share."""
+        return self.rank > 0 and not self._share() > max(100 * RANK, max(part, self.close) * self.best_share)
+
+    def _share(self) -> float:
+        """The smallest singular value that does not vanish everywhere, over the largest, where s is."""
+        values = svdvals(self.s.G) if self.rank else np.ones(1)
+        return 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
 
     def _acceleration(self) -> tuple[Array, float]:
         """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
@@ -85,12 +99,10 @@ class Reduction(ABC):
         """Rows that stay independent; all other rows depend on them."""
         if not self.rank:
             return
-        values = svdvals(self.s.G)
-        share = 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
-        self.best_share = max(self.best_share, share)
-        if not share > max(100 * RANK, self.close * self.best_share):
+        self.best_share = max(self.best_share, self._share())
+        if self.is_singular():
             raise Singular(SINGULAR)
-        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * values[self.rank - 1]:
+        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * svdvals(self.s.G)[self.rank - 1]:
             pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
             self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
 
@@ -126,6 +138,7 @@ class Partitioned(Reduction):
 
     def __init__(self, s: Constrained, rank: int) -> None:
         super().__init__(s, rank)
+        self.best_pivots = 0.0
         self._partition()
 
     def _partition(self) -> None:
@@ -154,22 +167,43 @@ class Partitioned(Reduction):
             s.move(t, q, qd)
             residual, before = s.phi[self.rows], size
             size = float(np.abs(residual).max(initial=0))
-            if size <= CLOSED / 10 or before / 2 < size <= ROUNDING:
+            factor = self._factor()
+            if (size <= CLOSED / 10 and size <= self._part(factor) ** 2 * CLOSED / 10) or before / 2 < size <= ROUNDING:
                 break
-            q[self.dependent] -= self._solve(residual)
+            q[self.dependent] -= self._solve(factor, residual)
         else:
             raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
-        qd[self.dependent] = -self._solve(s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows])
+        opening = s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows]
+        qd[self.dependent] = -self._solve(factor, opening)
         self.near = q
         s.move(t, q, qd)
         return q, qd
 
-    def _solve(self, b: Array) -> Array:
+    def _factor(self) -> tuple[Array, NDArray[np.int32]]:
+        """L U of the columns G_d of the dependent coordinates, and the order of its rows."""
+        if not self.rank:
+            return np.ones((0, 0)), np.zeros(0, dtype=np.int32)
+        lu, order, info = lapack.dgetrf(self.s.G[np.ix_(self.rows, self.dependent)])
+        if info:
+            raise Singular(UNDETERMINED)
+        return lu, order
+
+    def _part(self, factor: tuple[Array, NDArray[np.int32]]) -> float:
+        """The smallest pivot over the largest, as a part of the best along the motion."""
+        if not self.rank:
+            return 1.0
+        pivots = np.abs(factor[0].diagonal())
+        share = float(pivots.min() / pivots.max())
+        self.best_pivots = max(self.best_pivots, share)
+        return share / self.best_pivots
+
+    def _solve(self, factor: tuple[Array, NDArray[np.int32]], b: Array) -> Array:
+        """x with G_d x = b. Raises Singular."""
         if not self.rank:
             return b
-        _, _, x, info = lapack.dgesv(self.s.G[np.ix_(self.rows, self.dependent)], b)
-        if info or not np.isfinite(x).all():
-            raise Singular("the independent coordinates do not determine the others: " + SINGULAR)
+        x, _ = lapack.dgetrs(*factor, b)
+        if not np.isfinite(x).all():
+            raise Singular(UNDETERMINED)
         return np.asarray(x, dtype=np.float64)
 
     def rates(self, t: float, y: Array) -> Array:

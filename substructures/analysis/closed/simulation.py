@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
+from substructures.analysis.closed.doubt import energy_doubt
 from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
@@ -52,7 +53,7 @@ def simulate_closed(
         return _nothing(model, state, start, message)
     s.move(start, state.q, state.qd)
     x = np.concatenate((state.q, state.qd, (0.0,)))
-    return _judged(s, asked, _moved(s, asked, x, place.rank, progress, folder))
+    return _judged(s, asked, _moved(s, asked, x, place.rank, progress, folder), place.rank)
 
 
 def _moved(
@@ -79,11 +80,13 @@ def _moved(
     return motion
 
 
-def _judged(s: Constrained, asked: ClosedRequest, motion: IntegratedMotion) -> Trajectory:
+def _judged(s: Constrained, asked: ClosedRequest, motion: IntegratedMotion, rank: int) -> Trajectory:
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _along(_judged_quantities, s, t, x) | {"work": x[:, -1]}
-    checks = (*_residual_checks(t, judged), energy_balance(t, judged, s.conservative, asked.drift_limit))
+    doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
+    balance = energy_balance(t, judged, s.conservative, asked.drift_limit, doubt)
+    checks = (*_residual_checks(t, judged), balance)
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
     series = _along(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}

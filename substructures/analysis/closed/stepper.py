@@ -8,7 +8,7 @@ on another branch has a kink. There the smallest singular value is minimised alo
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import svdvals
@@ -26,9 +26,27 @@ RETRIES = 10
 LEAP, LENGTH = 10, 1e-6
 #: a step is searched for singular positions when velocities change by more than this share of the largest
 KINK = 0.3
+#: where the smallest singular value has less than this part of its best share along the motion, branches are so near
+#: each other that a step with such a change may have leapt from one to another
+BESIDE = 0.02
 #: singular values below this part of their best share along the motion, in between, are a singular position
 NEAR = 1e-4
 SAMPLES = 8
+#: for the end of a step before a singular position
+BISECTIONS = 30
+NOTHING = np.zeros(0)
+
+
+class _Step(NamedTuple):
+    """The state at the end of a step, or a message why there is none.
+
+    ``stop``: a time [s] up to which the step comes to a singular position, if it does, and the advice.
+    """
+
+    message: str | None
+    q: Array = NOTHING
+    qd: Array = NOTHING
+    stop: tuple[float, str] | None = None
 
 
 class ClosedStepper:
@@ -69,27 +87,34 @@ class ClosedStepper:
         before = self.s.G.copy()
         self.t_old = self.t
         try:
-            message = self._advanced()
+            step = self._advanced(before)
         except Singular:
-            message = self._retried()
-        if self.inner.status == "failed":
+            step = self._retried(before)
+        if step.message is not None or self.inner.status == "failed":
             self.status = "failed"
-            return message
-        q, qd = self.s.q, self.s.qd
-        self._way = self.y[: self.s.n], q
-        time = self._passed() if self._suspicious(before) else None
-        if time is not None:
-            self._stop_before(time)
+            return step.message
+        if step.stop is not None:
+            self._stop_before(*step.stop)
             return None
-        self.t, self.y = float(self.inner.t), np.concatenate((q, qd, self.inner.y[-1:]))
+        self.t, self.y = float(self.inner.t), np.concatenate((step.q, step.qd, self.inner.y[-1:]))
         self.status = self.inner.status
         return None
 
-    def _stop_before(self, time: float) -> None:
-        """End this step a little before a singular position; the next one fails."""
-        self._message = f"a singular position is passed at t = {time:.9g} s: {SINGULAR}"
-        state, end = self._search(), self.t + 0.999 * (time - self.t)
+    def _stop_before(self, time: float, message: str) -> None:
+        """End this step where states are still determined well enough to go on from there; the next one fails."""
+        self._message, state, end = message, self._search(), self.t
+        for _ in range(BISECTIONS):
+            middle = (end + time) / 2
+            end, time = (middle, time) if self._determined(state, middle) else (end, middle)
         self.t, self.y = end, state(end)
+
+    def _determined(self, state: Callable[[float], Array], t: float) -> bool:
+        """Whether the motion could go on from there."""
+        try:
+            state(t)
+        except Singular:
+            return False
+        return not self.reduction.is_singular()
 
     def _prepare(self) -> None:
         """Where s is on the closures: the reduction is chosen anew if it is worn, and the integrator begins there."""
@@ -108,41 +133,47 @@ class ClosedStepper:
         self._counted += self.inner.nfev
         self.inner = self._begun(first)
 
-    def _advanced(self) -> str | None:
-        """One step of the integrator and s on the closures at its end; a message when there is none."""
+    def _advanced(self, before: Array) -> _Step:
+        """One step of the integrator, landed on the closures. ``before``: G at its start. Raises Singular."""
         message: str | None = self.inner.step()
         if self.inner.status == "failed":
-            return message
+            return _Step(message)
         q, qd = self.reduction.land(self.inner.t, self.inner.y)
-        before, rates = self._state()
+        old, rates = self._state()
         way = (self.inner.t - self.t) * np.maximum(np.abs(qd).max(initial=0), np.abs(rates).max(initial=0))
-        if np.abs(q - before).max(initial=0) > LEAP * way + LENGTH:
+        if np.abs(q - old).max(initial=0) > LEAP * way + LENGTH:
             raise Singular(SINGULAR)
-        return message
+        self._way = old, q
+        return _Step(message, q, qd, self._looked_at(before, qd))
 
-    def _retried(self) -> str | None:
+    def _retried(self, before: Array) -> _Step:
         """Shorter steps with other rows and coordinates from the present state, until one succeeds."""
-        for k in range(RETRIES):
+        failure = Singular(SINGULAR)
+        for _ in range(RETRIES):
             self.s.move(self.t, *self._state())
             self.reduction.choose(anew=True)
             self._begin(self.inner.h_abs / 4)
             try:
-                return self._advanced()
-            except Singular:
-                if k == RETRIES - 1:
-                    raise
-        return None
+                return self._advanced(before)
+            except Singular as error:
+                failure = error
+        raise failure
 
-    def _suspicious(self, before: Array) -> bool:
-        """Whether a singular position may lie between the last two states."""
-        rows = self.reduction.rows
+    def _looked_at(self, before: Array, qd: Array) -> tuple[float, str] | None:
+        """Whether the way from the last state to s comes to a singular position; see _Step. Raises Singular."""
+        rows, old = self.reduction.rows, self._state()[1]
         if not len(rows):
-            return False
-        if np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0:
-            return True
-        old, new = self._state()[1], self.s.qd
-        fastest = max(float(np.abs(old).max()), float(np.abs(new).max()))
-        return bool(np.abs(new - old).max() > KINK * fastest)
+            return None
+        fastest = max(float(np.abs(old).max()), float(np.abs(qd).max()))
+        kinked = bool(np.abs(qd - old).max() > KINK * fastest)
+        suspicious = kinked or np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0
+        singular, beside = self.reduction.is_singular(), self.reduction.is_singular(BESIDE)
+        time = self._passed() if suspicious else None
+        if time is not None:
+            return time, f"a singular position is passed at t = {time:.9g} s: {SINGULAR}"
+        if kinked and beside:
+            raise Singular(SINGULAR)
+        return (float(self.inner.t), SINGULAR) if singular else None
 
     def _passed(self) -> float | None:
         """When the smallest singular value comes near zero within the last step [s]."""

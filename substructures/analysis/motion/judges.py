@@ -15,6 +15,8 @@ from substructures.tree.model import Model
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
 ROUNDING = 3e-14
+#: results next to a singular position are known to so many times the limit, or they are not right
+DOUBTED = 100
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
@@ -74,17 +76,20 @@ def _about(integral: Integral, rule: Rule) -> tuple[str, Rule, str, str]:
     return integral.name, rule, integral.reason, integral.unit
 
 
-def energy_balance(t: Array, columns: Mapping[str, Array], conservative: bool, limit: float) -> Check:
+def energy_balance(
+    t: Array, columns: Mapping[str, Array], conservative: bool, limit: float, doubt: Array | float = 0
+) -> Check:
     """T + V - work is constant; relative to the largest of T, the change of V and the work.
 
-    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each.
+    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each. ``doubt`` (K,): what rounding
+    next to singular positions makes of them [J]; no more than DOUBTED times the limit is put down to it.
     """
     T, V, work = (columns[name] for name in ("kinetic_energy", "potential_energy", "work"))
     scale = max(float(np.abs(x).max(initial=0)) for x in (T, V - V[0], work)) or 1.0
     reason = "T + V is constant: the forces have a potential, constraints do no work"
     if not conservative:
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
-    noise = ROUNDING * float(np.abs(T + V).max(initial=0))
+    noise = ROUNDING * float(np.abs(T + V).max(initial=0)) + np.minimum(doubt, DOUBTED * limit * scale)
     return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
 
 

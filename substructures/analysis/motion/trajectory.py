@@ -21,7 +21,8 @@ class Check:
     ``rule``: the quantity ``name`` is constant (first integral), never rises (energy with dissipation) or is zero (a
     residual of closures). ``worst``: the largest violation at all steps and all results, in ``unit``: of a constant the
     largest difference of two of its values, of what falls the largest rise. Relative to ``scale`` it is judged against
-    ``limit``. ``time``: when the limit was first exceeded [s], None where the condition holds.
+    ``limit``, and what rounding may add (next to singular positions of closures up to a hundred limits). ``time``: when
+    the limit was first exceeded [s], None where the condition holds.
     """
 
     name: str
@@ -35,9 +36,15 @@ class Check:
 
     @classmethod
     def of(
-        cls, about: tuple[str, Rule, str, str], violation: Array, t: Array, scale: float, limit: float, noise: float = 0
+        cls,
+        about: tuple[str, Rule, str, str],
+        violation: Array,
+        t: Array,
+        scale: float,
+        limit: float,
+        noise: Array | float = 0,
     ) -> Check:
-        """``about``: name, rule, reason, unit; ``violation`` (K,): allowed up to limit * scale + noise."""
+        """``about``: name, rule, reason, unit; ``violation`` (K,): allowed up to limit * scale + noise (K,)."""
         size = np.abs(violation)
         bad = np.flatnonzero(~(size <= limit * scale + noise))
         first = float(t[bad[0]]) if len(bad) else None
