@@ -121,19 +121,19 @@ def test_one_server_a_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "address",
+    ("address", "message"),
     [
-        "mysql://x/y",
-        "nonsense",
-        "sqlite://",
-        "sqlite:////nowhere/at/all.db",
-        "postgresql://x@127.0.0.1:9/x",
-        "postgresql://x:port/y",
+        ("mysql://x/y", "kind 'mysql' are not supported"),
+        ("nonsense", "'nonsense' is no database URL"),
+        ("sqlite://", "needs a file"),
+        ("sqlite:////nowhere/at/all.db", "unable to open database file"),
+        ("postgresql://x@127.0.0.1:9/x", "cannot use the database postgresql"),
+        ("postgresql://x:port/y", "is no database URL"),
     ],
 )
-def test_wrong_addresses(address: str) -> None:
+def test_wrong_addresses(address: str, message: str) -> None:
     for exclusive in (True, False):
-        with pytest.raises(DatabaseError):
+        with pytest.raises(DatabaseError, match=message):
             Database(address, exclusive=exclusive)
 
 
