@@ -91,6 +91,16 @@ def test_root_locus_of_a_damped_oscillator() -> None:
     assert steps < 1.5
 
 
+def test_an_equilibrium_without_linearisation_ends_the_locus() -> None:
+    """Friction sqrt(s'^2) s' has no derivative at rest."""
+    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
+    found = root_locus(
+        model_of(oscillator() | {"loads": loads}, (0, 0, 0)), {"parameter": "c", "values": [1, 2], "q": [0]}
+    )
+    assert (found.status, len(found.values), found.stability) == ("failed", 0, ())
+    assert "c = 1" in found.message
+
+
 def test_a_lost_equilibrium_ends_the_locus() -> None:
     definition = oscillator()
     definition["parameters"]["k"] = {"value": 8}
@@ -100,5 +110,5 @@ def test_a_lost_equilibrium_ends_the_locus() -> None:
     assert found.status == "failed"
     assert len(found.values) == 2
     assert "k = 0" in found.message
-    with pytest.raises(InvalidDocument):
+    with pytest.raises(InvalidDocument, match="unknown parameter 'nothing'"):
         root_locus(model, {"parameter": "nothing", "values": [1], "q": [0]})

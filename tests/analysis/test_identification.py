@@ -153,7 +153,9 @@ def test_drives() -> None:
     Y = regressor(tree_of(document, UP), {"x": derive(Definition.read(document))})
     # m (q'' + g), q'', 1: two of them independent
     assert base_parameters(Y).count == 1
-    assert base_parameters(Y, ("armature", "offset")).names == ("x.b.m", "x.z.armature")
+    driven = base_parameters(Y, ("armature", "offset"))
+    assert driven.names == ("x.b.m", "x.z.armature")
+    assert {s.name: s.unit for s in driven.program.symbols}["x.z''"] == "m/s^2"
     for form in FORMATS:
         assert render(base_parameters(Y, drives).program, form)
 

@@ -127,6 +127,15 @@ def test_upright_is_unstable() -> None:
     assert found.stability is not None
     assert found.stability.verdict == "unstable"
     assert max(mode.eigenvalue.real for mode in found.modes) == pytest.approx(np.sqrt(G))
+    assert found.stability.reason == "the eigenvalue 3.13209 1/s has a positive real part"
+
+
+@pytest.mark.parametrize("more", [{}, {"qdd": [0, 0]}])
+def test_a_state_at_rest_is_no_equilibrium_unless_forces_balance(more: Plain) -> None:
+    """Released, it accelerates; held by given accelerations, a residual is left. Both have no modes."""
+    found = linearise(catalogue_model("double-pendulum"), {"q": [0.3, 0], **more})
+    assert (found.status, found.is_equilibrium, found.modes) == ("finished", False, ())
+    assert max(np.abs(found.qdd).max(), np.abs(found.residual).max()) > 1
 
 
 def test_where_the_linearisation_does_not_decide() -> None:
