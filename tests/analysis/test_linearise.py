@@ -63,6 +63,19 @@ def test_state_space_against_differences(number: int) -> None:
     np.testing.assert_allclose(numbers["B"][0], found.B, rtol=0, atol=1e-9 * (1 + np.abs(by_input).max()))
 
 
+def test_outputs_of_the_state_space() -> None:
+    """y = sin(q1) q2' + 3 tau1 with its derivatives, and x' = (q', q''), as formulas."""
+    model, q, qd = catalogue_model("double-pendulum"), np.array([[0.4, -0.2]]), np.array([[0.5, 0.7]])
+    source = state_space(model, ["sin(x.q1)*x.q2' + 3*tau.x.q1"], ["tau.x.q1"])
+    found = interpret(source, values_at(model, q, qd) | {"tau.x.q1": 2.0})
+    inputs = {"tau.x.q1": 2.0}
+    accelerations = acceleration(model, {"q": q[0], "qd": qd[0], "inputs": inputs})
+    np.testing.assert_allclose(found["C"][0], [[np.cos(0.4) * 0.7, 0, 0, np.sin(0.4)]])
+    np.testing.assert_allclose(found["D"].ravel(), [3])
+    np.testing.assert_allclose(found["output"].ravel(), [np.sin(0.4) * 0.7 + 6])
+    np.testing.assert_allclose(found["derivative"][0], [*qd[0], *accelerations])
+
+
 def test_along_a_trajectory() -> None:
     """Arrays with a leading axis, equal to the single states; the formulas survive storage."""
     model = catalogue_model("planar-3r")
