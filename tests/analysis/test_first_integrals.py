@@ -60,7 +60,7 @@ def test_known_machines(name: str, gravity: Any, expected: set[str]) -> None:
     found = first_integrals(model)
     assert constant(found) - {"energy"} == expected
     slopes = drift(model, found)
-    assert all(slopes[name] < 1e-4 for name in expected), slopes
+    assert max(slopes[name] for name in constant(found)) < 1e-4, slopes
 
 
 def test_a_base_that_moves_in_a_slanted_plane() -> None:
