@@ -207,6 +207,7 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
         ({"values": {"tau.x.q1": [1, 2]}}, "/values/tau.x.q1", "wrong-length"),
         ({"values": {"u": [1, 2]}}, "/values/u", "unknown-value"),
         ({"vary": ["x.z"]}, "/vary/0", "unknown-parameter"),
+        ({"inputs": {"tau.x.q1": 1}}, "/inputs/tau.x.q1", "unknown-input"),
         ({"parameters": {"x.z": 1}}, "/parameters/x.z", "unknown-parameter"),
         ({"q": [1, 2]}, "/q", "wrong-length"),
         ({"speed": 1}, "/speed", "extra-forbidden"),

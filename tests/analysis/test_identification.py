@@ -210,6 +210,33 @@ def test_recovery_with_friction() -> None:
     np.testing.assert_allclose(found.values, expected, rtol=1e-8, atol=1e-12)
 
 
+def test_joints_are_weighted_by_what_they_leave_unexplained() -> None:
+    """With a force sensor a thousand times as noisy as another: normal equations in two passes, and their inverse."""
+    base, model = base_of("planar-3r", IN_PLANE), couple(*tree("planar-3r", IN_PLANE))
+    data = motion(3, 100)
+    clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    tau = clean + np.random.default_rng(2).normal(0, 1, clean.shape) * [1e-3, 1, 0.03]
+    found = identify(base, data | {"tau": tau})
+    values: Plain = {name: default_number(p["value"]) for name, p in base.parameters.items()}
+    for primes, x in (("", data["q"]), ("'", data["qd"]), ("''", data["qdd"])):
+        values |= {f"{name}{primes}": x[:, a] for a, name in enumerate(base.coordinates)}
+    W = interpret(base.program, values, ["base_regressor"])["base_regressor"]
+
+    def fitted(weight: Any) -> tuple[Any, Any]:
+        normal = np.einsum("nab,a,nac->bc", W, weight, W)
+        return np.linalg.solve(normal, np.einsum("nab,a,na->b", W, weight, tau)), normal
+
+    first, _ = fitted(np.ones(3))
+    weight = 1 / np.mean((tau - W @ first) ** 2, axis=0)
+    second, normal = fitted(weight)
+    np.testing.assert_allclose(found.values, second, rtol=1e-7)
+    assert np.abs(second - first).max() > 1e-3
+    left = tau - W @ second
+    variance = np.sum(weight * left**2) / (tau.size - base.count)
+    np.testing.assert_allclose(found.deviations, np.sqrt(variance * np.diag(np.linalg.inv(normal))), rtol=1e-7)
+    np.testing.assert_allclose(found.residual, np.sqrt(np.mean(left**2, axis=0)), rtol=1e-9)
+
+
 def test_excitation() -> None:
     """One joint alone excites little, and the advice names what is missing."""
     base, n = base_of("puma560"), 6

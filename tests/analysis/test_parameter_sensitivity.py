@@ -73,5 +73,12 @@ def test_what_is_refused() -> None:
         sensitivity_formulas(model, ["x.m1"], ["mass"])
     with pytest.raises(InvalidDocument, match="depend on t only"):
         sensitivities(model, base | {"inputs": {"tau.x.q1": "x.q2"}}, ["x.m1"])
-    with pytest.raises(InvalidDocument, match="without 'fixed_step'"):
-        sensitivities(model, base | {"fixed_step": {"step": 0.1}}, ["x.m1"])
+    for name, given in (
+        ("fixed_step", {"step": 0.1}),
+        ("events", [{"name": "e", "quantity": "t"}]),
+        ("series", {"s": "t"}),
+        ("method", "Taylor"),
+    ):
+        with pytest.raises(InvalidDocument) as error:
+            sensitivities(model, base | {name: given}, ["x.m1"])
+        assert [(f.pointer, f.code) for f in error.value.faults] == [(f"/{name}", "not-supported")]

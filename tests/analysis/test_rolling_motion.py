@@ -144,6 +144,7 @@ BAD: list[tuple[Plain, str, str]] = [
     ({"v": [1]}, "/v", "wrong-length"),
     ({"v": {"u": 1}}, "/v", "unknown-velocity"),
     ({"qd": [1, 1, 0]}, "/qd", "violated"),
+    ({"v": [0, 0], "qd": [0, 0, 0]}, "/v", "two-velocities"),
     ({"independent": ["s.x", "s.f"], "q": [0, 0, "pi/2"]}, "/q/2", "number-expected"),
     ({"independent": ["s.y", "s.f"], "qd": [0, 0, 1]}, "/q", "singular-start"),
     ({"form": "lagrange"}, "/form", "literal-error"),
