@@ -253,6 +253,18 @@ def test_excitation() -> None:
     assert np.isinf(failed.deviations).all()
 
 
+def test_weak_are_those_of_a_dependency_and_the_worst_come_first() -> None:
+    """q1' = (1 + 3 s)/2 with s = +-1 equally often: viscous = offset/2 + 3/2 coulomb, of columns of length one
+    sqrt(5/2) : 1/2 : 3/2, in a unit vector 0.71, 0.22 and 0.67, of which 0.22 is too small a part to be named.
+    """
+    base, data = base_of("planar-2r", IN_PLANE, ("viscous", "coulomb", "offset")), motion(2, 60)
+    s = np.tile([1, -1], 30)
+    data["qd"][:, 0] = (1 + 3 * s) / 2
+    judged = excitation(base, data)
+    assert judged.weak == ("x.q1.viscous", "x.q1.coulomb")
+    assert (judged.rank, judged.condition) == (base.count - 1, np.inf)
+
+
 def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     base, data = base_of("planar-3r", IN_PLANE), motion(3, 20)
     cases: list[tuple[Plain, str, str]] = [

@@ -161,6 +161,24 @@ def test_where_the_linearisation_does_not_decide() -> None:
         assert found.stability.verdict == "undecided"
 
 
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_dampers_that_vanish_at_rest_do_not_make_it_stable(sign: str) -> None:
+    """s'' = -s + s^2 s' leaves its equilibrium, whose linearisation is an oscillator: (s'^2 + s^2)' = 2 s^2 s'^2."""
+    slide = {"type": "prismatic", "coordinate": "s", "stiffness": 1}
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": slide}
+    damped = {"name": "c", "parent": "base", "mass": 1, "joint": slide | {"coordinate": "z", "damping": 1}}
+    loads = [{"type": "joint", "coordinate": "s", "force": f"{sign}s^2*s'"}]
+    definition: Plain = {"name": "a", "bodies": [body, damped]}
+    verdicts = []
+    for model in (model_of(definition, (0, 0, 0)), model_of(definition | {"loads": loads}, (0, 0, 0))):
+        found = linearise(model, {"q": [0, 0]})
+        assert found.stability is not None
+        verdicts.append(found.stability.verdict)
+    assert verdicts == ["stable", "undecided"]
+    motion = simulate(model, {"q": [0.3, 0], "span": [0, 50], "count": 2})
+    assert (motion.series["energy"][-1] > motion.series["energy"][0]) == (sign == "")
+
+
 def test_modes_solve_the_eigenproblem() -> None:
     """(M z^2 + D z + K) shape = 0 for full random matrices."""
     rng = np.random.default_rng(5)
@@ -182,7 +200,7 @@ def test_a_load_that_jumps_is_refused() -> None:
         "forces": dataclasses.replace(forces, entries=(forces.entries[0], len(operations) - 1))
     }
     rough = dataclasses.replace(model, program=Program(program.symbols, operations, outputs))
-    with pytest.raises(InvalidDocument, match=r"'x\.q2' has no derivative.*sqrt") as error:
+    with pytest.raises(InvalidDocument, match=r"the force on 'x\.q2' has no derivative.*sqrt") as error:
         linearise(rough, {"q": [0, 0]})
     assert error.value.faults[0].code == "not-smooth"
 
