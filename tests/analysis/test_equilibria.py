@@ -24,6 +24,7 @@ def test_all_four_of_the_double_pendulum() -> None:
     found = equilibria(catalogue_model("double-pendulum"))
     angles = {tuple(np.round(np.abs(e.q) / np.pi, 9)) for e in found.found}
     assert angles == {(0, 0), (0, 1), (1, 0), (1, 1)}
+    assert len(found.found) == 4
     verdicts = {tuple(np.round(np.abs(e.q) / np.pi)): e.at.stability.verdict for e in found.found if e.at.stability}
     assert verdicts[0, 0] == "stable"
     assert list(verdicts.values()).count("unstable") == 3
@@ -89,6 +90,14 @@ def test_root_locus_of_a_damped_oscillator() -> None:
     assert set(found.stability[1:]) == {"asymptotically stable"}
     steps = np.abs(np.diff(found.eigenvalues, axis=0)).max()
     assert steps < 1.5
+
+
+def test_a_locus_begins_at_the_equilibrium_near_its_start() -> None:
+    """Upright, with sqrt(g/l) and -sqrt(g/l) for any mass."""
+    model = catalogue_model("simple-pendulum")
+    found = root_locus(model, {"parameter": "x.m", "values": [1, 2], "q": [3.0]})
+    np.testing.assert_allclose(found.q[:, 0], np.pi)
+    assert found.stability == ("unstable", "unstable")
 
 
 def test_an_equilibrium_without_linearisation_ends_the_locus() -> None:
