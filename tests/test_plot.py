@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
 
+from substructures.analysis import drawings
+from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory
+from substructures.analysis.stability.root_locus import RootLocus
 from substructures.pictures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
 
 GRID = np.linspace(0.0, 1.0, 11)
@@ -45,3 +49,52 @@ def test_ticks_are_few_and_inside(low: float, high: float) -> None:
     assert 2 <= len(found) <= 7
     room = 1e-6 * (high - low)
     assert low - room <= found[0] <= found[-1] <= high + room
+
+
+def drawn_panels(monkeypatch: pytest.MonkeyPatch, draw: Callable[[], str]) -> tuple[str, dict[str, Panel]]:
+    """Title and panels by title of what a function draws."""
+    found: list[tuple[str, Sequence[Panel]]] = []
+
+    def plot_noted(title: str, panels: Sequence[Panel]) -> str:
+        found.append((title, panels))
+        return ""
+
+    monkeypatch.setattr(drawings, "plot", plot_noted)
+    draw()
+    ((title, panels),) = found
+    return title, {panel.title: panel for panel in panels}
+
+
+def test_a_motion_is_drawn_with_the_drifts_of_what_is_constant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Angles and distances apart; (value - first value) / scale, of an energy less the work; no line of what falls."""
+    t, q = np.array([0.0, 1.0, 2.0]), np.array([[1.0, 10], [2, 20], [3, 30]])
+    series = {"energy": np.array([2.0, 2.5, 3]), "work": np.array([0, 0.5, 0.9]), "momentum.a": np.array([4.0, 4, 6])}
+    checks = (
+        Check("energy-balance", "constant", "", "J", 0.1, 2, 1e-3, 2.0),
+        Check("energy", "falling", "", "J", 1, 2, 1e-3, 1.0),
+        Check("momentum.a", "constant", "", "N s", 2, 4, 1),
+    )
+    events = (Crossing("top", 0.5, q[0], q[0]),)
+    motion = Trajectory(("a", "b"), t, q, q, series, checks, events=events)
+    title, panels = drawn_panels(monkeypatch, lambda: drawings.draw_trajectory(motion, "RP"))
+    assert title == "finished, WRONG: energy violated at t = 1 s"
+    lines = {name: [(line.name, *line.y.tolist()) for line in panel.lines] for name, panel in panels.items()}
+    assert lines["angles"] == [("a", 1, 2, 3)]
+    assert lines["distances"] == [("b", 10, 20, 30)]
+    (balance, momentum) = lines["drift over scale of what must be constant"]
+    assert balance == ("energy-balance", 0, 0, pytest.approx(0.05))
+    assert momentum == ("momentum.a", 0, 0, 0.5)
+    assert {panel.marks for panel in panels.values()} == {(("top", 0.5),)}
+    right = Trajectory(("a", "b"), t, q, q, series, checks[2:])
+    assert drawn_panels(monkeypatch, lambda: drawings.draw_trajectory(right, "RP"))[0] == "finished: all 1 checks hold"
+
+
+def test_a_root_locus_is_drawn_in_the_plane_and_over_its_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
+    roots = np.array([[-1 + 2j, -1 - 2j], [1 + 3j, 1 - 3j]])
+    locus = RootLocus(np.array([5.0, 6]), np.zeros((2, 1)), roots, ("", ""))
+    title, panels = drawn_panels(monkeypatch, lambda: drawings.draw_root_locus(locus))
+    assert title == "root locus, finished: 2 values"
+    plane, parts = panels.values()
+    assert [(line.x.tolist(), line.y.tolist()) for line in plane.lines] == [([-1, 1], [2, 3]), ([-1, 1], [-2, -3])]
+    assert [(line.x.tolist(), line.y.tolist()) for line in parts.lines] == [([5, 6], [-1, 1])] * 2
+    assert plane.marks == (("", 0.0),)

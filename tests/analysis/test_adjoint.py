@@ -116,7 +116,7 @@ def test_gradient_of_a_request() -> None:
     assert found.parameters["x.m1"] == slope(lambda e: {"parameters": {"x.m1": 0.2 + e}})
     motion = found.trajectory
     np.testing.assert_allclose(motion.series["controls"][:, 0], [1, -1, 2, 0], atol=1e-15)
-    assert motion.t[-1] == pytest.approx(0.5)
+    assert (motion.t[-1], motion.steps) == (pytest.approx(0.5), 3)
     assert motion.series["costates"][-1] == pytest.approx([2 * (motion.q[-1, 0] - 1), 0, 0, 0])
 
 
@@ -207,6 +207,7 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
         ({"values": {"tau.x.q1": [1, 2]}}, "/values/tau.x.q1", "wrong-length"),
         ({"values": {"u": [1, 2]}}, "/values/u", "unknown-value"),
         ({"vary": ["x.z"]}, "/vary/0", "unknown-parameter"),
+        ({"inputs": {"tau.x.q1": 1}}, "/inputs/tau.x.q1", "unknown-input"),
         ({"parameters": {"x.z": 1}}, "/parameters/x.z", "unknown-parameter"),
         ({"q": [1, 2]}, "/q", "wrong-length"),
         ({"speed": 1}, "/speed", "extra-forbidden"),

@@ -156,6 +156,11 @@ def test_inputs_hold_a_closed_loop() -> None:
     np.testing.assert_allclose(near.q, np.pi / 3 * np.array([1, 1, -1]), atol=1e-10)
 
 
+def test_a_torque_that_nothing_balances() -> None:
+    """On a slider-crank without gravity; its rod is longer than the crank, so that no position holds it."""
+    assert equilibria(slider_crank(), {"inputs": {"tau.x.crank": 1}, "count": 3}).found == ()
+
+
 def test_formulas_of_the_perturbation() -> None:
     """They survive storage; multipliers are symbols."""
     source = perturbation(slider_crank(DOWN))

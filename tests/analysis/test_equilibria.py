@@ -24,6 +24,7 @@ def test_all_four_of_the_double_pendulum() -> None:
     found = equilibria(catalogue_model("double-pendulum"))
     angles = {tuple(np.round(np.abs(e.q) / np.pi, 9)) for e in found.found}
     assert angles == {(0, 0), (0, 1), (1, 0), (1, 1)}
+    assert len(found.found) == 4
     verdicts = {tuple(np.round(np.abs(e.q) / np.pi)): e.at.stability.verdict for e in found.found if e.at.stability}
     assert verdicts[0, 0] == "stable"
     assert list(verdicts.values()).count("unstable") == 3
@@ -32,8 +33,11 @@ def test_all_four_of_the_double_pendulum() -> None:
 @pytest.mark.parametrize("number", seeds(3, 5))
 def test_forces_vanish_on_random_trees(number: int) -> None:
     """What is found is an equilibrium by the independent way over evaluate."""
-    model = random_model(number, loads=0)
-    for e in equilibria(model, {"count": 4}).found:
+    # the odd ones have springs: there are equilibria
+    model = random_model(2 * number + 1, loads=0)
+    found = equilibria(model, {"count": 4}).found
+    assert found
+    for e in found:
         forces = evaluate(model, {"quantities": ["forces"], "q": e.q})["forces"]
         assert np.abs(forces).max() < 1e-8
         assert e.at.is_equilibrium
@@ -88,6 +92,24 @@ def test_root_locus_of_a_damped_oscillator() -> None:
     assert steps < 1.5
 
 
+def test_a_locus_begins_at_the_equilibrium_near_its_start() -> None:
+    """Upright, with sqrt(g/l) and -sqrt(g/l) for any mass."""
+    model = catalogue_model("simple-pendulum")
+    found = root_locus(model, {"parameter": "x.m", "values": [1, 2], "q": [3.0]})
+    np.testing.assert_allclose(found.q[:, 0], np.pi)
+    assert found.stability == ("unstable", "unstable")
+
+
+def test_an_equilibrium_without_linearisation_ends_the_locus() -> None:
+    """Friction sqrt(s'^2) s' has no derivative at rest."""
+    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
+    found = root_locus(
+        model_of(oscillator() | {"loads": loads}, (0, 0, 0)), {"parameter": "c", "values": [1, 2], "q": [0]}
+    )
+    assert (found.status, len(found.values), found.stability) == ("failed", 0, ())
+    assert "c = 1" in found.message
+
+
 def test_a_lost_equilibrium_ends_the_locus() -> None:
     definition = oscillator()
     definition["parameters"]["k"] = {"value": 8}
@@ -97,5 +119,5 @@ def test_a_lost_equilibrium_ends_the_locus() -> None:
     assert found.status == "failed"
     assert len(found.values) == 2
     assert "k = 0" in found.message
-    with pytest.raises(InvalidDocument):
+    with pytest.raises(InvalidDocument, match="unknown parameter 'nothing'"):
         root_locus(model, {"parameter": "nothing", "values": [1], "q": [0]})

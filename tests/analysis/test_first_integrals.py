@@ -60,7 +60,7 @@ def test_known_machines(name: str, gravity: Any, expected: set[str]) -> None:
     found = first_integrals(model)
     assert constant(found) - {"energy"} == expected
     slopes = drift(model, found)
-    assert all(slopes[name] < 1e-4 for name in expected), slopes
+    assert max(slopes[name] for name in constant(found)) < 1e-4, slopes
 
 
 def test_a_base_that_moves_in_a_slanted_plane() -> None:
@@ -155,6 +155,14 @@ def test_cyclic_coordinates_are_those_that_nothing_depends_on(number: int) -> No
         assert (name in found.cyclic) == (same and free)
 
 
+def assert_amended(full: Plain, reduced: Plain, p: np.ndarray, cyclic: list[int]) -> None:
+    """V_p = V + 1/2 p_c . g_cc^-1 p_c, with the inverse in numbers."""
+    block = full["metric"][:, cyclic][:, :, cyclic]
+    kept = np.linalg.solve(block, p[:, cyclic, None])[..., 0]
+    amended = full["potential_energy"] + 0.5 * np.einsum("nc,nc->n", p[:, cyclic], kept)
+    np.testing.assert_allclose(reduced["amended_potential"], amended, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("name", "gravity"),
     [
@@ -168,7 +176,7 @@ def test_cyclic_coordinates_are_those_that_nothing_depends_on(number: int) -> No
     ],
 )
 def test_routh_reduction_moves_like_the_whole(name: str, gravity: Any) -> None:
-    """h q'' + Gamma^h q' q' + B q' = f has the accelerations of the model; B is skew; f = -grad V_p without dampers."""
+    """h q'' + Gamma^h q' q' + B q' = f has the accelerations of the model; B is skew; V_p and Routh's function."""
     model = catalogue_model(name, gravity)
     reduced = routh(model)
     rest = [model.coordinates.index(c) for c in reduced.coordinates]
@@ -193,6 +201,7 @@ def test_routh_reduction_moves_like_the_whole(name: str, gravity: Any) -> None:
     lagrangian = full["kinetic_energy"] - full["potential_energy"]
     routhian = lagrangian - np.einsum("nc,nc->n", p[:, cyclic], x["qd"][:, cyclic])
     np.testing.assert_allclose(f["routhian"], routhian, atol=1e-9)
+    assert_amended(full, f, p, cyclic)
 
 
 def test_everything_cyclic_leaves_no_coordinate() -> None:

@@ -63,6 +63,19 @@ def test_state_space_against_differences(number: int) -> None:
     np.testing.assert_allclose(numbers["B"][0], found.B, rtol=0, atol=1e-9 * (1 + np.abs(by_input).max()))
 
 
+def test_outputs_of_the_state_space() -> None:
+    """y = sin(q1) q2' + 3 tau1 with its derivatives, and x' = (q', q''), as formulas."""
+    model, q, qd = catalogue_model("double-pendulum"), np.array([[0.4, -0.2]]), np.array([[0.5, 0.7]])
+    source = state_space(model, ["sin(x.q1)*x.q2' + 3*tau.x.q1"], ["tau.x.q1"])
+    found = interpret(source, values_at(model, q, qd) | {"tau.x.q1": 2.0})
+    inputs = {"tau.x.q1": 2.0}
+    accelerations = acceleration(model, {"q": q[0], "qd": qd[0], "inputs": inputs})
+    np.testing.assert_allclose(found["C"][0], [[np.cos(0.4) * 0.7, 0, 0, np.sin(0.4)]])
+    np.testing.assert_allclose(found["D"].ravel(), [3])
+    np.testing.assert_allclose(found["output"].ravel(), [np.sin(0.4) * 0.7 + 6])
+    np.testing.assert_allclose(found["derivative"][0], [*qd[0], *accelerations])
+
+
 def test_along_a_trajectory() -> None:
     """Arrays with a leading axis, equal to the single states; the formulas survive storage."""
     model = catalogue_model("planar-3r")
@@ -126,7 +139,16 @@ def test_upright_is_unstable() -> None:
     found = linearise(catalogue_model("simple-pendulum"), {"q": [np.pi]})
     assert found.stability is not None
     assert found.stability.verdict == "unstable"
-    assert max(mode.eigenvalue.real for mode in found.modes) == pytest.approx(np.sqrt(G))
+    assert sorted(mode.eigenvalue.real for mode in found.modes) == pytest.approx([-np.sqrt(G), np.sqrt(G)])
+    assert found.stability.reason == "the eigenvalue 3.13209 1/s has a positive real part"
+
+
+@pytest.mark.parametrize("more", [{}, {"qdd": [0, 0]}])
+def test_a_state_at_rest_is_no_equilibrium_unless_forces_balance(more: Plain) -> None:
+    """Released, it accelerates; held by given accelerations, a residual is left. Both have no modes."""
+    found = linearise(catalogue_model("double-pendulum"), {"q": [0.3, 0], **more})
+    assert (found.status, found.is_equilibrium, found.modes) == ("finished", False, ())
+    assert max(np.abs(found.qdd).max(), np.abs(found.residual).max()) > 1
 
 
 def test_where_the_linearisation_does_not_decide() -> None:
@@ -137,6 +159,25 @@ def test_where_the_linearisation_does_not_decide() -> None:
         found = linearise(model_of(slide | {"loads": loads}, (0, 0, 0)), {"q": [0]})
         assert found.stability is not None
         assert found.stability.verdict == "undecided"
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_dampers_that_vanish_at_rest_do_not_make_it_stable(sign: str) -> None:
+    """s'' = -s + s^2 s' leaves its equilibrium, whose linearisation is an oscillator: (s'^2 + s^2)' = 2 s^2 s'^2."""
+    slide = {"type": "prismatic", "coordinate": "s", "stiffness": 1}
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": slide}
+    damped = {"name": "c", "parent": "base", "mass": 1, "joint": slide | {"coordinate": "z", "damping": 1}}
+    loads = [{"type": "joint", "coordinate": "s", "force": f"{sign}c*s^2*s'"}]
+    parameters = {"c": {"value": 1}}
+    model = model_of({"name": "a", "bodies": [body, damped], "loads": loads, "parameters": parameters}, (0, 0, 0))
+    verdicts = []
+    for c in (0, 2):
+        found = linearise(model, {"q": [0, 0], "parameters": dict.fromkeys(model.parameters, c)})
+        assert found.stability is not None
+        verdicts.append(found.stability.verdict)
+    assert verdicts == ["stable", "undecided"]
+    motion = simulate(model, {"q": [0.3, 0], "span": [0, 50], "count": 2})
+    assert (motion.series["energy"][-1] > motion.series["energy"][0]) == (sign == "")
 
 
 def test_modes_solve_the_eigenproblem() -> None:
@@ -160,7 +201,7 @@ def test_a_load_that_jumps_is_refused() -> None:
         "forces": dataclasses.replace(forces, entries=(forces.entries[0], len(operations) - 1))
     }
     rough = dataclasses.replace(model, program=Program(program.symbols, operations, outputs))
-    with pytest.raises(InvalidDocument, match=r"'x\.q2' has no derivative.*sqrt") as error:
+    with pytest.raises(InvalidDocument, match=r"the force on 'x\.q2' has no derivative.*sqrt") as error:
         linearise(rough, {"q": [0, 0]})
     assert error.value.faults[0].code == "not-smooth"
 

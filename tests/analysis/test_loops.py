@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import catalogue_model
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, tree_model
 from random_trees import Plain
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import analyse_loops
+from substructures.quantities.evaluation import evaluate
 
 
 def test_planar_pin_is_redundant_but_harmless() -> None:
@@ -188,3 +190,9 @@ def test_a_tree_without_loops_is_the_special_case() -> None:
     driven = analyse_loops(model, {"q": [0.0], "prescribed": {"x.q_b": "t^2/2"}})
     np.testing.assert_allclose(driven.qdd, [1.0])
     np.testing.assert_allclose(driven.actuation["x.q_b"], 1 + 9.81)
+    two = {"prescribed": {"x.q1": "sin(t)", "x.q2": "t^3"}, "t": 0.5}
+    held = analyse_loops(catalogue_model("double-pendulum"), {"q": [0.4, 0.1], **two})
+    state = {"q": [np.sin(0.5), 0.125], "qd": [np.cos(0.5), 0.75], "qdd": [-np.sin(0.5), 3]}
+    needed = evaluate(catalogue_model("double-pendulum"), {"quantities": ["inverse_dynamics"], **state})
+    np.testing.assert_allclose(held.qdd, state["qdd"])
+    np.testing.assert_allclose(list(held.actuation.values()), needed["inverse_dynamics"], rtol=1e-9)

@@ -48,6 +48,16 @@ def test_an_oscillator_by_its_stiffness_and_start() -> None:
     np.testing.assert_allclose(found.series["d.start"], np.moveaxis(exact, 2, 0), atol=1e-10)
 
 
+def test_a_force_that_depends_on_time() -> None:
+    """s'' = p cos t: s = p (1 - cos t)."""
+    body = {"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": 1}
+    loads = [{"type": "joint", "coordinate": "s", "force": "p*cos(t)"}]
+    model = model_of({"name": "a", "bodies": [body], "loads": loads, "parameters": {"p": {"value": 2}}}, (0, 0, 0))
+    name = next(iter(model.parameters))
+    found = sensitivities(model, {"q": [0], "span": [0, 2], "count": 5, **FINE}, [name])
+    np.testing.assert_allclose(found.series[f"d.{name}"][:, 0], 1 - np.cos(found.t), atol=1e-10)
+
+
 def test_a_driven_machine_against_differences() -> None:
     model = catalogue_model("furuta-pendulum")
     names = list(model.parameters)[:3]
@@ -73,5 +83,12 @@ def test_what_is_refused() -> None:
         sensitivity_formulas(model, ["x.m1"], ["mass"])
     with pytest.raises(InvalidDocument, match="depend on t only"):
         sensitivities(model, base | {"inputs": {"tau.x.q1": "x.q2"}}, ["x.m1"])
-    with pytest.raises(InvalidDocument, match="without 'fixed_step'"):
-        sensitivities(model, base | {"fixed_step": {"step": 0.1}}, ["x.m1"])
+    for name, given in (
+        ("fixed_step", {"step": 0.1}),
+        ("events", [{"name": "e", "quantity": "t"}]),
+        ("series", {"s": "t"}),
+        ("method", "Taylor"),
+    ):
+        with pytest.raises(InvalidDocument) as error:
+            sensitivities(model, base | {name: given}, ["x.m1"])
+        assert [(f.pointer, f.code) for f in error.value.faults] == [(f"/{name}", "not-supported")]

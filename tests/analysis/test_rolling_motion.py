@@ -95,6 +95,19 @@ def test_rolling_motions_have_events_series_and_inputs_of_all_kinds() -> None:
     np.testing.assert_allclose(motion.series["speed"], np.hypot(motion.qd[:, 0], motion.qd[:, 1]))
 
 
+def test_a_force_that_depends_on_time() -> None:
+    """s'' = cos t on a slide that a second one follows: s = (1 - cos t)/2."""
+    slides: list[Plain] = [
+        {"name": x, "parent": "base", "joint": {"type": "prismatic", "coordinate": x}, "mass": 1} for x in "ab"
+    ]
+    loads = [{"type": "joint", "coordinate": "a", "force": "cos(t)"}]
+    model = single({"name": "two", "bodies": slides, "loads": loads}, [0, 0, 0])
+    tied = [{"name": "tie", "type": "linear", "expression": "s.a' - s.b'"}]
+    motion = simulate_rolling(model, {"constraints": tied, "q": [0, 0], "span": [0, 2], "count": 5})
+    np.testing.assert_allclose(motion.q, np.outer((1 - np.cos(motion.t)) / 2, [1, 1]), atol=1e-9)
+    assert motion.is_right
+
+
 def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 100]}
     motion = simulate_rolling(sleigh(), request | {"max_steps": 10})
@@ -137,6 +150,11 @@ BAD: list[tuple[Plain, str, str]] = [
         "/constraints/0/expression",
         "unknown-name",
     ),
+    (
+        {"constraints": [{"name": "c", "type": "linear", "expression": "tau.s.x*s.x'"}]},
+        "/constraints/0/expression",
+        "unknown-name",
+    ),
     ({"constraints": [{"name": "c", "type": "closure"}]}, "/constraints/0/name", "unknown-closure"),
     ({"velocities": {"u": "s.x'"}}, "/velocities", "wrong-length"),
     ({"velocities": {"u": "s.x'", "w": "s.x'"}}, "/velocities", "dependent"),
@@ -144,6 +162,7 @@ BAD: list[tuple[Plain, str, str]] = [
     ({"v": [1]}, "/v", "wrong-length"),
     ({"v": {"u": 1}}, "/v", "unknown-velocity"),
     ({"qd": [1, 1, 0]}, "/qd", "violated"),
+    ({"v": [0, 0], "qd": [0, 0, 0]}, "/v", "two-velocities"),
     ({"independent": ["s.x", "s.f"], "q": [0, 0, "pi/2"]}, "/q/2", "number-expected"),
     ({"independent": ["s.y", "s.f"], "qd": [0, 0, 1]}, "/q", "singular-start"),
     ({"form": "lagrange"}, "/form", "literal-error"),

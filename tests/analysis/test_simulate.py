@@ -142,7 +142,14 @@ def test_order_of_fixed_steps(method: str, order: int) -> None:
     errors = [np.abs(run.q[-1] - exact).max() for run in runs]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3)
     assert runs[0].figures["real_time_factor"] > 0
+    assert 0 < runs[0].figures["longest_step"] < 1 / runs[0].figures["real_time_factor"] + 1e-9
     assert runs[1].steps == round(1 / steps[1])
+
+
+@pytest.mark.parametrize(("step", "times"), [(0.25, [2, 2.25, 2.5, 2.75, 3]), (0.4, [2, 2.4, 2.8, 3])])
+def test_results_at_steps_from_the_start_and_at_the_end(step: float, times: list[float]) -> None:
+    motion = simulate(model_of(oscillator(stiffness=4), (0, 0, 0)), {"q": [1], "span": [2, 3], "step": step})
+    assert motion.t.tolist() == pytest.approx(times)
 
 
 def test_outputs_between_fixed_steps() -> None:

@@ -58,36 +58,38 @@ def test_steps_are_limited() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "pointer"),
+    ("changes", "pointer", "code"),
     [
-        ({"q": [1]}, "/q"),
-        ({"q": {"x.q1": 1}}, "/q"),
-        ({"qd": [1, "a"]}, "/qd/1"),
-        ({"span": [1, 0]}, ""),
-        ({"span": [0, "b"]}, "/span/1"),
-        ({"step": 0.1, "count": 3}, ""),
-        ({"times": [0, 2]}, ""),
-        ({"method": "euler"}, "/method"),
-        ({"parameters": {"x.mass": 1}}, "/parameters/x.mass"),
-        ({"parameters": {"x.m1": "heavy"}}, "/parameters/x.m1"),
-        ({"inputs": {"tau.x.q1": 10**400}}, "/inputs/tau.x.q1"),
-        ({"inputs": {"tau.x.q1": Decimal("1e400")}}, "/inputs/tau.x.q1"),
-        ({"span": [0, 10**400]}, "/span/1"),
-        ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9"),
-        ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1/values"),
-        ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity"),
-        ({"series": {"a": "nothing"}}, "/series/a"),
-        ({"series": {"energy": "x.q1"}}, "/series/energy"),
-        ({"fixed_step": {"step": 0.1}, "events": [{"name": "e", "quantity": "x.q1"}]}, "/events"),
-        ({"stepp": 1}, "/stepp"),
+        ({"q": [1]}, "/q", "wrong-length"),
+        ({"q": {"x.q1": 1}}, "/q", "missing"),
+        ({"qd": [1, "a"]}, "/qd/1", "number-expected"),
+        ({"span": [1, 0]}, "", "empty-span"),
+        ({"span": [0, "b"]}, "/span/1", "number-expected"),
+        ({"step": 0.1, "count": 3}, "", "one-grid"),
+        ({"times": [0, 2]}, "", "outside"),
+        ({"method": "euler"}, "/method", "literal-error"),
+        ({"parameters": {"x.mass": 1}}, "/parameters/x.mass", "unknown-parameter"),
+        ({"parameters": {"x.m1": "heavy"}}, "/parameters/x.m1", "number-expected"),
+        ({"inputs": {"tau.x.q1": 10**400}}, "/inputs/tau.x.q1", "wrong-length"),
+        ({"inputs": {"tau.x.q1": Decimal("1e400")}}, "/inputs/tau.x.q1", "number-not-finite"),
+        ({"span": [0, 10**400]}, "/span/1", "number-not-finite"),
+        ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9", "unknown-input"),
+        ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1", "unknown-name"),
+        ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times", "not-covered"),
+        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1/values", "too-short"),
+        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0, 1, 2]}}}, "/inputs/tau.x.q1", "wrong-length"),
+        ({"step": 1e-9}, "", "too-many-outputs"),
+        ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity", "bad-expression"),
+        ({"series": {"a": "nothing"}}, "/series/a", "unknown-name"),
+        ({"series": {"energy": "x.q1"}}, "/series/energy", "reserved-name"),
+        ({"fixed_step": {"step": 0.1}, "events": [{"name": "e", "quantity": "x.q1"}]}, "/events", "not-supported"),
+        ({"stepp": 1}, "/stepp", "extra-forbidden"),
     ],
 )
-def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
+def test_faults_have_pointers(changes: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidDocument) as error:
         simulate(catalogue_model("double-pendulum"), {"q": [0, 0], "span": [0, 1]} | changes)
-    assert error.value.faults[0].pointer == pointer
+    assert (error.value.faults[0].pointer, error.value.faults[0].code) == (pointer, code)
 
 
 def test_nothing_that_moves() -> None:

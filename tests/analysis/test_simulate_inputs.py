@@ -40,6 +40,26 @@ def test_jumps_of_tables_cost_no_accuracy_and_few_steps() -> None:
     assert motion.steps < 40
 
 
+def test_jumps_outside_of_the_span_do_not_matter() -> None:
+    """A table that is longer than the span on both sides: the integrator never leaves the span."""
+    held = {"times": [-1, -0.5, 0.5, 1.5, 2], "values": [7, 2, -2, 9, 0], "interpolation": "hold"}
+    told: list[float] = []
+    request: Plain = {"q": [0], "span": [0, 1], "inputs": {"tau.x.s": held}, "count": 2, **FINE}
+    motion = simulate(model_of(oscillator(), (0, 0, 0)), request, told.append)
+    assert told == sorted(told)
+    assert (min(told) > 0, max(told)) == (True, 1)
+    assert motion.q[-1, 0] == pytest.approx(0.5, abs=1e-14)
+
+
+@pytest.mark.parametrize(("method", "place", "speed"), [("rk4", 1, 4), ("semi-implicit-euler", 0.75, 1.5)])
+def test_fixed_steps_take_inputs_at_the_times_of_their_scheme(method: str, place: float, speed: float) -> None:
+    """s'' = 12 t^2 in two steps: s = t^4 is exact for the order four; Euler has the force at the start of each step."""
+    request: Plain = {"q": [0], "span": [0, 1], "count": 2, "inputs": {"tau.x.s": "12*t^2"}}
+    motion = simulate(model_of(oscillator(), (0, 0, 0)), request | {"fixed_step": {"step": 0.5, "method": method}})
+    assert motion.q[-1, 0] == pytest.approx(place, abs=1e-14)
+    assert motion.qd[-1, 0] == pytest.approx(speed, abs=1e-14)
+
+
 def test_feedback_as_an_expression() -> None:
     """A spring and a damper by an input; energy changes by their work."""
     law = {"tau.x.s": "-4*x.s - x.s'/2"}

@@ -60,6 +60,8 @@ def test_what_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InvalidDocument, match="no tables") as error:
         simulate(model, request | {"inputs": table})
     assert error.value.faults[0].pointer == "/method"
+    with pytest.raises(InvalidDocument, match="leave 'max_step' out"):
+        simulate(model, request | {"max_step": 0.1})
     monkeypatch.setattr(taylor, "heyoka", None)
     with pytest.raises(InvalidDocument, match="needs the package"):
         simulate(model, request)

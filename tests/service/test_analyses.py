@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from .analysis_trees import TREES, G, ask, client, rest, store
+from .analysis_trees import BAR, TREES, G, ask, client, rest, store
 
 __all__ = ["client", "store"]  # fixtures
 
@@ -77,9 +77,15 @@ def test_sensitivities_are_slopes(client: TestClient) -> None:
 
 def test_curvature_of_one_coordinate_is_none(client: TestClient) -> None:
     assert ask(client, "clock/curvatures", q=[0.3])["scalar_curvature"] == 0
-    found = ask(client, "cart/curvatures", q=[[0, 0.3], [0, 1.0]])
-    riemann = np.array(found["riemann"])
-    assert riemann == pytest.approx(-riemann.swapaxes(1, 2))
+
+
+def test_curvature_of_a_double_pendulum(client: TestClient) -> None:
+    """S = 2 cos d / (1 + sin^2 d)^2 for equal masses 1 on rods of length 1, d the angle between them."""
+    bars = [{"name": "a", "definition": BAR}, {"name": "b", "definition": BAR, "at": "a.end"}]
+    assert client.post("/v1/trees", json={"name": "double", "instances": bars}).status_code in (200, 201)
+    found = ask(client, "double/curvatures", q=[[0.2, 0.3], [0, 1.0]])
+    exact = [2 * math.cos(d) / (1 + math.sin(d) ** 2) ** 2 for d in (0.3, 1.0)]
+    assert found["scalar_curvature"] == pytest.approx(exact)
 
 
 def test_gradient_of_a_cost(client: TestClient) -> None:

@@ -38,9 +38,13 @@ WRONG: dict[str, tuple[Any, str, str]] = {
     "unknown parent": (edited("/bodies/0/parent", "nobody"), "/bodies/0/parent", "nobody"),
     "own parent": (edited("/bodies/0/parent", "rod"), "/bodies/0/parent", "rod"),
     "cycle": ({**PENDULUM, "bodies": CYCLE, "ports": []}, "/bodies/0/parent", "a"),
-    "duplicate body": (edited("/bodies/-", PENDULUM["bodies"][0]), "/bodies/1", "rod"),
-    "duplicate coordinate": (edited("/bodies/-", {**PENDULUM["bodies"][0], "name": "b"}), "/bodies/1", "q"),
-    "duplicate port": (edited("/ports/-", PENDULUM["ports"][0]), "/ports/1", "tip"),
+    "duplicate body": (edited("/bodies/-", PENDULUM["bodies"][0]), "/bodies/1/name", "rod"),
+    "duplicate coordinate": (
+        edited("/bodies/-", {**PENDULUM["bodies"][0], "name": "b"}),
+        "/bodies/1/joint/coordinate",
+        "q",
+    ),
+    "duplicate port": (edited("/ports/-", PENDULUM["ports"][0]), "/ports/1/name", "tip"),
     "illegal body name": (edited("/bodies/0/name", "1rod"), "/bodies/0/name", "1rod"),
     "illegal name": (edited("/name", "Pendulum!"), "/name", "Pendulum!"),
     "reserved body name": (edited("/bodies/0/name", "base"), "/bodies/0/name", "base"),
@@ -51,8 +55,8 @@ WRONG: dict[str, tuple[Any, str, str]] = {
     "coordinate in a mass": (edited("/bodies/0/mass", "q"), "/bodies/0/mass", "q"),
     "division by zero": (edited("/bodies/0/mass", "m/0"), "/bodies/0/mass", "zero"),
     "hidden division by zero": (edited("/bodies/0/mass", "m/(l-l)"), "/bodies/0/mass", "zero"),
-    "array length": (edited("/bodies/0/com", ["l", 0]), "/bodies/0/com", ""),
-    "array of arrays": (edited("/bodies/0/com", [[0, 0, 0]]), "/bodies/0/com", ""),
+    "array length": (edited("/bodies/0/com", ["l", 0]), "/bodies/0/com/2", "missing"),
+    "array of arrays": (edited("/bodies/0/com", [[0, 0, 0]]), "/bodies/0/com/0", "number"),
     "negative mass": (edited("/bodies/0/mass", -1), "/bodies/0/mass", "negative"),
     "impossible inertia": (edited("/bodies/0/inertia", {"xx": 1, "yy": 1, "zz": 3}), "/bodies/0/inertia", "triangle"),
     "indefinite inertia": (
@@ -95,7 +99,7 @@ def test_wrong_definitions(client: TestClient, rows: Any, what: str) -> None:
     assert answer.status_code == 422, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     errors = answer.json()["errors"]
-    assert any(e["pointer"].startswith(pointer) and culprit in e["message"] for e in errors), errors
+    assert any(e["pointer"] == pointer and culprit in e["message"] for e in errors), errors
     assert rows() == before
 
 
@@ -107,7 +111,7 @@ def test_wrong_inline_definitions(client: TestClient, rows: Any, what: str) -> N
     answer = client.post("/v1/trees", json=tree)
     assert answer.status_code == 422, answer.text
     errors = answer.json()["errors"]
-    assert any(e["pointer"].startswith(f"/instances/0/definition{pointer}") for e in errors), errors
+    assert any(e["pointer"] == f"/instances/0/definition{pointer}" for e in errors), errors
     assert rows() == before
 
 

@@ -65,7 +65,7 @@ def test_altering_a_table_keeps_its_child_rows(database: Database, monkeypatch: 
         ) as batch:
             batch.add_column(sa.Column("extra", sa.Text))
 
-    monkeypatch.setattr("service.database.migrate.command.upgrade", alter)
+    monkeypatch.setattr("service.database.connections.migrate.command.upgrade", alter)
     upgrade(database.writer)
     with database.read() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM versions").scalar() == 1
@@ -79,7 +79,7 @@ def test_failed_migrations_change_nothing(database: Database, monkeypatch: pytes
         configuration.attributes["connection"].exec_driver_sql("CREATE TABLE half (x)")
         raise RuntimeError("half way")
 
-    monkeypatch.setattr("service.database.migrate.command.upgrade", fail)
+    monkeypatch.setattr("service.database.connections.migrate.command.upgrade", fail)
     with pytest.raises(RuntimeError, match="half way"):
         upgrade(database.writer)
     with database.read() as connection:
@@ -121,19 +121,19 @@ def test_one_server_a_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "address",
+    ("address", "message"),
     [
-        "mysql://x/y",
-        "nonsense",
-        "sqlite://",
-        "sqlite:////nowhere/at/all.db",
-        "postgresql://x@127.0.0.1:9/x",
-        "postgresql://x:port/y",
+        ("mysql://x/y", "kind 'mysql' are not supported"),
+        ("nonsense", "'nonsense' is no database URL"),
+        ("sqlite://", "needs a file"),
+        ("sqlite:////nowhere/at/all.db", "unable to open database file"),
+        ("postgresql://x@127.0.0.1:9/x", "cannot use the database postgresql"),
+        ("postgresql://x:port/y", "is no database URL"),
     ],
 )
-def test_wrong_addresses(address: str) -> None:
+def test_wrong_addresses(address: str, message: str) -> None:
     for exclusive in (True, False):
-        with pytest.raises(DatabaseError):
+        with pytest.raises(DatabaseError, match=message):
             Database(address, exclusive=exclusive)
 
 

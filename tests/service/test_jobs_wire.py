@@ -32,24 +32,27 @@ def test_blobs_are_sent_once() -> None:
     assert read_work(again, blobs).blobs == work.blobs
     read_work(work_frame(Work("b", "verify", {}, {}, BUDGET), frozenset(), ("1",)), blobs)
     assert set(blobs) == {"2"}
-    with pytest.raises(WireError):
+    with pytest.raises(WireError, match="'1'"):
         read_work(again, blobs)
 
 
 @pytest.mark.parametrize(
-    "data",
+    ("data", "message"),
     [
-        b"\xff\xff\xff\xff",
-        b"\x00\x00\x00\x02[]",
-        b"\x00\x00\x00\x02{}",
-        b'\x00\x00\x00\x28{"protocol": 2, "contents": [["a", -1]]}',
-        b"\x00\x00\x00\x03nul",
+        (b"\xff\xff\xff\xff", "a head of 4294967295 bytes"),
+        (b"\x00\x00\x00\x02[]", "cannot be read"),
+        (b"\x00\x00\x00\x02{}", "cannot be read: 'contents'"),
+        (b'\x00\x00\x00\x28{"protocol": 2, "contents": [["a", -1]]}', "impossible size"),
+        (b"\x00\x00\x00\x03nul", "cannot be read"),
     ],
 )
-def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
-    with pytest.raises(WireError):
+def test_bytes_that_are_no_frame_are_refused(data: bytes, message: str) -> None:
+    with pytest.raises(WireError, match=message):
         list(MessageReader().feed(data + b" " * 100))
-    with pytest.raises(WireError):
+
+
+def test_a_head_without_what_a_report_needs_is_refused() -> None:
+    with pytest.raises(WireError, match="not a report: 'fraction'"):
         read_report(Message({"id": "x"}))
 
 

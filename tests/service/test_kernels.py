@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 from time import monotonic, sleep
 from typing import Any
 
@@ -36,26 +37,31 @@ def agree(model: Model, engine: Kernels, states: int) -> None:
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-9)
 
 
-def wait_for(folder: Path) -> None:
+def test_small_batches_are_answered_first_and_compiled_then(
+    model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    engine, gate = Kernels(tmp_path), Event()
+    engine._compiler.submit(gate.wait)
+    agree(model, engine, 3)
+    assert not list(tmp_path.iterdir())
+    gate.set()
     limit = monotonic() + 30
-    while not any(folder.glob("*")):
-        assert monotonic() < limit, "nothing was compiled"
+    while engine._waiting:
+        assert monotonic() < limit, "nothing is compiled in the background"
         sleep(0.02)
-
-
-def test_small_batches_are_answered_first_and_compiled_then(model: Model, tmp_path: Path) -> None:
-    engine = Kernels(tmp_path / "kernels")
+    assert list(tmp_path.iterdir())
+    monkeypatch.setattr("service.kernels.interpreted", None)  # kernels alone can answer now
     agree(model, engine, 3)
     engine.close()
-    agree(model, engine, 3)
 
 
 def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kernels, "AT_ONCE", 10)
+    monkeypatch.setattr("service.kernels.interpreted", None)
     engine = Kernels(tmp_path)
     agree(model, engine, 33)
     engine.close()
-    wait_for(tmp_path)
+    assert list(tmp_path.iterdir())
 
 
 def test_large_batches_may_come_in_pieces(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,8 +83,11 @@ def test_damaged_files_are_made_anew(model: Model, tmp_path: Path, monkeypatch: 
         engine = Kernels(tmp_path)
         agree(model, engine, 5)
         engine.close()
-        for file in tmp_path.iterdir():
-            file.write_bytes(file.read_bytes()[:-7] + b"garbage")
+        kept = {file: file.read_bytes() for file in tmp_path.iterdir()}
+        assert kept
+        assert not any(content.endswith(b"garbage") for content in kept.values())
+        for file, content in kept.items():
+            file.write_bytes(content[:-7] + b"garbage")
 
 
 SPEC = {
@@ -125,7 +134,7 @@ def test_ways() -> None:
     assert kernels.quickest(10**5, coupled=False, warm=True) is kernels.Way.KERNEL
 
 
-def test_kernels_on_request(filled: TestClient) -> None:
+def test_kernels_on_request(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """Compiled once; evaluations of the same quantities then use them."""
     body = {"quantities": ["metric", "forward_dynamics"]}
     first = filled.post("/v1/trees/cell/kernels", json=body)
@@ -136,6 +145,7 @@ def test_kernels_on_request(filled: TestClient) -> None:
     assert again.status_code == 200
     assert not any(row["new"] for row in again.json()["kernels"])
     states = {"q": [[0.1], [0.2]], "qd": [[0], [1]]}
+    monkeypatch.setattr("service.kernels.interpreted", None)
     assert filled.post("/v1/trees/cell/evaluations", json={**body, **states}).status_code == 200
     assert filled.post("/v1/trees/cell").status_code == 405
 

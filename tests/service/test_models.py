@@ -143,11 +143,11 @@ def test_every_quantity(double: TestClient) -> None:
     [
         ({"q": [0.1]}, "/q"),
         ({"q": [[0.1, 0.2], [0.3]]}, "/q"),
-        ({"q": {"arm.q": [0], "nobody.q": [0]}}, "/q"),
-        ({"q": ["x", 0]}, "/q"),
+        ({"q": {"arm.q": [0], "nobody.q": [0]}}, "/q/nobody.q"),
+        ({"q": ["x", 0]}, "/q/0"),
         ({"q": None}, "/q"),
         ({"qd": [0, 0, 0]}, "/qd"),
-        ({"quantities": ["nothing"]}, "/quantities"),
+        ({"quantities": ["nothing"]}, "/quantities/0"),
         ({"quantities": "metric"}, "/quantities"),
         ({"quantities": ["inverse_dynamics"]}, "/qdd"),
         ({"parameters": {"arm.mass": 1}}, "/parameters/arm.mass"),
@@ -161,7 +161,7 @@ def test_every_quantity(double: TestClient) -> None:
 def test_wrong_evaluations(double: TestClient, change: dict[str, Any], pointer: str) -> None:
     answer = evaluate(double, **{"quantities": ["metric"], "q": [[0, 0], [0, 0], [0, 0]], **change})
     assert answer.status_code == 422, answer.text
-    assert any(error["pointer"].startswith(pointer) for error in answer.json()["errors"]), answer.text
+    assert answer.json()["errors"][0]["pointer"] == pointer, answer.text
 
 
 def test_a_parameter_without_value_is_named(filled: TestClient) -> None:

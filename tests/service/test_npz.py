@@ -145,5 +145,6 @@ def test_members_that_are_no_arrays() -> None:
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         archive.writestr("../../etc/passwd", "root")
-    with pytest.raises(InvalidDocument):
+    with pytest.raises(InvalidDocument) as caught:
         read_npz(stream, 10**6)
+    assert [(f.pointer, f.code) for f in caught.value.faults] == [("/..~1..~1etc~1passwd", "npy")]

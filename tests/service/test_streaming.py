@@ -42,8 +42,13 @@ def test_limits_of_streams(store: Store, monkeypatch: pytest.MonkeyPatch) -> Non
     refused = post(limited(store, monkeypatch, stream_bytes=len(body) - 1), body)
     assert (refused.status_code, refused.json()["code"]) == (413, "body-too-large")
     assert post(limited(store, monkeypatch, stream_bytes=len(body)), body).status_code == 200
-    for limits in ({"binary_bytes": 700}, {"stream_states": 99}, {"states": 99}):
-        assert post(limited(store, monkeypatch, **limits), body).status_code == 422
+    for limits, code in (
+        ({"binary_bytes": 700}, "too-large"),
+        ({"stream_states": 99}, "too-large"),
+        ({"states": 99}, "too-many-states"),
+    ):
+        refused = post(limited(store, monkeypatch, **limits), body)
+        assert (refused.status_code, refused.json()["errors"][0]["code"]) == (422, code)
     assert post(limited(store, monkeypatch, binary_bytes=2000, states=100, stream_states=300), body).status_code == 200
     whole = post(limited(store, monkeypatch, binary_bytes=2000), body, "application/json")
     assert (whole.status_code, whole.json()["code"]) == (422, "too-large")  # only Arrow leaves part by part
@@ -87,7 +92,12 @@ def test_parts_make_the_same_answer(filled: TestClient, monkeypatch: pytest.Monk
 def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batches, "PART", 80)
     q = np.zeros((40, 1)).tolist()
-    for wrong in ({"qd": q[:10]}, {"t": [0.0] * 10}, {"parameters": {"arm.m": [1.0] * 10}}, {"q": [*q, [np.inf]]}):
+    for wrong, pointer in (
+        ({"qd": q[:10]}, "/qd"),
+        ({"t": [0.0] * 10}, "/t"),
+        ({"parameters": {"arm.m": [1.0] * 10}}, "/parameters/arm.m"),
+        ({"q": [*q, [np.inf]]}, "/q/40/0"),
+    ):
         body = io.BytesIO()
         flat = {f"{name}.arm.m": value["arm.m"] if isinstance(value, dict) else value for name, value in wrong.items()}
         names = {name if name.startswith("parameters") else name.partition(".")[0]: v for name, v in flat.items()}
@@ -95,6 +105,7 @@ def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monk
         for accept in ("application/x-npz", MEDIA_TYPE):
             answer = post(filled, body.getvalue(), sent="application/x-npz", accept=accept)
             assert answer.status_code == 422, answer.content
+            assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
 
 
 def test_one_position_and_many_velocities(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:

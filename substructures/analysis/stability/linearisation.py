@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from substructures.analysis.equations.energy import energy_rule
+from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.equations.perturbation import require_inputs
@@ -154,10 +154,10 @@ def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
 
 
 def has_potential(model: Model, read: LinearisationRequest) -> bool:
-    """Whether the forces have a potential, but for dampers that are linear in the velocities.
+    """Whether the forces have a potential, but for dampers that are linear in the velocities and even everywhere.
 
     A constant actuator force tau_a has one, too: -tau_a q^a.
     """
     driven = [name for name, value in read.inputs.items() if np.any(value) and not name.startswith("tau.")]
     zero = [name for name, value in read.parameters.items() if not np.any(value)]
-    return energy_rule(model, driven, zero) in ("constant", "falling")
+    return has_even_dissipation(model, driven, zero)

@@ -120,8 +120,9 @@ def normed(shape: Any) -> ComplexArray:
 def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool) -> Stability:
     """What the eigenvalues of an equilibrium say about the motion near it.
 
-    ``has_potential``: forces without potential are linear in the velocities, or there are none: then a positive
-    definite K decides where the linearisation does not, if D nowhere feeds energy in (Lagrange and Dirichlet).
+    ``has_potential``: forces without potential are linear in the velocities, with the same coefficients in all
+    positions, or there are none: then a positive definite K decides where the linearisation does not, if D feeds no
+    energy in (Lagrange and Dirichlet).
     """
     if not found:
         return Stability("stable", "there is nothing that moves")
