@@ -10,7 +10,7 @@ from substructures.mechanics.linear3 import (
     ZERO,
     ZERO6,
     Rotation,
-    S,
+    Scalar,
     Symmetric,
     Vector,
     add,
@@ -27,13 +27,13 @@ class Inertia:
     ``polar``: J_xx + J_yy where a shorter form than that sum is known: turns about the third axis leave it as it is.
     """
 
-    m: S = 0
+    m: Scalar = 0
     s: Vector = ZERO
     J: Symmetric = ZERO6
-    polar: S | None = None
+    polar: Scalar | None = None
 
     @property
-    def about_third_axis(self) -> S:
+    def about_third_axis(self) -> Scalar:
         """J_xx + J_yy, the moment of inertia about the third axis."""
         return self.J[0] + self.J[1] if self.polar is None else self.polar
 
@@ -70,7 +70,7 @@ class Inertia:
         return Inertia(self.m, rotation.back(self.s), rotation.back_tensor(self.J))
 
 
-def binet(theta: Symmetric, half: S = Fraction(1, 2)) -> Symmetric:
+def binet(theta: Symmetric, half: Scalar = Fraction(1, 2)) -> Symmetric:
     """J = tr(Theta)/2 1 - Theta from the inertia tensor Theta (xx, yy, zz, xy, xz, yz)."""
     xx, yy, zz, xy, xz, yz = theta
     return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz

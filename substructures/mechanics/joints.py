@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, Vector, exactly, multiply
+from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, exactly, multiply
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class OneDofJoint:
     s: int
     rotation: Rotation
     offset: Vector
-    tau: S
+    tau: Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ def links(joints: tuple[OneDofJoint, ...]) -> tuple[Link, ...]:
     return tuple(result)
 
 
-def lean_rotation(constant: Matrix, c: S, s: S) -> Rotation:
+def lean_rotation(constant: Matrix, c: Scalar, s: Scalar) -> Rotation:
     """Ehat(phi) A with as few operations as possible, from A and (cos phi, sin phi).
 
     Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (mathematics.md, section 8.4);

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from substructures.mechanics.base_functions import Columns, Twist
 from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.linear3 import Matrix, S, Vector, cross, dot
+from substructures.mechanics.linear3 import Matrix, Scalar, Vector, cross, dot
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,23 +49,25 @@ def joint_momentum(s: int, composite: Inertia) -> JointMomentum:
     return JointMomentum(0, (-y, x, 0), (-xz, -yz, composite.about_third_axis), composite)
 
 
-def pairing(twist: Twist, force: Vector, moment: Vector) -> S:
+def pairing(twist: Twist, force: Vector, moment: Vector) -> Scalar:
     """U . f + Omega . n: power of a wrench on a twist."""
     return dot(twist.U, force) + dot(twist.Omega, moment)
 
 
-def metric_column(c: int, columns: Columns, momentum: JointMomentum) -> dict[int, S]:
+def metric_column(c: int, columns: Columns, momentum: JointMomentum) -> dict[int, Scalar]:
     """g_ac for all a <= c (keys a): g_cc = H_3 or m, g_ac = U_ca . p + Omega_ca . H."""
     own = momentum.p[2] if momentum.s else momentum.H[2]
     return {a: own if a == c else pairing(t, momentum.p, momentum.H) for a, t in columns.items()}
 
 
-def christoffel_block(c: int, columns: Columns, momentum: JointMomentum, inside: int = 0) -> dict[tuple[int, int], S]:
+def christoffel_block(
+    c: int, columns: Columns, momentum: JointMomentum, inside: int = 0
+) -> dict[tuple[int, int], Scalar]:
     """Gamma_abc for a < c, b <= c (keys a, b): U_ca . (Omega_cb x p) + Omega_ca^T K Omega_cb.
 
     ``inside``: leave out pairs in which both a and b are at least this coordinate (they are known already).
     """
-    block: dict[tuple[int, int], S] = {}
+    block: dict[tuple[int, int], Scalar] = {}
     for b, twist in columns.items():
         force = cross(twist.Omega, momentum.p)
         moment = momentum.moment(twist.Omega)

@@ -15,7 +15,7 @@ from substructures.mechanics.linear3 import (
     ZERO,
     Matrix,
     Rotation,
-    S,
+    Scalar,
     Vector,
     add,
     apply,
@@ -47,7 +47,7 @@ class BodyMotion:
         a = add(self.a, apply(self.field(), z))
         return BodyMotion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
 
-    def moved(self, s: int, rate: S, tau: S, acceleration: S = 0) -> BodyMotion:
+    def moved(self, s: int, rate: Scalar, tau: Scalar, acceleration: Scalar = 0) -> BodyMotion:
         """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q''."""
         a = add(self.a, apply(self.field(), (0, 0, tau)))
         turning, along = scale(rate, cross(self.omega, E3)), (0, 0, acceleration)

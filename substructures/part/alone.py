@@ -22,7 +22,6 @@ def lean(part: Part, program: Program) -> Program:
     for carrier, symbols in part.inertia_symbols.items():
         inertia = own.inertia("inertia", carrier)
         values = (inertia.m, *inertia.s, *inertia.J)
-        numbers = (x if isinstance(x, Expr) else graph.number(x) for x in values)
-        bindings.update(zip(symbols, numbers, strict=True))
+        bindings.update(zip(symbols, map(graph.lift, values), strict=True))
     known = {symbol.name: symbol for symbol in part.program.symbols}
     return collect(graph, replay(program, graph, bindings), known)

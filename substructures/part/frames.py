@@ -67,5 +67,5 @@ def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Ma
     unit: Vector = (n[0] / root, n[1] / root, n[2] / root)
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
-    first: Vector = (across[0] / length, across[1] / length, across[2] / length)
+    first: Vector = (graph.lift(across[0]) / length, graph.lift(across[1]) / length, graph.lift(across[2]) / length)
     return first, cross(unit, first), unit

@@ -15,9 +15,7 @@ from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub
 from substructures.part.definition import Definition, ForceLoad, JointLoad, SpringLoad, TorqueLoad
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
-from substructures.part.scope import Scope
-
-Lookup = Callable[[str], Expr | None]
+from substructures.part.scope import Lookup, Scope
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,7 @@ def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lo
     frame = _frame(m, load.body, f"{pointer}/body")
     if frame is None:
         return []
-    vector = m.scope.vector(load.vector, f"{pointer}/vector", lookup)
+    vector: Vector = m.scope.vector(load.vector, f"{pointer}/vector", lookup)
     at = ZERO
     if isinstance(load, ForceLoad):
         at = frame.point(m.scope.vector(load.at, f"{pointer}/at"))
@@ -180,8 +178,8 @@ def _spring_force(
     """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
     start, end = (point(*e) for e in spring.ends)
     x = sub(end.position, start.position)
-    reach = {a: dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO))) for a in {**start.u, **end.u}}
-    length2: Expr = m.graph.zero + dot(x, x)
+    reach = {a: m.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in {**start.u, **end.u}}
+    length2 = m.graph.lift(dot(x, x))
     if length2.is_zero:
         m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
         return m.graph.zero

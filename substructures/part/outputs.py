@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from substructures.expr.program import Formulas
 from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, Vector, packed
+from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, packed
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Stored:
 
     outputs: Mapping[str, Formulas]
 
-    def scalar(self, name: str, *index: int) -> S:
+    def scalar(self, name: str, *index: int) -> Scalar:
         """One element."""
         return self.outputs[name].entries.get(index, 0)
 

@@ -18,9 +18,10 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.errors import MissingValue
+from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
-from substructures.mechanics.linear3 import S
+from substructures.mechanics.linear3 import Scalar
 from substructures.part.outputs import Stored
 from substructures.part.part import Part
 from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
@@ -97,7 +98,7 @@ class NumericTree:
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
-            bound = {name: x for name, x in m.bindings.items() if getattr(x, "op", "") != "sym"}
+            bound = {name: x for name, x in m.bindings.items() if not (isinstance(x, Expr) and x.op == "sym")}
             outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in bound.items()}
         return program(self.assembly.scope.graph, outputs, self.assembly.scope.symbols)
 
@@ -149,7 +150,7 @@ class NumericTree:
             self._layout(name, outputs[name]).fill(list(outputs[name].entries.values()), out)
 
     def _run(self) -> Run:
-        def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+        def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> Stored:
             values = {name: plain(x) for name, x in bindings.items()}
             found, outputs = self.engine(part.program, values, names), part.program.outputs
             if any(map(is_array, values.values())):
@@ -228,7 +229,7 @@ def _numeric(m: Mounted, k: int, numbers: Mapping[str, Scalars], given: Mapping[
     x, y, z = (_kept(*pair) for pair in zip(m.position, numbers[f"position.{k}"], strict=True))
     try:
         bindings = {
-            name: numbers[f"{k}:{name}"][0] if f"{k}:{name}" in numbers else lanes(given[x.value])
+            name: lanes(given[x.value]) if isinstance(x, Expr) and x.op == "sym" else numbers[f"{k}:{name}"][0]
             for name, x in m.bindings.items()
         }
     except KeyError as error:

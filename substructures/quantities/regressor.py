@@ -28,7 +28,7 @@ from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.base_functions import Columns, carried
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import lean_rotation
-from substructures.mechanics.linear3 import S, negate, transpose
+from substructures.mechanics.linear3 import Scalar, negate, transpose
 from substructures.mechanics.metric import pairing
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
@@ -111,7 +111,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     n = sum(m.part.dof for m in assembly.mounted)
     try:
         links = _links(over_formulas(assembly.scope.graph), assembly)
-        Y: dict[tuple[int, ...], S] = {
+        Y: dict[tuple[int, ...], Scalar] = {
             (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
         }
         pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
@@ -138,7 +138,7 @@ def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, Mounted]]:
     return zip(assembly.instances, assembly.mounted, strict=True)
 
 
-def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
+def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, Scalar]]]]:
     """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
     for i in range(10):
         m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
@@ -179,7 +179,7 @@ def _link(name: str, m: Mounted, state: State, frame: int, own: Stored, motions:
 def _bare(run: Run) -> Run:
     """Parts without mass and loads: coupling them gives the kinematics, and the rest is zero at once."""
 
-    def massless(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+    def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> Stored:
         found = run(part, bindings, [name for name in names if name not in DYNAMIC])
         return Stored({**found.outputs, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
 

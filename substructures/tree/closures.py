@@ -45,7 +45,7 @@ from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
     Matrix,
-    S,
+    Scalar,
     Vector,
     add,
     apply,
@@ -142,7 +142,7 @@ class _Relative:
 
 
 def closure_formulas(
-    mounted: Sequence[Mounted], states: Sequence[State], cuts: Sequence[Cut], rates: Sequence[S]
+    mounted: Sequence[Mounted], states: Sequence[State], cuts: Sequence[Cut], rates: Sequence[Scalar]
 ) -> dict[str, Formulas]:
     """The outputs of the table above; ``rates``: the velocities of all coordinates."""
     motions = body_motions(mounted, states, rates)
@@ -177,7 +177,7 @@ def _frame(
     return _Frame(*frame_kinematics(m, state, end.frame, end.E, end.position), motion)
 
 
-def _relative(A: _Frame, B: _Frame, rates: Sequence[S]) -> _Relative:
+def _relative(A: _Frame, B: _Frame, rates: Sequence[Scalar]) -> _Relative:
     """v, w: velocity of B's origin and angular velocity seen from A; dv, dw: their rates seen from A at q'' = 0."""
     d = apply(A.R, sub(B.r, A.r))
     M = multiply(A.R, transpose(B.R))
@@ -198,7 +198,7 @@ def _relative(A: _Frame, B: _Frame, rates: Sequence[S]) -> _Relative:
     return _Relative(d, transpose(M), twists, v, w, dv, dw)
 
 
-def _row(name: str, r: _Relative, length: Expr) -> tuple[S, Vector, dict[int, S], S]:
+def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[int, Scalar], Scalar]:
     """Residual, direction of the multiplier, columns of the Jacobian, acceleration term."""
     if name in TURNS:
         j, i, sign = TURNS[name]
@@ -208,9 +208,10 @@ def _row(name: str, r: _Relative, length: Expr) -> tuple[S, Vector, dict[int, S]
         columns = {a: dot(t.Omega, direction) for a, t in r.twists.items()}
         return sign * dot(r.axes[j], axis), direction, columns, sign * dot(turned, axis)
     if name == "length":
-        direction = r.d[0] / length, r.d[1] / length, r.d[2] / length
-        residual = (dot(r.d, r.d) - length * length) / (2 * length)
-        acceleration = (dot(r.v, r.v) + dot(r.d, r.dv)) / length
+        lift = length.graph.lift
+        direction = lift(r.d[0]) / length, lift(r.d[1]) / length, lift(r.d[2]) / length
+        residual = lift(dot(r.d, r.d) - length * length) / (2 * length)
+        acceleration = lift(dot(r.v, r.v) + dot(r.d, r.dv)) / length
         return residual, direction, {a: dot(t.U, direction) for a, t in r.twists.items()}, acceleration
     i = PLACE.index(name)
     return r.d[i], IDENTITY[i], {a: t.U[i] for a, t in r.twists.items()}, r.dv[i]

@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from substructures.expr.graph import Expr, Graph
+from substructures.expr.graph import Graph
 from substructures.expr.replay import replay
 from substructures.mechanics.base_functions import Twist, carried, transport
 from substructures.mechanics.inertia import Inertia
 from substructures.mechanics.joints import Link, lean_rotation, path
-from substructures.mechanics.linear3 import E3, Matrix, S, Vector, add, cross, dot
+from substructures.mechanics.linear3 import E3, Matrix, Scalar, Vector, add, cross, dot
 from substructures.mechanics.metric import christoffel_block, joint_momentum, pairing
 from substructures.part.outputs import Stored
 from substructures.part.part import Part
@@ -37,26 +37,26 @@ OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J", "arm
 ASKED = (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED)
 
 #: the outputs of a part's stored program, by name, for the given values of its symbols
-Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
+Run = Callable[[Part, Mapping[str, Scalar], Sequence[str]], Stored]
 
 
 @dataclass
 class Coupled:
     """The result, by indices of the tree's coordinates."""
 
-    metric: dict[tuple[int, ...], S]
-    christoffel: dict[tuple[int, ...], S]
-    gravity: list[S]
-    forces: list[S]
-    potential: S
+    metric: dict[tuple[int, ...], Scalar]
+    christoffel: dict[tuple[int, ...], Scalar]
+    gravity: list[Scalar]
+    forces: list[Scalar]
+    potential: Scalar
     states: list[State]
 
 
 def over_formulas(graph: Graph) -> Run:
     """Stored programs as formulas in a graph."""
 
-    def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
-        lifted = {name: x if isinstance(x, Expr) else graph.number(x) for name, x in bindings.items()}
+    def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> Stored:
+        lifted = {name: graph.lift(x) for name, x in bindings.items()}
         return Stored(replay(part.program, graph, lifted, names))
 
     return run

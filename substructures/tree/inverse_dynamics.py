@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from substructures.mechanics.linear3 import S, Vector, negate
+from substructures.mechanics.linear3 import Scalar, Vector, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
 from substructures.part.topology import INTERFACE
 from substructures.tree.mounted_part import WORLD, Mounted, State, applied_wrenches
 
 
-def bias_forces(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S]) -> list[S]:
+def bias_forces(mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[Scalar]) -> list[Scalar]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
     loads = _inertial_loads(states, body_motions(mounted, states, rates))
     return _pass_back(mounted, states, loads, len(rates))
 
 
 def inverse_dynamics(
-    mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S], accelerations: Sequence[S]
-) -> list[S]:
+    mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[Scalar], accelerations: Sequence[Scalar]
+) -> list[Scalar]:
     """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a: what actuators have to do beyond the inputs that Q_a contains.
 
     Gravity is a world accelerated upwards; forces and torques act on their bodies, what the joints do by themselves
@@ -42,7 +42,10 @@ def inverse_dynamics(
 
 
 def body_motions(
-    mounted: Sequence[Mounted], states: Sequence[State], rates: Sequence[S], accelerations: Sequence[S] | None = None
+    mounted: Sequence[Mounted],
+    states: Sequence[State],
+    rates: Sequence[Scalar],
+    accelerations: Sequence[Scalar] | None = None,
 ) -> list[list[BodyMotion]]:
     """For every part the motions of its joints' body frames, and last of its interface.
 
@@ -82,8 +85,8 @@ def _inertial_loads(states: Sequence[State], motions: Sequence[Sequence[BodyMoti
     return result
 
 
-def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[list[Wrench]], n: int) -> list[S]:
-    result: list[S] = [0] * n
+def _pass_back(mounted: Sequence[Mounted], states: Sequence[State], loads: list[list[Wrench]], n: int) -> list[Scalar]:
+    result: list[Scalar] = [0] * n
     for i in reversed(range(len(mounted))):
         m, state, own = mounted[i], states[i], loads[i]
         for c in reversed(range(len(state.links))):

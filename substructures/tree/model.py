@@ -29,7 +29,7 @@ from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.linear3 import S, add, apply, cross, transpose
+from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.part.topology import christoffel_entries
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
@@ -137,8 +137,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
 def model_outputs(
     assembly: Assembly,
     coupled: Coupled,
-    rates: Sequence[S],
-    accelerations: Sequence[S],
+    rates: Sequence[Scalar],
+    accelerations: Sequence[Scalar],
     names: frozenset[str] | None = None,
 ) -> dict[str, Formulas]:
     """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""

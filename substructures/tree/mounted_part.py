@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from substructures.mechanics.base_functions import Columns, Twist, carried
 from substructures.mechanics.joints import Link, lean_rotation
-from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, S, Vector, add, apply, multiply, transpose
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Scalar, Vector, add, apply, multiply, transpose
 from substructures.mechanics.metric import JointMomentum
 from substructures.part.loads import wrench_about_origin
 from substructures.part.outputs import Stored
@@ -26,7 +26,7 @@ class Mounted:
     frame: int
     E: Matrix
     position: Vector
-    bindings: dict[str, S]
+    bindings: Mapping[str, Scalar]
     first: int = 0  #: index of its first coordinate in the tree
 
 
@@ -50,7 +50,7 @@ class State:
     stored: Stored
     own: Stored  #: own inertia of the bodies, without what is mounted on them
     links: list[Link]
-    tau: list[S]
+    tau: list[Scalar]
     momenta: list[JointMomentum]
     outside: Columns = field(default_factory=dict)
     columns: list[Columns] = field(default_factory=list)  #: host's and own columns at every joint
