@@ -108,7 +108,7 @@ def _numeric_joints(m: Mechanism, values: Mapping[str, Array]) -> list[NumericJo
         m.scope.symbols,
     )
     x = interpret(rows, values)
-    name = {carrier: body for body, carrier in reversed(m.skeleton.carrier.items())}
+    name = {carrier: body for body, carrier in reversed(m.topology.carrier.items())}
     return [
         NumericJoint(j.parent, j.s, x["E"][:, c], x["Z"][:, c], x["tau"][:, c], *_inertia(values, name.get(c)))
         for c, j in enumerate(m.joints)
@@ -130,7 +130,7 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
         return None
     numbers: dict[str, Any] = {**values, **defaults}
     own = interpret(result, numbers, ["inertia.m", "inertia.s", "inertia.J"])
-    name = {carrier: body for body, carrier in reversed(m.skeleton.carrier.items()) if carrier >= 0}
+    name = {carrier: body for body, carrier in reversed(m.topology.carrier.items()) if carrier >= 0}
     for k, body in name.items():
         symbols = [symbol for symbol, _ in inertia_names(body)]
         tensor = [own["inertia.J"][..., k, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]

@@ -78,7 +78,7 @@ def read_loads(m: Mechanism) -> Loads:
 
 def load_names(scope: Scope, m: Mechanism) -> Lookup:
     """Names for load expressions; a symbol is declared when it is first used."""
-    coordinates = set(m.skeleton.coordinates)
+    coordinates = set(m.topology.coordinates)
 
     def lookup(name: str) -> Expr | None:
         if name in scope.names:
@@ -90,7 +90,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
         if name in coordinates:
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:
-            return velocity(m, m.skeleton.coordinates.index(name[:-1]))
+            return velocity(m, m.topology.coordinates.index(name[:-1]))
         return None
 
     return lookup
@@ -98,7 +98,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
 
 def velocity(m: Mechanism, a: int) -> Expr:
     """The symbol of q'^a."""
-    joint = m.skeleton.joints[a]
+    joint = m.topology.joints[a]
     return m.scope.declare(f"{joint.coordinate}'", "velocity", "m/s" if joint.s else "rad/s")
 
 
@@ -136,10 +136,10 @@ def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> lis
 
 
 def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
-    if load.coordinate not in m.skeleton.coordinates:
+    if load.coordinate not in m.topology.coordinates:
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
         return
-    a = m.skeleton.coordinates.index(load.coordinate)
+    a = m.topology.coordinates.index(load.coordinate)
     forces[a] = forces.get(a, m.graph.zero) + m.scope.read(load.force, f"{pointer}/force", lookup)
 
 
@@ -158,7 +158,7 @@ def applied_forces(
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
     potential = zero
-    for a, (law, entry) in enumerate(zip(m.laws, m.skeleton.joints, strict=True)):
+    for a, (law, entry) in enumerate(zip(m.laws, m.topology.joints, strict=True)):
         q = m.graph.symbol(entry.coordinate)
         stretch = q - law.rest
         tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")

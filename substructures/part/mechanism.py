@@ -24,7 +24,7 @@ from substructures.mechanics.linear3 import (
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.scope import Scope, no_names
-from substructures.part.topology import BASE, INTERFACE, JointEntry, Skeleton, skeleton
+from substructures.part.topology import BASE, INTERFACE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -44,7 +44,7 @@ class Mechanism:
     """Joints with the inertia of everything fixed to them; frames of bodies and ports."""
 
     definition: Definition
-    skeleton: Skeleton
+    topology: Topology
     scope: Scope
     joints: tuple[OneDofJoint, ...]
     own: tuple[Inertia, ...]  #: own inertia of carrier k about its body frame origin
@@ -62,10 +62,10 @@ class Mechanism:
 
 def mechanism(definition: Definition) -> Mechanism:
     """Read all expressions of a definition. Raises InvalidDocument with a pointer to every fault."""
-    bones = skeleton(definition)
-    scope = _scope(definition, bones)
-    builder = _Builder(definition, bones, scope)
-    for i in bones.order:
+    layout = topology(definition)
+    scope = _scope(definition, layout)
+    builder = _Builder(definition, layout, scope)
+    for i in layout.order:
         builder.add(i, definition.bodies[i])
     ports = {}
     for i, port in enumerate(definition.ports):
@@ -75,7 +75,7 @@ def mechanism(definition: Definition) -> Mechanism:
     scope.finish()
     return Mechanism(
         definition,
-        bones,
+        layout,
         scope,
         tuple(builder.joints),
         tuple(builder.own),
@@ -87,13 +87,13 @@ def mechanism(definition: Definition) -> Mechanism:
     )
 
 
-def _scope(definition: Definition, bones: Skeleton) -> Scope:
+def _scope(definition: Definition, layout: Topology) -> Scope:
     scope = Scope(Graph())
     for name, parameter in sorted(definition.parameters.items()):
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)
-    for joint in bones.joints:
+    for joint in layout.joints:
         scope.symbols[joint.coordinate] = _coordinate(joint)
     return scope
 
@@ -105,10 +105,10 @@ def _coordinate(joint: JointEntry) -> Symbol:
 class _Builder:
     """Adds bodies one by one, parents first."""
 
-    def __init__(self, definition: Definition, bones: Skeleton, scope: Scope) -> None:
+    def __init__(self, definition: Definition, layout: Topology, scope: Scope) -> None:
         self.definition, self.scope = definition, scope
         self.entries: dict[int, list[JointEntry]] = {}
-        for entry in bones.joints:
+        for entry in layout.joints:
             self.entries.setdefault(entry.body, []).append(entry)
         self.joints: list[OneDofJoint] = []
         self.own: list[Inertia] = []

@@ -55,7 +55,7 @@ def _checks(m: Mechanism) -> Iterator[_Check]:
         full = dense(J)
         yield _Check(i, "mass", array((), lambda mass=mass: mass))
         yield _Check(i, "inertia", array((3, 3), lambda a, b, full=full: full[a][b]))
-    for entry, law in zip(m.skeleton.joints, m.laws, strict=True):
+    for entry, law in zip(m.topology.joints, m.laws, strict=True):
         yield _Check(entry.body, "joint/armature", array((), lambda law=law: law.armature))
 
 

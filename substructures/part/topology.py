@@ -40,7 +40,7 @@ class JointEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class Skeleton:
+class Topology:
     """Joints in order (parents first), the carrier of every named body (-1: interface) and the order of the bodies."""
 
     joints: tuple[JointEntry, ...]
@@ -70,7 +70,7 @@ def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
     return sum(length * turning for length, turning in paths)
 
 
-def skeleton(definition: Definition) -> Skeleton:
+def topology(definition: Definition) -> Topology:
     """Names and topology. Raises InvalidDocument: unknown parents, cycles, duplicate, reserved or missing names."""
     faults = _name_faults(definition)
     order, more = _order(definition)
@@ -89,7 +89,7 @@ def skeleton(definition: Definition) -> Skeleton:
     faults += _coordinate_faults(definition, joints)
     if faults:
         raise InvalidDocument(faults)
-    return Skeleton(tuple(joints), carrier, tuple(order))
+    return Topology(tuple(joints), carrier, tuple(order))
 
 
 def _name_faults(definition: Definition) -> list[Fault]:

@@ -153,7 +153,7 @@ def _links(run: Run, assembly: Assembly) -> list[_Link]:
     result: list[_Link] = []
     for (instance, m), state, own_motions in zip(_pairs(assembly), states, motions, strict=True):
         own = run(m.part, m.bindings, OWN)
-        frames = list(m.part.skeleton.carrier)
+        frames = list(m.part.topology.carrier)
         named = {c: symbols[0].removesuffix(".m") for c, symbols in sorted(m.part.inertia_symbols.items())}
         if state.outside and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
             named[INTERFACE] = BASE

@@ -229,6 +229,6 @@ def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
         outer = WORLD if m.host == WORLD else seats[m.host]
         seats.append(outer if carrier == INTERFACE else first[m.host] + carrier)
         first.append(len(result))
-        joints = m.part.skeleton.joints
+        joints = m.part.topology.joints
         result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
     return result

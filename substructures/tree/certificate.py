@@ -81,7 +81,7 @@ def _numeric_tree(assembly: Assembly, values: Mapping[str, Array]) -> tuple[list
         rows.append(x)
         if seat.joint >= 0:
             joints[seat.joint] = _with_base(joints[seat.joint], seat, x)
-        for c, j in enumerate(m.part.skeleton.joints):
+        for c, j in enumerate(m.part.topology.joints):
             inertia = (x["inertia.m"][:, c], x["inertia.s"][:, c], x["inertia.J"][:, c])
             E, Z, parent = x["E"][:, c], x["Z"][:, c], m.first + j.parent
             if j.parent == INTERFACE:

@@ -121,7 +121,7 @@ def _state(run: Run, m: Mounted, payload: dict[int, Inertia], names: Sequence[st
         values = (carried_here.m, *carried_here.s, *carried_here.J)
         bindings |= zip(symbols, values, strict=True)
     stored = run(m.part, bindings, names)
-    joints = m.part.skeleton.joints
+    joints = m.part.topology.joints
     links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
     momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
     return State(stored, own, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)

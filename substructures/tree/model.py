@@ -171,7 +171,7 @@ def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
     """The symbols of all velocities and accelerations."""
     rates, accelerations = [], []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
-        for joint in m.part.skeleton.joints:
+        for joint in m.part.topology.joints:
             name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
             rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
             accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))

@@ -101,7 +101,7 @@ def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[OneDofJoint, ...], tu
         return tuple(tuple(scalar(x[name], c, i, j) for j in range(3)) for i in range(3))
 
     joints, bodies, own = [], [], []
-    for c, j in enumerate(part.skeleton.joints):
+    for c, j in enumerate(part.topology.joints):
         tau = scalar(x["tau"], c)
         z = [scalar(x["Z"], c, i) for i in range(3)]
         # Z_k = offset + tau_p e3
