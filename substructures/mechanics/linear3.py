@@ -6,7 +6,6 @@ A vector is a tuple of three scalars, a matrix a tuple of three rows, a symmetri
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -81,7 +80,7 @@ def scale(c: Scalar, a: Vector) -> Vector:
     return c * a[0], c * a[1], c * a[2]
 
 
-def dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+def dot(a: Vector, b: Vector) -> Scalar:
     """a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 

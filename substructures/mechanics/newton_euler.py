@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from substructures.mechanics.inertia import Inertia
+from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.linear3 import (
     E3,
     ZERO,
@@ -49,10 +49,13 @@ class BodyMotion:
 
     def moved(self, s: int, rate: Scalar, tau: Scalar, acceleration: Scalar = 0) -> BodyMotion:
         """The motion of body k at B_k = O_k + tau e3 from that of its parent at O_k, in frame k; q' = rate, q''."""
+        # a_B = a_O + A tau e3, with A of the parent
         a = add(self.a, apply(self.field(), (0, 0, tau)))
         turning, along = scale(rate, cross(self.omega, E3)), (0, 0, acceleration)
         if s:
+            # a_k = a_B + 2 q' omega x e3 + q'' e3
             return BodyMotion(self.omega, self.alpha, add(add(a, scale(2, turning)), along))
+        # omega_k = omega + q' e3,   alpha_k = alpha + q' omega x e3 + q'' e3
         return BodyMotion(add(self.omega, (0, 0, rate)), add(add(self.alpha, turning), along), a)
 
 
@@ -66,6 +69,11 @@ class Wrench:
     def __add__(self, other: Wrench) -> Wrench:
         return Wrench(add(self.f, other.f), add(self.n, other.n))
 
+    def about_joint(self, tau: Scalar) -> Wrench:
+        """About O_k, from which tau e3 leads to the body frame origin where this one is given: n + tau e3 x f."""
+        x, y, z = self.n
+        return Wrench(self.f, (x - tau * self.f[1], y + tau * self.f[0], z))
+
     def before(self, z: Vector, rotation: Rotation) -> Wrench:
         """About the origin of the frame before, from which z leads to this one."""
         f = rotation.back(self.f)
@@ -74,6 +82,7 @@ class Wrench:
 
 def inertial_load(motion: BodyMotion, inertia: Inertia) -> Wrench:
     """What moves the body like that: m a + A s, s x a + axial(A J)."""
+    # f = m a + A s,   n = s x a + axial(A J),   axial(X) = (X_32 - X_23, X_13 - X_31, X_21 - X_12)
     A = motion.field()
     x, y, z = transpose(dense(inertia.J))
     moment = (dot(A[2], y) - dot(A[1], z), dot(A[0], z) - dot(A[2], x), dot(A[1], x) - dot(A[0], y))

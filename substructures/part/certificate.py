@@ -13,7 +13,7 @@ from substructures.errors import SubstructuresError
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, Symbol, array, program
 from substructures.mechanics.direct_form import NumericJoint, direct_form
-from substructures.mechanics.joints import links
+from substructures.mechanics.kinematics import links
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.mechanism import Mechanism

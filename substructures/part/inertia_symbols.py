@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from substructures.expr.program import Symbol
-from substructures.mechanics.inertia import Inertia
+from substructures.mechanics.composite_form import Inertia
 from substructures.part.mechanism import Mechanism
 
 UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}

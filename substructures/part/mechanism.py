@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
 from substructures.expr.trigonometry import cos_sin
-from substructures.mechanics.inertia import Inertia, binet
-from substructures.mechanics.joints import OneDofJoint, lean_rotation
+from substructures.mechanics.composite_form import Inertia, binet
+from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation
 from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
@@ -24,7 +24,7 @@ from substructures.mechanics.linear3 import (
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.scope import Scope, no_names
-from substructures.part.topology import BASE, INTERFACE, JointEntry, Topology, topology
+from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -78,8 +78,8 @@ def mechanism(definition: Definition) -> Mechanism:
         layout,
         scope,
         tuple(builder.joints),
-        tuple(builder.own),
-        builder.base,
+        tuple(builder.own[k] for k in range(len(builder.joints))),
+        builder.own[INTERFACE],
         tuple(builder.laws),
         builder.bodies,
         ports,
@@ -111,8 +111,7 @@ class _Builder:
         for entry in layout.joints:
             self.entries.setdefault(entry.body, []).append(entry)
         self.joints: list[OneDofJoint] = []
-        self.own: list[Inertia] = []
-        self.base = Inertia()
+        self.own = {INTERFACE: Inertia()}
         self.laws: list[JointLaw] = []
         self.central: dict[int, tuple[Expr, Symmetric]] = {}
         self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
@@ -172,9 +171,9 @@ class _Builder:
         phi, tau = self._offsets(entry, body, pointer)
         constant = multiply(turned, frame.E)
         phi, tau = (phi, q + tau) if entry.s else (q + phi, tau)
-        rotation = lean_rotation(constant, *cos_sin(phi))
+        rotation = joint_rotation(constant, *cos_sin(phi))
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
-        self.own.append(Inertia())
+        self.own[len(self.joints) - 1] = Inertia()
         self.laws.append(self._law(entry, body, pointer))
         self._limits(entry, body, pointer)
         return Frame(len(self.joints) - 1, transpose(turned), ZERO)
@@ -226,8 +225,5 @@ class _Builder:
             inertia = Inertia(mass, scale(mass, com), J)
             J = Inertia(-mass, ZERO, J).shifted(com).J  # J about the mass centre: J - m h h^T
         self.central[i] = mass, J
-        moved = inertia.turned_back(Rotation((Turn(frame.E),))).shifted(frame.position)
-        if frame.carrier == INTERFACE:
-            self.base = self.base + moved
-        else:
-            self.own[frame.carrier] = self.own[frame.carrier] + moved
+        moved = inertia.in_parent(Rotation((Turn(frame.E),)), frame.position)
+        self.own[frame.carrier] = self.own[frame.carrier] + moved

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.base_functions import base_functions
-from substructures.mechanics.inertia import composites
-from substructures.mechanics.joints import links
+from substructures.mechanics.composite_form import christoffel_block, composites, joint_momentum, metric_column
+from substructures.mechanics.kinematics import INTERFACE, base_functions, links
 from substructures.mechanics.linear3 import Vector, dot
-from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
 from substructures.part.definition import Definition
 from substructures.part.mechanism import Mechanism, mechanism
 
@@ -30,18 +28,19 @@ def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     """The outputs metric, christoffel and gravity."""
     chain = links(m.joints)
     columns = base_functions(chain)
-    subtree, _ = composites(m.joints, m.own)
+    carried = composites(m.joints, m.own)
     g: dict[tuple[int, ...], Any] = {}
     gamma: dict[tuple[int, ...], Any] = {}
-    fields: list[Vector] = []
+    gamma_k = {INTERFACE: gravity}
     Q = []
     for c, link in enumerate(chain):
-        momentum = joint_momentum(link.s, subtree[c])
+        momentum = joint_momentum(link.s, carried[c])
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         g[c, c] = g[c, c] + m.laws[c].armature
         gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
-        fields.append(link.rotation.forward(fields[link.parent] if link.parent >= 0 else gravity))
-        Q.append(dot(fields[c], momentum.p))
+        # gamma_c = E_c gamma_p,   Q_c = gamma_c . p
+        gamma_k[c] = link.rotation.forward(gamma_k[link.parent])
+        Q.append(dot(gamma_k[c], momentum.p))
     n = len(chain)
     return {
         "metric": Formulas((n, n), g, "symmetric"),

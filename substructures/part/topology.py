@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.parse import RESERVED
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Body, Definition
 
 BASE = "base"
-INTERFACE = -1  #: carrier index of everything that is fixed to the interface frame
 
 #: (kind, axis of the frame before the joint) of every one degree of freedom joint in a joint type, in order.
 #: ``spherical`` is yaw, pitch, roll (about the third, the new second, the new first axis); singular at pitch = +-pi/2.

@@ -8,27 +8,27 @@ from dataclasses import dataclass
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
 from substructures.part.frames import axis_rotation
+from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
-from substructures.part.topology import INTERFACE
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
-from substructures.tree.coupling import over_formulas
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.mounted_part import WORLD, Mounted
+from substructures.tree.mounted_part import WORLD, MountedPart
 
 
-@dataclass
+@dataclass(frozen=True)
 class Assembly:
     """Everything coupling needs, with the symbols and parameters of the tree."""
 
     scope: Scope
-    instances: list[Instance]  #: hosts first
-    mounted: list[Mounted]
+    instances: tuple[Instance, ...]  #: hosts first
+    mounted: tuple[MountedPart, ...]
     gravity: Vector
     parameters: dict[str, dict[str, object]]
-    cuts: list[Cut]
+    cuts: tuple[Cut, ...]
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -60,12 +60,17 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    mounted = [_mount(spec, i, parts, scope, place, bound) for i in order]
+    mounted: list[MountedPart] = []
+    first = 0
+    for i in order:
+        mounted.append(_mount(spec, i, parts, scope, place, bound, first))
+        first += mounted[-1].part.dof
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
     cuts = [_cut(spec, i, parts, scope, place, bound) for i in range(len(spec.closures))]
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
-    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left, cuts)
+    instances = tuple(spec.instances[i] for i in order)
+    return Assembly(scope, instances, tuple(mounted), gravity, left, tuple(cuts))
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -157,14 +162,20 @@ class _Bindings:
 
 
 def _mount(
-    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
-) -> Mounted:
+    spec: TreeSpec,
+    i: int,
+    parts: Mapping[str, Part],
+    scope: Scope,
+    place: Mapping[str, int],
+    bound: _Bindings,
+    first: int,
+) -> MountedPart:
     instance, part = spec.instances[i], parts[spec.instances[i].name]
     host, frame = _frame(instance.at, f"/instances/{i}/at", parts, scope, place)
     pointer = f"/instances/{i}/placement"
     E = scope.rpy(instance.placement.rpy, f"{pointer}/rpy", bound.lookup).matrix()
     position = scope.vector(instance.placement.position, f"{pointer}/position", bound.lookup)
-    return Mounted(part, host, frame, E, position, _symbols(instance.name, part, scope, bound))
+    return MountedPart(part, host, frame, E, position, _symbols(instance.name, part, scope, bound), first)
 
 
 def _frame(at: str, pointer: str, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int]) -> tuple[int, int]:
@@ -219,16 +230,19 @@ def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[
     return result
 
 
-def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
+def joint_parents(mounted: Sequence[MountedPart]) -> list[tuple[int, int]]:
     """(parent, kind) of every joint of a tree, by index in the tree; hosts come first."""
     result: list[tuple[int, int]] = []
-    first: list[int] = []
+    #: the joint of the tree that carries each interface, or WORLD
     seats: list[int] = []
     for m in mounted:
-        carrier = INTERFACE if m.host == WORLD else mounted[m.host].part.frame_carriers[m.frame]
-        outer = WORLD if m.host == WORLD else seats[m.host]
-        seats.append(outer if carrier == INTERFACE else first[m.host] + carrier)
-        first.append(len(result))
+        seats.append(WORLD if m.host == WORLD else _joint(mounted[m.host], seats[m.host], m.frame))
         joints = m.part.topology.joints
-        result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
+        result += [(seats[-1] if j.parent == INTERFACE else m.first + j.parent, j.s) for j in joints]
     return result
+
+
+def _joint(host: MountedPart, seat: int, frame: int) -> int:
+    """The joint of the tree that carries a frame of a part; ``seat``: the one that carries its interface."""
+    carrier = host.part.frame_carriers[frame]
+    return seat if carrier == INTERFACE else host.first + carrier

@@ -13,11 +13,11 @@ from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
 from substructures.mechanics.direct_form import NumericJoint, direct_form
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.certificate import STATES, TOLERANCE, compare, finite_comparison, random_values
 from substructures.part.physics import constants
-from substructures.part.topology import INTERFACE
 from substructures.tree.assembly import Assembly
-from substructures.tree.mounted_part import WORLD, Mounted
+from substructures.tree.mounted_part import WORLD, MountedPart
 
 ROWS = (
     *("E", "Z", "tau", "armature", "inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J"),
@@ -91,7 +91,7 @@ def _numeric_tree(assembly: Assembly, values: Mapping[str, Array]) -> tuple[list
     return joints, np.stack(armature, axis=1) if armature else np.zeros((STATES, 0))
 
 
-def _part_rows(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> dict[str, Array]:
+def _part_rows(assembly: Assembly, m: MountedPart, values: Mapping[str, Array]) -> dict[str, Array]:
     """Joint rows, inertias and frames of a part from its own stored program, with the bound values of its symbols."""
     graph, symbols = assembly.scope.graph, assembly.scope.symbols
     bound = program(graph, {s: array((), lambda e=e: e) for s, e in m.bindings.items()}, symbols)
@@ -101,7 +101,7 @@ def _part_rows(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> d
     return interpret(m.part.program, numbers, ROWS)
 
 
-def _placement(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> tuple[Array, Array]:
+def _placement(assembly: Assembly, m: MountedPart, values: Mapping[str, Array]) -> tuple[Array, Array]:
     outputs = {"E": array((3, 3), lambda i, j: m.E[i][j]), "z": array((3,), lambda i: m.position[i])}
     x = interpret(program(assembly.scope.graph, outputs, assembly.scope.symbols), values)
     return np.broadcast_to(x["E"], (STATES, 3, 3)), np.broadcast_to(x["z"], (STATES, 3))
@@ -109,7 +109,7 @@ def _placement(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> t
 
 def _seat(
     assembly: Assembly,
-    m: Mounted,
+    m: MountedPart,
     seats: list[Seat],
     rows: list[dict[str, Array]],
     joints: list[NumericJoint],

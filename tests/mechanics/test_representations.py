@@ -14,11 +14,15 @@ from substructures import Definition, Part, derive
 from substructures.expr.bind import bind
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
-from substructures.mechanics.base_functions import base_functions
-from substructures.mechanics.inertia import Inertia, composites
-from substructures.mechanics.joints import OneDofJoint, links
+from substructures.mechanics.composite_form import (
+    Inertia,
+    christoffel_block,
+    composites,
+    joint_momentum,
+    metric_column,
+)
+from substructures.mechanics.kinematics import OneDofJoint, base_functions, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
-from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
 from substructures.quantities.evaluation import evaluate
 
 
@@ -80,13 +84,13 @@ def test_parameters_may_differ_from_state_to_state() -> None:
 
 def recursion(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...], gravity: Any) -> dict[tuple[Any, ...], Any]:
     """Metric, Christoffel symbols and gravity by calling the mechanics directly."""
-    subtree, _ = composites(joints, bodies)
+    carried = composites(joints, bodies)
     chain = links(joints)
     columns = base_functions(chain)
     result: dict[tuple[Any, ...], Any] = {}
     gamma: list[Any] = []
     for c, joint in enumerate(joints):
-        momentum = joint_momentum(joint.s, subtree[c])
+        momentum = joint_momentum(joint.s, carried[c])
         result |= {("g", a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         result |= {("Gamma", a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
         gamma.append(joint.rotation.forward(gamma[joint.parent] if joint.parent >= 0 else gravity))
