@@ -86,6 +86,7 @@ class Inertia:
 
 def binet(theta: Symmetric, half: Scalar = Fraction(1, 2)) -> Symmetric:
     """J = tr(Theta)/2 1 - Theta from the inertia tensor Theta (xx, yy, zz, xy, xz, yz)."""
+    # J_xx = (Theta_yy + Theta_zz - Theta_xx) / 2,   J_xy = -Theta_xy
     xx, yy, zz, xy, xz, yz = theta
     return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz
 
@@ -95,13 +96,13 @@ def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict
 
     One pass from the leaves to the base; ``bodies`` are given about the body frame origins, what is fixed to the
     interface is left out. Joints that are parallel all the way to the base never need J_xx and J_yy alone, only their
-    sum, which their turns leave as it is (notation.md, section 8).
+    sum, which their turns leave as it is (notation.md, section 8.4).
     """
     total = {INTERFACE: Inertia(), **dict(enumerate(bodies))}
     parallel = _parallel_to_root(joints)
     for k in reversed(range(len(joints))):
         joint = joints[k]
-        # own body: z = tau e3 from O_k to the body frame origin
+        # own body, about O_k: z = tau e3 to the body frame origin
         total[k] = total[k].shifted((0, 0, joint.tau))
         # m_p += m,   s_p += E^T s + m z,   J_p += E^T J E + s z^T + z s^T + m z z^T
         up = total[k].turned_back(joint.rotation)

@@ -106,7 +106,7 @@ def constant_rotation(E: Matrix) -> Rotation:
 def joint_rotation(constant: Matrix, c: Scalar, s: Scalar) -> Rotation:
     """Ehat(phi) A with as few operations as possible, from A and (cos phi, sin phi).
 
-    Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (notation.md, section 8);
+    Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (notation.md, section 8.4);
     a turn about the first axis stays a factor of its own; any other A is multiplied out.
     """
     if _turns_about(constant, 2):

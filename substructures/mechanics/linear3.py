@@ -155,7 +155,8 @@ class Planar:
         return out[0], out[1], out[2]
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
-        """E^T t E. With w = s (t_ii - t_jj) + 2 c t_ij the plane block needs three multiplications more."""
+        """E^T t E."""
+        # w = s (t_ii - t_jj) + 2 c t_ij:   ii - s w,   jj + s w,   ij -> c w - t_ij
         i, j, k = (self.axis + 1) % 3, (self.axis + 2) % 3, self.axis
         ij, ik, jk = SYMMETRIC_INDEX[i][j], SYMMETRIC_INDEX[i][k], SYMMETRIC_INDEX[j][k]
         w = self.s * (t[i] - t[j]) + self.c * (2 * t[ij])
@@ -186,6 +187,7 @@ class Turn:
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
         """E^T t E."""
+        # columns of t E, then E^T times them, upper triangle only
         x, y, z = transpose(multiply(dense(t), self.e))
         ex, ey, ez = transpose(self.e)
         return dot(ex, x), dot(ey, y), dot(ez, z), dot(ex, y), dot(ex, z), dot(ey, z)
@@ -226,5 +228,6 @@ class Rotation:
 
     def matrix(self) -> Matrix:
         """E as a matrix."""
+        # row i of E is E^T e_i
         rows = [self.back(axis) for axis in IDENTITY]
         return rows[0], rows[1], rows[2]

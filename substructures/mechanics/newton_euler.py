@@ -37,6 +37,7 @@ class BodyMotion:
 
     def field(self) -> Matrix:
         """A = skew(alpha) + skew(omega)^2."""
+        # skew(omega)^2 = omega omega^T - |omega|^2 1
         x, y, z = self.omega
         xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
         p, q, r = self.alpha
@@ -44,6 +45,7 @@ class BodyMotion:
 
     def at(self, z: Vector, rotation: Rotation) -> BodyMotion:
         """The same body's motion at the point z, in a turned frame."""
+        # a + A z
         a = add(self.a, apply(self.field(), z))
         return BodyMotion(rotation.forward(self.omega), rotation.forward(self.alpha), rotation.forward(a))
 
@@ -76,6 +78,7 @@ class Wrench:
 
     def before(self, z: Vector, rotation: Rotation) -> Wrench:
         """About the origin of the frame before, from which z leads to this one."""
+        # E^T f,   E^T n + z x E^T f
         f = rotation.back(self.f)
         return Wrench(f, add(rotation.back(self.n), cross(z, f)))
 

@@ -62,6 +62,7 @@ def _comparison(m: Mechanism, result: Program, values: Mapping[str, Array]) -> d
     joints = _numeric_joints(m, values)
     form = direct_form(joints, np.zeros((STATES, 3)))
     computed = interpret(result, values, ["metric", "christoffel", "armature"])
+    # the direct form knows bodies only: g_cc += armature_c
     form.metric[...] += computed["armature"][..., None] * np.eye(len(joints))
     return compare(computed, {"metric": form.metric, "christoffel": form.christoffel})
 
@@ -108,7 +109,7 @@ def _numeric_joints(m: Mechanism, values: Mapping[str, Array]) -> list[NumericJo
         m.scope.symbols,
     )
     x = interpret(rows, values)
-    name = {carrier: body for body, carrier in reversed(m.topology.carrier.items())}
+    name = m.topology.body_of
     return [
         NumericJoint(j.parent, j.s, x["E"][:, c], x["Z"][:, c], x["tau"][:, c], *_inertia(values, name.get(c)))
         for c, j in enumerate(m.joints)
@@ -130,8 +131,7 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
         return None
     numbers: dict[str, Any] = {**values, **defaults}
     own = interpret(result, numbers, ["inertia.m", "inertia.s", "inertia.J"])
-    name = {carrier: body for body, carrier in reversed(m.topology.carrier.items()) if carrier >= 0}
-    for k, body in name.items():
+    for k, body in m.topology.body_of.items():
         symbols = [symbol for symbol, _ in inertia_names(body)]
         tensor = [own["inertia.J"][..., k, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
         first = [own["inertia.m"][..., k], *(own["inertia.s"][..., k, i] for i in range(3))]

@@ -1,4 +1,4 @@
-"""What is stored of a substructure, as formulas of its own coordinates and parameters (mathematics.md, section 6).
+"""What is stored of a substructure, as formulas of its own coordinates and parameters (notation.md, section 6).
 
 The inertia (m, s, J) of every moving part enters as ten symbols, to which its own values and whatever a host mounts on
 it are bound later; binding the own values alone folds the program to its shortest form.
@@ -124,6 +124,7 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
 def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     n = len(m.joints)
     E = [link.rotation.matrix() for link in k.links]
+    # E = (turn about e3) (tilt about e1), or one full matrix: what coupling replays instead of E
     factors: dict[str, dict[tuple[int, ...], Any]] = {"tilt": {}, "turn": {}, "full": {}}
     for c, link in enumerate(k.links):
         for factor in link.rotation.factors:
@@ -167,22 +168,27 @@ def _inertia_outputs(prefix: str, values: list[Inertia], scalar: bool = False) -
 
 
 def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    """What couples the part to any host, in the interface frame about its origin (notation.md, section 6)."""
     n = len(momenta)
     values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in ("f", "n", "kappa", "F", "N")}
     K: list[Matrix] = []
     for c, momentum in enumerate(momenta):
         R, r = k.poses[c].R, k.poses[c].r
         back = transpose(R)
+        # f_c = R_c^T p_c,   n_c = R_c^T H_c + r_c x f_c
         f = apply(back, momentum.p)
         K_c = momentum.matrix()
         values["f"][(c,)] = f
         values["n"][(c,)] = add(apply(back, momentum.H), cross(r, f))
+        # K_c^I = R_c^T K_c R_c - skew(r_c) skew(f_c)
         K.append(subtract(multiply(back, multiply(K_c, R)), multiply(skew(r), skew(f))))
         for a, twist in k.columns[c].items():
+            # F_ac = R_c^T (Omega_ca x p_c),   N_ac = R_c^T K_c Omega_ca + r_c x F_ac
             F = apply(back, cross(twist.Omega, momentum.p))
             values["F"][a, c] = F
             values["N"][a, c] = add(apply(back, momentum.moment(twist.Omega)), cross(r, F))
             if a != c:
+                # kappa_ac = R_c^T (p_c x U_ca + K_c^T Omega_ca)
                 moment = add(cross(momentum.p, twist.U), apply(transpose(K_c), twist.Omega))
                 values["kappa"][a, c] = apply(back, moment)
     outputs = {
@@ -195,11 +201,13 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
 
 
 def _own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5)."""
     n = len(momenta)
     g: dict[tuple[int, ...], Any] = {}
     gamma: dict[tuple[int, ...], Any] = {}
     for c, momentum in enumerate(momenta):
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
+        # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
         gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
     return {"metric": Formulas((n, n), g, "symmetric"), "christoffel": Formulas((n, n, n), gamma, "christoffel")}
@@ -234,6 +242,7 @@ def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     R, r = [], []
     for i, frame in enumerate(m.ports.values()):
         link = _frame_link(k, frame)
+        # R = E R_k,   r = r_k + R_k^T z
         pose = k.poses[frame.carrier]
         R.append(multiply(frame.E, pose.R))
         r.append(add(pose.r, apply(transpose(pose.R), link.Z)))

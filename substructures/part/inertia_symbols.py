@@ -11,8 +11,7 @@ UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
 
 def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
     """Ten symbols for every carrier of a named body; nothing for the massless bodies inside compound joints."""
-    graph, bodies = m.graph, m.topology.carrier
-    name = {carrier: body for body, carrier in reversed(bodies.items())}
+    graph, name = m.graph, m.topology.body_of
     result = []
     for k in range(len(m.joints)):
         if k not in name:

@@ -154,12 +154,13 @@ class PointKinematics:
 def applied_forces(
     m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]
 ) -> tuple[list[Expr], Expr]:
-    """(generalised forces of joint laws, actuators and springs; potential energy of all springs)."""
+    """(generalised forces of joint laws, actuators and springs; potential energy): notation.md, section 7."""
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
     potential = zero
     for a, (law, entry) in enumerate(zip(m.laws, m.topology.joints, strict=True)):
         q = m.graph.symbol(entry.coordinate)
+        # Q_a = tau_a - k (q - rest) - c q',   V = k (q - rest)^2 / 2
         stretch = q - law.rest
         tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
         forces[a] = forces[a] + tau - law.stiffness * stretch
@@ -177,6 +178,7 @@ def _spring_force(
 ) -> Expr:
     """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
     start, end = (point(*e) for e in spring.ends)
+    # x = r_to - r_from,   w_a = x . (u_to,a - u_from,a),   l l' = w_a q'^a
     x = sub(end.position, start.position)
     reach = {a: m.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in {**start.u, **end.u}}
     length2 = m.graph.lift(dot(x, x))
@@ -186,11 +188,13 @@ def _spring_force(
     factor: Expr = spring.stiffness
     energy: Expr = spring.stiffness * length2
     if not spring.length.is_zero:
+        # k (1 - l0/l) in place of k, and V = k (l - l0)^2 / 2
         length = m.graph.sqrt(length2)
         factor = factor - spring.stiffness * spring.length / length
         energy = spring.stiffness * (length - spring.length) ** 2
     if not spring.damping.is_zero:
         speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
+        # c l'/l = c (l l') / l^2
         factor = factor + spring.damping * speed / length2
     for a, w in reach.items():
         forces[a] = forces[a] - factor * w
@@ -199,6 +203,7 @@ def _spring_force(
 
 def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> tuple[Vector, Vector]:
     """(force, moment about the carrier's body frame origin)."""
+    # n = x x f of a force at x
     if moment:
         return ZERO, vector
     return vector, cross(at, vector)

@@ -1,4 +1,4 @@
-"""A definition with all its formulas in a graph: joints, inertias, frames and loads (mathematics.md, section 2)."""
+"""A definition with all its formulas in a graph: joints, inertias, frames and loads (notation.md, section 2)."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def mechanism(definition: Definition) -> Mechanism:
     for i, port in enumerate(definition.ports):
         pointer = f"/ports/{i}"
         E = scope.rpy(port.rotation.rpy, f"{pointer}/rotation/rpy").matrix()
-        ports[port.name] = builder.bodies[port.body].mounted(E, scope.vector(port.position, f"{pointer}/position"))
+        ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
     scope.finish()
     return Mechanism(
         definition,
@@ -137,13 +137,15 @@ class _Builder:
             if any(not x.is_zero for x in (psi, theta, d, sigma)):
                 message = "give either psi, theta, d, sigma or a placement, not both"
                 self.scope.fault(f"{pointer}/placement", "row-and-placement", message)
+            # A and Z as constants in place of the row
             rotation = self.scope.rpy(joint.placement.rpy, f"{pointer}/placement/rpy")
-            return parent.mounted(
+            return parent.placed(
                 rotation.matrix(), self.scope.vector(joint.placement.position, f"{pointer}/placement/position")
             )
+        # A = Rx(theta)^T Rz(psi)^T,   (d cos psi, d sin psi, sigma)
         c, s = cos_sin(psi)
         E = Rotation((Planar(2, c, s), Planar(0, *cos_sin(theta)))).matrix()
-        return parent.mounted(E, (d * c, d * s, sigma))
+        return parent.placed(E, (d * c, d * s, sigma))
 
     def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
         """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
@@ -151,7 +153,7 @@ class _Builder:
             if getattr(body.joint, name) not in (0, None):
                 self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
-        return frame.mounted(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
+        return frame.placed(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
 
     def _axis(self, body: Body, pointer: str) -> Matrix:
         """E from the placed frame to the frame whose third axis is the joint axis."""
@@ -170,6 +172,7 @@ class _Builder:
         q = self.scope.graph.symbol(entry.coordinate)
         phi, tau = self._offsets(entry, body, pointer)
         constant = multiply(turned, frame.E)
+        # revolute: phi = q + phi0, tau constant;   prismatic: tau = q + tau0, phi constant
         phi, tau = (phi, q + tau) if entry.s else (q + phi, tau)
         rotation = joint_rotation(constant, *cos_sin(phi))
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
@@ -219,11 +222,13 @@ class _Builder:
         xx, yy, zz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz"))
         xy, xz, yz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xy", "xz", "yz"))
         J = binet((xx, yy, zz, xy, xz, yz))
+        # J = J_C + m h h^T, s = m h about the body frame origin
         if tensor.about == "com":
             inertia = Inertia(mass, ZERO, J).shifted(com)
         else:
             inertia = Inertia(mass, scale(mass, com), J)
-            J = Inertia(-mass, ZERO, J).shifted(com).J  # J about the mass centre: J - m h h^T
+            # J_C = J - m h h^T
+            J = Inertia(-mass, ZERO, J).shifted(com).J
         self.central[i] = mass, J
         moved = inertia.in_parent(Rotation((Turn(frame.E),)), frame.position)
         self.own[frame.carrier] = self.own[frame.carrier] + moved

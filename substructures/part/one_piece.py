@@ -13,7 +13,7 @@ from substructures.part.mechanism import Mechanism, mechanism
 
 
 def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = (0, 0, 0)) -> Program:
-    """Metric, Christoffel symbols and gravity forces of a definition whose base is at rest (mathematics.md, section 5).
+    """Metric, Christoffel symbols and gravity forces of a definition whose base is at rest (notation.md, section 5).
 
     ``gravity``: acceleration in base axes; numbers or expressions in the definition's parameters.
     Raises InvalidDocument.
@@ -36,6 +36,7 @@ def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     for c, link in enumerate(chain):
         momentum = joint_momentum(link.s, carried[c])
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
+        # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
         gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
         # gamma_c = E_c gamma_p,   Q_c = gamma_c . p

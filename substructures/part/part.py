@@ -108,8 +108,8 @@ class Part:
     @cached_property
     def inertia_symbols(self) -> dict[int, tuple[str, ...]]:
         """The ten inertia symbols of every carrier that has them."""
-        name = {carrier: body for body, carrier in reversed(self.topology.carrier.items()) if carrier >= 0}
-        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in name.items()}
+        names = self.topology.body_of.items()
+        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in names}
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:

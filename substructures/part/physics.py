@@ -82,6 +82,7 @@ def _problem(field: str, value: Array) -> PhysicsFault | None:
 
 def _impossible_tensor(binet: Array) -> PhysicsFault | None:
     """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
+    # J_i = (Theta_j + Theta_k - Theta_i) / 2 >= 0,   Theta_i = sum of all J - J_i
     eigenvalues = np.linalg.eigvalsh(binet)
     if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
         return None

@@ -53,6 +53,11 @@ class Topology:
         return tuple(j.coordinate for j in self.joints)
 
     @property
+    def body_of(self) -> dict[int, str]:
+        """The body by which every moving carrier goes, the first one on it; none inside compound joints."""
+        return {carrier: body for body, carrier in reversed(self.carrier.items()) if carrier != INTERFACE}
+
+    @property
     def kinds(self) -> str:
         """'R' or 'P' for every joint."""
         return "".join("P" if j.s else "R" for j in self.joints)
@@ -65,6 +70,7 @@ def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
     """
     paths: list[tuple[int, int]] = []
     for parent, s in joints:
+        # of every path to c: its length, and how many revolute joints are on it (Gamma_abc = 0 for prismatic b < c)
         length, turning = paths[parent] if parent >= 0 else (0, 0)
         paths.append((length + 1, turning + 1 - s))
     return sum(length * turning for length, turning in paths)

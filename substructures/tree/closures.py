@@ -18,7 +18,7 @@ cross      m_2 . e_3 [1]                        w_a . (m_2 x e_3)  a moment acro
 =========  ===================================  =================  =========================================
 
 The acceleration terms G' q' are the second time derivatives of phi at q'' = 0: cross products of the motions of A and B
-(mathematics.md, sections 3 and 7). With them g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G' q' = 0.
+(notation.md, sections 3 and 10). With them g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G' q' = 0.
 
 ========================  =====  ====================================================================
 output                    shape  meaning (m rows of all closures in order)
