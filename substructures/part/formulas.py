@@ -103,7 +103,7 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     columns = base_functions(chain)
     carried = composites(m.joints, inertia_symbols(m))
     momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
-    outputs = _own_dynamics(m, columns, momenta)
+    outputs = own_dynamics(m, columns, momenta)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])
@@ -200,7 +200,7 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
 
 
-def _own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
+def own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
     """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5)."""
     n = len(momenta)
     g: dict[tuple[int, ...], Any] = {}
