@@ -11,7 +11,8 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import SubstructuresError
 from substructures.expr.interpret import interpret
-from substructures.expr.program import Program, Symbol, array, program
+from substructures.expr.operations import Symbol
+from substructures.expr.program import Program, array, program
 from substructures.mechanics.direct_form import NumericJoint, direct_form
 from substructures.mechanics.kinematics import links
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX

@@ -32,7 +32,6 @@ load.at, .vector   loads 3     point (carrier's body frame) and vector of forces
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from substructures.expr.program import Formulas, array
 from substructures.mechanics.composite_form import (
@@ -61,6 +60,7 @@ from substructures.mechanics.linear3 import (
     Matrix,
     Planar,
     Rotation,
+    Scalar,
     Turn,
     Vector,
     add,
@@ -125,7 +125,7 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     n = len(m.joints)
     E = [link.rotation.matrix() for link in k.links]
     # E = (turn about e3) (tilt about e1), or one full matrix: what coupling replays instead of E
-    factors: dict[str, dict[tuple[int, ...], Any]] = {"tilt": {}, "turn": {}, "full": {}}
+    factors: dict[str, dict[tuple[int, ...], Scalar]] = {"tilt": {}, "turn": {}, "full": {}}
     for c, link in enumerate(k.links):
         for factor in link.rotation.factors:
             if isinstance(factor, Planar):
@@ -203,8 +203,8 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
 def own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
     """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5)."""
     n = len(momenta)
-    g: dict[tuple[int, ...], Any] = {}
-    gamma: dict[tuple[int, ...], Any] = {}
+    g: dict[tuple[int, ...], Scalar] = {}
+    gamma: dict[tuple[int, ...], Scalar] = {}
     for c, momentum in enumerate(momenta):
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         # the rotor of joint c turns with q'^c alone

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from substructures.expr.program import Symbol
+from substructures.expr.operations import Symbol
 from substructures.mechanics.composite_form import Inertia
 from substructures.part.mechanism import Mechanism
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub, transpose
+from substructures.mechanics.newton_euler import Wrench
 from substructures.part.definition import Definition, ForceLoad, JointLoad, SpringLoad, TorqueLoad
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
@@ -201,9 +202,7 @@ def _spring_force(
     return energy * Fraction(1, 2)
 
 
-def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> tuple[Vector, Vector]:
-    """(force, moment about the carrier's body frame origin)."""
+def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> Wrench:
+    """The wrench of a force at a point, or of a moment, about the carrier's body frame origin."""
     # n = x x f of a force at x
-    if moment:
-        return ZERO, vector
-    return vector, cross(at, vector)
+    return Wrench(ZERO, vector) if moment else Wrench(vector, cross(at, vector))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Symbol
+from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.composite_form import Inertia, binet
 from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation

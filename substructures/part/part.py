@@ -9,7 +9,8 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.program import Output, Program, program
+from substructures.expr.operations import Output
+from substructures.expr.program import Program, program
 from substructures.part.certificate import certify_part
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas

@@ -143,9 +143,9 @@ class _Relative:
 def closure_formulas(placed: Sequence[PlacedPart], cuts: Sequence[Cut], rates: Sequence[Scalar]) -> dict[str, Formulas]:
     """The outputs of the table above; ``rates``: the velocities of all coordinates."""
     motions = body_motions(placed, rates)
-    entries: dict[str, dict[tuple[int, ...], Any]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
-    directions: dict[tuple[int, ...], Any] = {}
-    alignment: dict[tuple[int, ...], Any] = {}
+    entries: dict[str, dict[tuple[int, ...], Scalar]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
+    directions: dict[tuple[int, ...], Scalar] = {}
+    alignment: dict[tuple[int, ...], Scalar] = {}
     k = 0
     for cut in cuts:
         frames = [_frame(placed, motions, end) for end in (cut.start, cut.end)]

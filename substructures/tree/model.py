@@ -28,6 +28,7 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.outputs import over_formulas
@@ -168,9 +169,10 @@ def model_outputs(
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
 
 
-def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
+def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
     """The symbols of all velocities and accelerations."""
-    rates, accelerations = [], []
+    rates: list[Expr] = []
+    accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
         for joint in m.part.topology.joints:
             name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
@@ -181,8 +183,8 @@ def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
 
 def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
     """Linear momentum, and angular momentum about the world's origin, in world axes."""
-    linear: dict[tuple[int, ...], Any] = {}
-    angular: dict[tuple[int, ...], Any] = {}
+    linear: dict[tuple[int, ...], Scalar] = {}
+    angular: dict[tuple[int, ...], Scalar] = {}
     for here in placed:
         for c, momentum in enumerate(here.evaluated.momenta):
             # R_c^T p_c   and   R_c^T H_c + r_c x R_c^T p_c
@@ -196,7 +198,7 @@ def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
 
 
 def _kinematics(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
-    entries: dict[str, dict[tuple[int, ...], Any]] = {name: {} for name in KINEMATICS}
+    entries: dict[str, dict[tuple[int, ...], Scalar]] = {name: {} for name in KINEMATICS}
     f = 0
     for here in placed:
         for frame in range(len(here.part.frames)):

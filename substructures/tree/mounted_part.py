@@ -135,4 +135,4 @@ class PlacedPart:
             vector = self.outputs.vector("load.vector", i)
             if world:
                 vector = apply(self.pose(carrier).R, vector)
-            yield carrier, Wrench(*wrench_about_origin(self.outputs.vector("load.at", i), vector, moment))
+            yield carrier, wrench_about_origin(self.outputs.vector("load.at", i), vector, moment)
