@@ -116,7 +116,9 @@ def joint_rotation(constant: Matrix, c: Scalar, s: Scalar) -> Rotation:
         # cos(phi + psi), sin(phi + psi)
         return Rotation((Planar(2, c * c1 - s * s1, s * c1 + c * s1),))
     if _turns_about(constant, 0):
+        # Ehat(phi) Rx(theta)^T
         return Rotation((Planar(0, constant[1][1], constant[1][2]), Planar(2, c, s)))
+    # Ehat(phi) A
     return Rotation((Turn(multiply(Planar(2, c, s).matrix(), constant)),))
 
 
@@ -150,6 +152,7 @@ def fixed_columns(links: Sequence[Link], columns: Mapping[int, Columns], carrier
 
     ``first``: the coordinate of joint 0.
     """
+    # O_k stays where the axis is reached; what a prismatic joint carries slides away from it along e3
     at = columns[carrier]
     if not carrier_link(links, carrier).s:
         return at
@@ -178,6 +181,7 @@ def base_functions(links: Sequence[Link]) -> dict[int, Columns]:
     """Columns {a: (U_ka, Omega_ka)} of every carrier k for its own coordinates a <= k; none of the interface."""
     result: dict[int, Columns] = {INTERFACE: {}}
     for k, link in enumerate(links):
+        # a < k from the parent, a = k: Omega_kk = (1 - s_k) e3, U_kk = 0
         result[k] = columns_beyond(links, result, link)
         result[k][k] = own_twist(link.s)
     return result

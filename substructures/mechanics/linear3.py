@@ -142,6 +142,7 @@ class Planar:
 
     def forward(self, v: Vector) -> Vector:
         """Components in the turned frame."""
+        # v'_i = c v_i + s v_j,   v'_j = c v_j - s v_i
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] + self.s * v[j], self.c * v[j] - self.s * v[i]
@@ -149,6 +150,7 @@ class Planar:
 
     def back(self, v: Vector) -> Vector:
         """Components in the original frame."""
+        # the same with -s
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] - self.s * v[j], self.c * v[j] + self.s * v[i]

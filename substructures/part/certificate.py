@@ -86,6 +86,7 @@ def compare(computed: Mapping[str, Array], expected: Mapping[str, Array]) -> dic
     Raises VerificationFailed.
     """
     largest = [float(np.abs(x[np.isfinite(x)]).max(initial=0.0)) for x in expected.values()]
+    # |computed - expected| / largest entry of all: entries that cancel to zero have no relative error of their own
     scale = max(largest) or 1.0
     errors: dict[str, float | None] = {}
     for name, value in expected.items():
@@ -121,6 +122,7 @@ def _inertia(values: Mapping[str, Array], body: str | None) -> tuple[Array, Arra
     if body is None:
         return np.zeros(STATES), np.zeros((STATES, 3)), np.zeros((STATES, 3, 3))
     J = [values[f"{body}.J{e}"] for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    # J_ij from its six entries, about the body frame origin
     full = np.stack([np.stack([J[SYMMETRIC_INDEX[i][j]] for j in range(3)], -1) for i in range(3)], -2)
     return values[f"{body}.m"], np.stack([values[f"{body}.s{e}"] for e in "xyz"], -1), full
 
@@ -137,6 +139,7 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
         tensor = [own["inertia.J"][..., k, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
         first = [own["inertia.m"][..., k], *(own["inertia.s"][..., k, i] for i in range(3))]
         numbers |= dict(zip(symbols, [*first, *tensor], strict=True))
+    # with the own values for the inertia symbols
     metric = interpret(result, numbers, ["metric"])["metric"]
     if not np.isfinite(metric).all():
         return None

@@ -14,6 +14,7 @@ def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
     graph, name = m.graph, m.topology.body_of
     result = []
     for k in range(len(m.joints)):
+        # a link inside a compound joint has neither mass nor moments
         if k not in name:
             result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
             continue

@@ -120,6 +120,7 @@ def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lo
         at = frame.point(m.scope.vector(load.at, f"{pointer}/at"))
     world = load.frame == "world"
     if not world:
+        # from the axes of the body to those of its carrier: E^T v
         vector = apply(transpose(frame.E), vector)
     return [AppliedWrench(frame.carrier, isinstance(load, TorqueLoad), world, at, vector)]
 
@@ -197,6 +198,7 @@ def _spring_force(
         speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
         # c l'/l = c (l l') / l^2
         factor = factor + spring.damping * speed / length2
+    # Q_a = -(k (1 - l0/l) + c l'/l) w_a
     for a, w in reach.items():
         forces[a] = forces[a] - factor * w
     return energy * Fraction(1, 2)

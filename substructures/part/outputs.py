@@ -52,6 +52,7 @@ class PartOutputs:
 
     def rotation(self, c: int) -> Rotation:
         """E_c by its factors."""
+        # E = Ehat(phi + psi), or Ehat(phi) Rx(theta)^T (turn and tilt), or one full matrix
         full = self.formulas["E.full"].entries
         if any((c, i, j) in full for i in range(3) for j in range(3)):
             return Rotation((Turn(self.matrix("E.full", c)),))

@@ -77,6 +77,7 @@ class Scope:
 
     def rpy(self, values: Sequence[Any], pointer: str, lookup: Lookup | None = None) -> Rotation:
         """E of a frame turned by fixed-axis roll, pitch, yaw: v' = Rx(roll)^T Ry(pitch)^T Rz(yaw)^T v."""
+        # the factors of E = Rx(roll)^T Ry(pitch)^T Rz(yaw)^T from the right; a turn by zero is left out
         angles = self.vector(values, pointer, lookup)
         factors = ((2, angles[2]), (1, angles[1]), (0, angles[0]))
         return Rotation(tuple(Planar(axis, *cos_sin(angle)) for axis, angle in factors if not angle.is_zero))

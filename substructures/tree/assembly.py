@@ -154,6 +154,7 @@ class _Bindings:
         if name not in self.given:
             return self.scope.names.get(name)
         value, pointer = self.given[name]
+        # a parameter bound to itself over others, or so many of them that reading would nest too deeply
         if name in self.open or len(self.open) > 50:
             self.scope.fault(pointer, "cycle", f"the binding of '{name}' refers to itself")
             return self.scope.graph.zero
@@ -222,6 +223,7 @@ class _Reading:
             scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
         axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
         E, position = self.placement(closure.placement, f"{pointer}/placement")
+        # the placement is in the frame ``to``; both ends are turned so that their third axis is the joint axis
         start = ClosureEnd(*self.frame(closure.from_, f"{pointer}/from"), axis, ZERO)
         end = ClosureEnd(*self.frame(closure.to, f"{pointer}/to"), multiply(axis, E), position)
         length = scope.graph.zero

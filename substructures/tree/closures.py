@@ -205,6 +205,7 @@ def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[in
         # the axis m_j of B, seen from A: m_j'' = w' x m_j + w x (w x m_j)
         turned = add(cross(r.dw, r.axes[j]), cross(r.w, cross(r.w, r.axes[j])))
         columns = {a: dot(t.Omega, direction) for a, t in r.twists.items()}
+        # phi = +-m_j . e_i,   G_a = +-w_a . (m_j x e_i)
         return sign * dot(r.axes[j], axis), direction, columns, sign * dot(turned, axis)
     if name == "length":
         lift = length.graph.lift
@@ -213,5 +214,6 @@ def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[in
         residual = lift(dot(r.d, r.d) - length * length) / (2 * length)
         acceleration = lift(dot(r.v, r.v) + dot(r.d, r.dv)) / length
         return residual, direction, {a: dot(t.U, direction) for a, t in r.twists.items()}, acceleration
+    # phi = d_i,   G_a = (u_a)_i
     i = PLACE.index(name)
     return r.d[i], IDENTITY[i], {a: t.U[i] for a, t in r.twists.items()}, r.dv[i]

@@ -34,6 +34,7 @@ def inverse_dynamics(
     loads = _inertial_loads(placed, body_motions(placed, rates, accelerations))
     for here, own in zip(placed, loads, strict=True):
         for carrier, wrench in here.applied_wrenches():
+            # a force that acts is one that the joints need not transmit
             own[carrier] += Wrench(negate(wrench.f), negate(wrench.n))
     result = _pass_back(placed, loads, len(rates))
     for here in placed:
@@ -57,6 +58,7 @@ def body_motions(
         own = {INTERFACE: _interface_motion(here, motions, accelerations is not None)}
         for c, link in enumerate(here.links):
             a = here.first + c
+            # from the body frame of the parent to O_c, then by the joint's own motion to the body frame of c
             before = own[link.parent].at(from_body(here.links, link), link.rotation)
             second = 0 if accelerations is None else accelerations[a]
             own[c] = before.moved(link.s, rates[a], link.tau, second)
@@ -67,6 +69,7 @@ def body_motions(
 def _interface_motion(here: PlacedPart, motions: Sequence[Motions], falling: bool) -> BodyMotion:
     """Of the host's carrier at the interface, or of the world."""
     if here.host is None:
+        # a = -gamma
         return BodyMotion(a=negate(here.gamma[INTERFACE])) if falling else BodyMotion()
     seat = here.seat
     return motions[here.mounted.host][seat.parent].at(from_body(here.host.links, seat), seat.rotation)
@@ -88,6 +91,7 @@ def _pass_back(placed: Sequence[PlacedPart], loads: list[Loads], n: int) -> list
             link, load = here.links[c], own[c]
             # e3 . f (prismatic) or e3 . n (revolute): tau e3 x f has no third component
             result[here.first + c] = load.f[2] if link.s else load.n[2]
+            # f and n + tau e3 x f about O_c, turned back and moved to the body frame of the parent
             own[link.parent] += load.about_joint(link.tau).before(from_body(here.links, link), link.rotation)
         if here.mounted.host != WORLD and here.host is not None:
             seat = here.seat

@@ -156,6 +156,7 @@ def model_outputs(
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
+    # by recursion, so that neither needs the Christoffel symbols
     if wanted("bias"):
         bias = bias_forces(placed, rates)
         outputs["bias"] = array((n,), lambda a: bias[a])

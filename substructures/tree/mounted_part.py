@@ -100,6 +100,7 @@ class PlacedPart:
 
     def pose(self, carrier: int) -> Pose:
         """In the world, of joint frame k or of the interface; formed when it is first asked for, and kept."""
+        # inwards to a pose that is known, and out again: trees may be deeper than recursion goes
         part, k, way = self, carrier, []
         while k not in part._poses:
             if k == INTERFACE and part.host is None:
@@ -115,6 +116,7 @@ class PlacedPart:
 
     def frame_link(self, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
         """A frame (body or port), and a constant placement in it, as a link from O of its carrier."""
+        # E E_f and r_f + E_f^T r in the body frame of the carrier
         E_f, r_f = self.outputs.matrix("frame.E", frame), self.outputs.vector("frame.position", frame)
         r = add(r_f, apply(transpose(E_f), position))
         return fixed_link(self.links, self.part.frame_carriers[frame], constant_rotation(multiply(E, E_f)), r)
@@ -134,5 +136,6 @@ class PlacedPart:
         for i, (carrier, moment, world) in enumerate(self.part.wrenches):
             vector = self.outputs.vector("load.vector", i)
             if world:
+                # R_k v: from the axes of the world to those of the carrier
                 vector = apply(self.pose(carrier).R, vector)
             yield carrier, wrench_about_origin(self.outputs.vector("load.at", i), vector, moment)
