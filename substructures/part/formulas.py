@@ -112,6 +112,7 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     outputs |= _inertia_outputs("base", [m.base], scalar=True)
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
     outputs |= _interface_outputs(k, momenta)
+    # what acts between bodies of the part does no work when the interface alone moves: complete without a host
     forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(k, carrier, at))
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
     outputs["potential"] = array((), lambda: potential)
@@ -133,6 +134,7 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
                 factors[key] |= {(c, 0): factor.c, (c, 1): factor.s}
             else:
                 factors["full"] |= {(c, i, j): factor.e[i][j] for i in range(3) for j in range(3)}
+    # U_ca, Omega_ca for a <= c
     own = {(c, a): twist for c in range(n) for a, twist in k.columns[c].items()}
     return {
         "E": array((n, 3, 3), lambda c, i, j: E[c][i][j]),

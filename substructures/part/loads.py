@@ -82,6 +82,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
     coordinates = set(m.topology.coordinates)
 
     def lookup(name: str) -> Expr | None:
+        """Parameters, then the time, inputs, coordinates and velocities."""
         if name in scope.names:
             return scope.names[name]
         if name == "t":
@@ -187,6 +188,7 @@ def _spring_force(
     if length2.is_zero:
         m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
         return m.graph.zero
+    # of a spring without rest length: k, and V = k l^2 / 2
     factor: Expr = spring.stiffness
     energy: Expr = spring.stiffness * length2
     if not spring.length.is_zero:

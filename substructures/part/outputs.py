@@ -43,6 +43,7 @@ class PartOutputs:
 
     def inertia(self, name: str, *index: int) -> Inertia:
         """m, s and J."""
+        # stored as a full matrix (J_ij = J_ji), used as six entries
         tensor = packed(self.matrix(f"{name}.J", *index))
         return Inertia(self.scalar(f"{name}.m", *index), self.vector(f"{name}.s", *index), tensor)
 
@@ -72,6 +73,7 @@ def over_formulas(graph: Graph) -> Run:
     """Stored programs as formulas in a graph; symbols without a value stand for themselves."""
 
     def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+        """Replay in the graph."""
         lifted = {name: graph.lift(x) for name, x in bindings.items()}
         return PartOutputs(replay(part.program, graph, lifted, names))
 

@@ -181,6 +181,7 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     """
     start = perf_counter()
     m = mechanism(definition)
+    # a definition of 500 bodies may have millions: refused before any work is done
     entries = christoffel_entries([(j.parent, j.s) for j in m.topology.joints])
     if entries > MAX_ENTRIES:
         raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)

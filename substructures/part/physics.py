@@ -52,6 +52,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
 
 def _checks(m: Mechanism) -> Iterator[_Check]:
     for i, (mass, J) in m.central.items():
+        # J about the mass centre
         full = dense(J)
         yield _Check(i, "mass", array((), lambda mass=mass: mass))
         yield _Check(i, "inertia", array((3, 3), lambda a, b, full=full: full[a][b]))

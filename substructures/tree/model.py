@@ -147,6 +147,7 @@ def model_outputs(
     n, placed = len(coupled.gravity), coupled.placed
 
     def wanted(*some: str) -> bool:
+        """Whether all outputs are wanted, or one of these."""
         return names is None or not names.isdisjoint(some)
 
     outputs = {
@@ -207,6 +208,7 @@ def _kinematics(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
             entries["position"] |= {(f, i): pose.r[i] for i in range(3)}
             # from the axes of the frame to those of the world: R^T
             entries["rotation"] |= {(f, j, i): pose.R[i][j] for i in range(3) for j in range(3)}
+            # U_fa, Omega_fa in the axes of the frame f
             entries["U"] |= {(f, a, i): t.U[i] for a, t in twists.items() for i in range(3)}
             entries["Omega"] |= {(f, a, i): t.Omega[i] for a, t in twists.items() for i in range(3)}
             f += 1
