@@ -20,8 +20,9 @@ from substructures.part.formulas import formulas
 from substructures.part.loads import read_loads
 from substructures.part.mechanism import mechanism
 from substructures.part.one_piece import derive_in_one_piece
+from substructures.part.outputs import over_formulas
 from substructures.tree.assembly import assemble
-from substructures.tree.coupling import couple_parts, over_formulas
+from substructures.tree.coupling import couple_parts
 
 GRAVITY = (0, 0, "-g")
 EQUATIONS = ("metric", "christoffel", "gravity")

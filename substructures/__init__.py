@@ -7,8 +7,8 @@ step           folder                  what is there
 =============  ======================  ===========================================================================
 definition     part.definition         what a mechanism is, as a document: bodies, joints, ports, loads, parameters
 part           part                    its formulas, derived once and stored: U_ka and Omega_ka by
-                                       mechanics.base_functions, own g_ab and Gamma_abc by mechanics.metric, and
-                                       what couples them to any host; all outputs are listed in part.formulas
+                                       mechanics.kinematics, own g_ab and Gamma_abc by mechanics.composite_form,
+                                       and what couples them to any host; all outputs are listed in part.formulas
 tree           tree                    parts on ports of parts: tree.coupling makes g_ab, Gamma_abc and the gravity
                                        forces of the whole out of the stored formulas; the outputs of a model are
                                        listed in tree.model
@@ -19,9 +19,10 @@ analysis       analysis                what follows: first integrals, motion, cl
 Where the symbols of the notation (notation.md) are made:
 
 =============  ================================================================================================
-U, Omega       partial velocities: mechanics.base_functions (recursion), carried to hosts in tree.coupling
-g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.metric.metric_column
-Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: mechanics.metric.christoffel_block
+U, Omega       partial velocities: mechanics.kinematics (base_functions), carried to hosts in tree.coupling
+g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.composite_form.metric_column
+Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating:
+               mechanics.composite_form.christoffel_block
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: part.loads.applied_forces
                (own forces of a part) and tree.coupling (gravity, and wrenches on what others carry)
 =============  ================================================================================================

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import substructures
 
+FOLDERS = "analysis|expr|mechanics|part|quantities|tree"
 SOURCE = Path(substructures.__file__ or "").read_text()
 
 
@@ -20,6 +23,23 @@ def test_public_names(name: str) -> None:
     assert name in dir(substructures)
     if isinstance(value, type):
         assert value.__name__ == name
+
+
+@pytest.mark.parametrize(
+    "place", sorted(set(re.findall(rf"\\b((?:{FOLDERS})(?:\\.\\w+)+)", substructures.__doc__ or "")))
+)
+def test_the_map_names_what_there_is(place: str) -> None:
+    folder, module, *name = place.split(".")
+    found = import_module(f"substructures.{folder}.{module}")
+    assert all(hasattr(found, each) for each in name)
+
+
+def test_the_notation_names_modules_that_there_are() -> None:
+    page = (Path(substructures.__file__ or "").parent / "notation.md").read_text()
+    places = set(re.findall(rf"\b(?:{FOLDERS})/\w+(?:/\w+)*", page))
+    assert len(places) > 10
+    for place in places:
+        import_module("substructures." + place.replace("/", "."))
 
 
 def test_unknown_name() -> None:

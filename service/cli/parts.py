@@ -8,8 +8,8 @@ from pathlib import Path
 from service.cli.options import Add, add_server, read_document
 from service.cli.progress import follow
 from substructures.client import Client
-from substructures.part.alone import lean
 from substructures.part.definition import Definition
+from substructures.part.outputs import with_own_inertia
 from substructures.part.part import derive
 from substructures.printers import FORMATS, render
 
@@ -34,7 +34,7 @@ def _derive(options: argparse.Namespace) -> int:
         names = [n for n in part.program.outputs if n == options.show or n.startswith(f"{options.show}.")]
         if not names:
             raise ValueError(f"there is no quantity '{options.show}'; there are {', '.join(part.program.outputs)}")
-        print(render(lean(part, part.program.select(names)), options.format))
+        print(render(with_own_inertia(part, part.program.select(names)), options.format))
         return 0
     print(f"{part.name}: {part.dof} coordinates ({part.joints or 'none'}), bodies {', '.join(part.bodies)}")
     for title, figures in (("operations", part.operations), ("certificate", part.certificate)):

@@ -20,7 +20,7 @@ from service.queries import jobs as job_rows
 from service.queries import trees as revisions
 from service.queries.catalogue import CatalogueSearch
 from service.settings import Settings
-from substructures.part.alone import lean
+from substructures.part.outputs import with_own_inertia
 
 CARDS, TREES, JOBS, BAD = 500, 100, 100, 50
 _HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")
@@ -54,7 +54,7 @@ def substructure(ref: str, request: Request, store: StoreOf) -> Response:
         part = store.part(connection, version.digest)
     if part is None:
         raise LookupError(f"the part {version.digest} is missing")
-    metric = lean(part, part.program.select(["metric"])) if part.dof else None
+    metric = with_own_inertia(part, part.program.select(["metric"])) if part.dof else None
     return answer(request, part_page(version, names, part, metric))
 
 

@@ -18,7 +18,7 @@ from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
 from service.views.resources import dump, formulas_view
-from substructures.part.alone import lean
+from substructures.part.outputs import with_own_inertia
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -65,7 +65,7 @@ def get_formula(
         else:
             chosen = models.part_entries(part.program, rows, component)
         if inertia == "own":
-            chosen = lean(part, chosen)
+            chosen = with_own_inertia(part, chosen)
         return models.printed(models.bound(chosen, part.parameters, style.bind), style, part.coordinates)
 
     return conditional(request, tag, is_pinned(ref), make)

@@ -61,6 +61,7 @@ class _Builder:
         self._keys: list[str | None] = []  # of every open mapping: the key that waits for its value
 
     def pointer(self) -> str:
+        """The RFC 6901 pointer to where the next value belongs."""
         # an item that is open itself is already counted in its list
         last = len(self._open) - 1
         return pointer_to(
@@ -69,6 +70,7 @@ class _Builder:
         )
 
     def feed(self, event: yaml.Event) -> None:
+        """Take the next event. Raises InvalidDocument for what the subset does not hold."""
         if isinstance(event, yaml.DocumentStartEvent):
             self._documents += 1
             if self._documents > 1:

@@ -140,6 +140,10 @@ class Graph:
         fp = rational(value)
         return self.table.get(fp) or Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp)
 
+    def lift(self, value: Any) -> Expr:
+        """An expression as it is, an exact number as :meth:`number` takes it: what is left of a sum of zeros, say."""
+        return value if isinstance(value, Expr) else self.number(value)
+
     def symbol(self, name: str) -> Expr:
         """The symbol of this name."""
         fp = keyed("symbol", name)

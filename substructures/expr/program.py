@@ -170,10 +170,14 @@ def _moved(output: Output, new: Mapping[int, int]) -> Output:
 
 @dataclass(frozen=True, slots=True)
 class Formulas:
-    """An output before it becomes part of a program: expressions by index; zeros are left out by :func:`program`."""
+    """An output outside of a program: scalars by index, an element without one is zero.
+
+    Expressions and exact integers where it is to become part of a program (:func:`program` leaves zeros out); numbers
+    or arrays where a stored program was evaluated.
+    """
 
     shape: tuple[int, ...]
-    entries: Mapping[tuple[int, ...], Expr | int]
+    entries: Mapping[tuple[int, ...], Any]
     symmetry: str = "none"
 
 
@@ -187,10 +191,7 @@ def array(shape: tuple[int, ...], value: Callable[..., Any]) -> Formulas:
 
 def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str, Symbol]) -> Program:
     """Collect the nodes that the outputs need into a program; ``symbols`` describes the symbols by name."""
-    entries = {
-        name: {i: e if isinstance(e, Expr) else graph.number(e) for i, e in f.entries.items() if not _is_zero(e)}
-        for name, f in outputs.items()
-    }
+    entries = {name: {i: graph.lift(e) for i, e in f.entries.items() if not _is_zero(e)} for name, f in outputs.items()}
     nodes = _reachable_nodes(graph, (e for some in entries.values() for e in some.values()))
     position = [0] * len(graph)
     for i, node in enumerate(nodes):

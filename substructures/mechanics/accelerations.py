@@ -28,6 +28,7 @@ def cholesky_solve(g: Array, f: Array) -> Array:
         if not half:
             return np.full_like(f, np.nan)
         return np.concatenate([cholesky_solve(g[:half], f[:half]), cholesky_solve(g[half:], f[half:])])
+    # L y = f forwards, L^T x = y backwards, in all states at once
     x = np.array(f, dtype=np.float64)
     n = x.shape[1]
     for k in range(n):
@@ -51,14 +52,17 @@ def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callab
     G, c = found["closure.jacobian"], found["closure.acceleration"]
     f = found["forces"] - found["bias"]
     result = np.full(np.broadcast_shapes(q.shape, qd.shape, f.shape), np.nan)
+    # G = U diag(sizes) V^T; the rows of V^T beyond the rank span the velocities that G leaves free
     left, sizes, rows = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
     ranks = (sizes > RANK * sizes[:, :1]).sum(axis=1)
+    # mu^T G'v of one free velocity v and all mu with mu^T G = 0
     probe = np.random.default_rng(5).standard_normal(G.shape[2])
     free = np.arange(G.shape[2]) >= ranks[:, None]
     along = np.einsum("nka,nk->na", rows, np.where(free, rows @ probe, 0))
     across = np.arange(G.shape[1]) >= ranks[:, None]
     curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along)), 0)
     speed = np.abs(qd).max(axis=1, initial=1)
+    # G q' and phi, which have to be zero
     opening = np.abs(np.einsum("nka,na->nk", G, np.broadcast_to(qd, result.shape))).max(axis=1, initial=0)
     good = np.abs(found["closure.residual"]).max(axis=1, initial=0) <= MET * np.abs(q).max(axis=1, initial=1)
     good = good & (opening <= MET_RATE * speed) & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
@@ -66,7 +70,9 @@ def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callab
         some = np.flatnonzero(good & (ranks == rank))
         N = rows[some, rank:].swapaxes(1, 2)
         U, V = left[some, :, :rank], rows[some, :rank]
+        # G^+ c = V diag(1/sizes) U^T c
         solved = np.einsum("nka,nk->na", V, np.einsum("njk,nj->nk", U, c[some]) / sizes[some, :rank])
+        # N^T g N z = N^T (f + g G^+ c),   q'' = N z - G^+ c
         right = f[some] + np.einsum("nab,nb->na", found["metric"][some], solved)
         z = cholesky_solve(N.swapaxes(1, 2) @ found["metric"][some] @ N, np.einsum("nak,na->nk", N, right))
         result[some] = np.einsum("nak,nk->na", N, z) - solved

@@ -8,21 +8,40 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Generic, Protocol, Self, TypeVar
 
-from substructures.mechanics.linear3 import S
+
+class Divisible(Protocol):
+    """A scalar of one kind (:class:`~substructures.mechanics.linear3.Scalar`) by which 1 can be divided."""
+
+    def __sub__(self, other: Self, /) -> Self:
+        """self - other."""
+
+    def __rsub__(self, other: int, /) -> Self:
+        """0 - self."""
+
+    def __mul__(self, other: Self, /) -> Self:
+        """self other."""
+
+    def __rtruediv__(self, other: int, /) -> Self:
+        """1 / self."""
+
+
+D = TypeVar("D", bound=Divisible)
 
 
 @dataclass(frozen=True)
-class Factors:
+class Factors(Generic[D]):
     """``pivots`` D_k; ``below[k]``: L_ki by i < k, zero where there is no entry; L_kk = 1."""
 
-    pivots: tuple[S, ...]
-    inverse: tuple[S, ...]
-    below: tuple[Mapping[int, S], ...]
+    pivots: tuple[D, ...]
+    inverse: tuple[D, ...]
+    below: tuple[Mapping[int, D], ...]
 
-    def solve(self, f: Sequence[S]) -> list[S]:
+    def solve(self, f: Sequence[D]) -> list[D]:
         """x with g x = f."""
         x = list(f)
+        # L^T y = f from the leaves to the base, D z = y, L x = z back
         for k in reversed(range(len(x))):
             for i, l_ki in self.below[k].items():
                 x[i] = x[i] - l_ki * x[k]
@@ -33,25 +52,28 @@ class Factors:
         return x
 
 
-def factorised(n: int, metric: Mapping[tuple[int, ...], S]) -> Factors:
+def factorised(n: int, metric: Mapping[tuple[int, ...], D]) -> Factors[D]:
     """L and D of a symmetric matrix from its entries (i, k), i <= k; absent ones are zero.
 
     No rows are exchanged: the pivots of a positive definite matrix are positive. Raises ZeroDivisionError where a pivot
     is known to be zero.
     """
-    rows: list[dict[int, S]] = [{} for _ in range(n)]
+    rows: list[dict[int, D]] = [{} for _ in range(n)]
     for (i, k), x in metric.items():
         rows[max(i, k)][min(i, k)] = x
-    pivots: list[S] = [0] * n
-    inverse: list[S] = [0] * n
+    pivots: dict[int, D] = {}
+    inverse: dict[int, D] = {}
     for k in reversed(range(n)):
         row = rows[k]
-        pivots[k] = row.pop(k, 0)
+        if k not in row:
+            raise ZeroDivisionError(f"pivot {k} is zero")
+        pivots[k] = row.pop(k)
         inverse[k] = 1 / pivots[k]
+        # L_ki = g_ki / D_k,  then g_ij -= L_ki D_k L_kj = L_ki g_kj
         rows[k] = {i: g_ki * inverse[k] for i, g_ki in row.items()}
         for i, l_ki in rows[k].items():
             rows[i] |= {j: rows[i].get(j, 0) - l_ki * g_kj for j, g_kj in row.items() if j <= i}
-    return Factors(tuple(pivots), tuple(inverse), tuple(rows))
+    return Factors(tuple(pivots[k] for k in range(n)), tuple(inverse[k] for k in range(n)), tuple(rows))
 
 
 def factor_operations(n: int, index: Iterable[tuple[int, ...]]) -> int:

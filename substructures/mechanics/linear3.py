@@ -1,20 +1,50 @@
 """Vectors and tensors of three-dimensional space over any scalar that can add, subtract and multiply.
 
 A vector is a tuple of three scalars, a matrix a tuple of three rows, a symmetric tensor the six entries
-``(xx, yy, zz, xy, xz, yz)``. Scalars may be :class:`~substructures.expr.graph.Expr`, floats, numpy arrays
-(all states at once) and the exact integers 0 and 1, in any mixture.
+``(xx, yy, zz, xy, xz, yz)``. What a scalar is, :class:`Scalar` says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
-S = Any  #: a scalar
-Vector = tuple[S, S, S]
+
+class Scalar(Protocol):
+    """What the mechanics computes with: anything that can be added, subtracted, multiplied and negated.
+
+    An :class:`~substructures.expr.graph.Expr`, a float, a numpy array (all states at once), the array scalars of
+    :mod:`substructures.quantities.array_scalars`. Each kind takes the integers of the formulas (0, 1, 2) on either side
+    and, as the result of a product, the integer 0 may stand for it: zeros and ones need no kind of their own, and 0
+    and 1 of a frame or an axis fold away. Two kinds other than integers need not go together (a formula takes no
+    float), which is why operands are not checked here: a run is over one kind.
+    """
+
+    def __add__(self, other: Any, /) -> Scalar:
+        """self + other."""
+
+    def __radd__(self, other: Any, /) -> Scalar:
+        """other + self."""
+
+    def __sub__(self, other: Any, /) -> Scalar:
+        """self - other."""
+
+    def __rsub__(self, other: Any, /) -> Scalar:
+        """other - self."""
+
+    def __mul__(self, other: Any, /) -> Scalar:
+        """self other."""
+
+    def __rmul__(self, other: Any, /) -> Scalar:
+        """other self."""
+
+    def __neg__(self) -> Scalar:
+        """-self."""
+
+
+Vector = tuple[Scalar, Scalar, Scalar]
 Matrix = tuple[Vector, Vector, Vector]
-Symmetric = tuple[S, S, S, S, S, S]
+Symmetric = tuple[Scalar, Scalar, Scalar, Scalar, Scalar, Scalar]
 
 ZERO: Vector = (0, 0, 0)
 E3: Vector = (0, 0, 1)
@@ -24,7 +54,7 @@ ZERO6: Symmetric = (0, 0, 0, 0, 0, 0)
 SYMMETRIC_INDEX = ((0, 3, 4), (3, 1, 5), (4, 5, 2))
 
 
-def exactly(x: S, n: int) -> bool:
+def exactly(x: Scalar, n: int) -> bool:
     """True when a scalar is known to be this integer (a number, or an expression that is one)."""
     value = getattr(x, "value", x)
     return isinstance(value, int) and value == n
@@ -45,12 +75,12 @@ def negate(a: Vector) -> Vector:
     return -a[0], -a[1], -a[2]
 
 
-def scale(c: S, a: Vector) -> Vector:
+def scale(c: Scalar, a: Vector) -> Vector:
     """c a."""
     return c * a[0], c * a[1], c * a[2]
 
 
-def dot(a: Sequence[S], b: Sequence[S]) -> S:
+def dot(a: Vector, b: Vector) -> Scalar:
     """a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
@@ -99,7 +129,7 @@ def packed(m: Matrix) -> Symmetric:
 
 def add6(a: Symmetric, b: Symmetric) -> Symmetric:
     """Sum of two symmetric tensors."""
-    return tuple(x + y for x, y in zip(a, b, strict=True))
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5]
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,25 +137,28 @@ class Planar:
     """Passive rotation about a frame axis (0, 1 or 2): v -> v', components in the frame turned by the angle."""
 
     axis: int
-    c: S
-    s: S
+    c: Scalar
+    s: Scalar
 
     def forward(self, v: Vector) -> Vector:
         """Components in the turned frame."""
+        # v'_i = c v_i + s v_j,   v'_j = c v_j - s v_i
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] + self.s * v[j], self.c * v[j] - self.s * v[i]
-        return tuple(out)
+        return out[0], out[1], out[2]
 
     def back(self, v: Vector) -> Vector:
         """Components in the original frame."""
+        # the same with -s
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         out = list(v)
         out[i], out[j] = self.c * v[i] - self.s * v[j], self.c * v[j] + self.s * v[i]
-        return tuple(out)
+        return out[0], out[1], out[2]
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
-        """E^T t E. With w = s (t_ii - t_jj) + 2 c t_ij the plane block needs three multiplications more."""
+        """E^T t E."""
+        # w = s (t_ii - t_jj) + 2 c t_ij:   ii - s w,   jj + s w,   ij -> c w - t_ij
         i, j, k = (self.axis + 1) % 3, (self.axis + 2) % 3, self.axis
         ij, ik, jk = SYMMETRIC_INDEX[i][j], SYMMETRIC_INDEX[i][k], SYMMETRIC_INDEX[j][k]
         w = self.s * (t[i] - t[j]) + self.c * (2 * t[ij])
@@ -133,7 +166,7 @@ class Planar:
         out = list(t)
         out[i], out[j], out[ij] = t[i] - sw, t[j] + sw, self.c * w - t[ij]
         out[ik], out[jk] = self.c * t[ik] - self.s * t[jk], self.c * t[jk] + self.s * t[ik]
-        return tuple(out)
+        return out[0], out[1], out[2], out[3], out[4], out[5]
 
     def matrix(self) -> Matrix:
         """E, with v' = E v."""
@@ -156,6 +189,7 @@ class Turn:
 
     def back_tensor(self, t: Symmetric) -> Symmetric:
         """E^T t E."""
+        # columns of t E, then E^T times them, upper triangle only
         x, y, z = transpose(multiply(dense(t), self.e))
         ex, ey, ez = transpose(self.e)
         return dot(ex, x), dot(ey, y), dot(ez, z), dot(ex, y), dot(ex, z), dot(ey, z)
@@ -196,5 +230,6 @@ class Rotation:
 
     def matrix(self) -> Matrix:
         """E as a matrix."""
+        # row i of E is E^T e_i
         rows = [self.back(axis) for axis in IDENTITY]
         return rows[0], rows[1], rows[2]

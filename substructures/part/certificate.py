@@ -11,9 +11,10 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import SubstructuresError
 from substructures.expr.interpret import interpret
-from substructures.expr.program import Program, Symbol, array, program
+from substructures.expr.operations import Symbol
+from substructures.expr.program import Program, array, program
 from substructures.mechanics.direct_form import NumericJoint, direct_form
-from substructures.mechanics.joints import links
+from substructures.mechanics.kinematics import links
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.mechanism import Mechanism
@@ -62,6 +63,7 @@ def _comparison(m: Mechanism, result: Program, values: Mapping[str, Array]) -> d
     joints = _numeric_joints(m, values)
     form = direct_form(joints, np.zeros((STATES, 3)))
     computed = interpret(result, values, ["metric", "christoffel", "armature"])
+    # the direct form knows bodies only: g_cc += armature_c
     form.metric[...] += computed["armature"][..., None] * np.eye(len(joints))
     return compare(computed, {"metric": form.metric, "christoffel": form.christoffel})
 
@@ -84,6 +86,7 @@ def compare(computed: Mapping[str, Array], expected: Mapping[str, Array]) -> dic
     Raises VerificationFailed.
     """
     largest = [float(np.abs(x[np.isfinite(x)]).max(initial=0.0)) for x in expected.values()]
+    # |computed - expected| / largest entry of all: entries that cancel to zero have no relative error of their own
     scale = max(largest) or 1.0
     errors: dict[str, float | None] = {}
     for name, value in expected.items():
@@ -108,7 +111,7 @@ def _numeric_joints(m: Mechanism, values: Mapping[str, Array]) -> list[NumericJo
         m.scope.symbols,
     )
     x = interpret(rows, values)
-    name = {carrier: body for body, carrier in reversed(m.skeleton.carrier.items())}
+    name = m.topology.body_of
     return [
         NumericJoint(j.parent, j.s, x["E"][:, c], x["Z"][:, c], x["tau"][:, c], *_inertia(values, name.get(c)))
         for c, j in enumerate(m.joints)
@@ -119,6 +122,7 @@ def _inertia(values: Mapping[str, Array], body: str | None) -> tuple[Array, Arra
     if body is None:
         return np.zeros(STATES), np.zeros((STATES, 3)), np.zeros((STATES, 3, 3))
     J = [values[f"{body}.J{e}"] for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    # J_ij from its six entries, about the body frame origin
     full = np.stack([np.stack([J[SYMMETRIC_INDEX[i][j]] for j in range(3)], -1) for i in range(3)], -2)
     return values[f"{body}.m"], np.stack([values[f"{body}.s{e}"] for e in "xyz"], -1), full
 
@@ -130,12 +134,12 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
         return None
     numbers: dict[str, Any] = {**values, **defaults}
     own = interpret(result, numbers, ["inertia.m", "inertia.s", "inertia.J"])
-    name = {carrier: body for body, carrier in reversed(m.skeleton.carrier.items()) if carrier >= 0}
-    for k, body in name.items():
+    for k, body in m.topology.body_of.items():
         symbols = [symbol for symbol, _ in inertia_names(body)]
         tensor = [own["inertia.J"][..., k, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
         first = [own["inertia.m"][..., k], *(own["inertia.s"][..., k, i] for i in range(3))]
         numbers |= dict(zip(symbols, [*first, *tensor], strict=True))
+    # with the own values for the inertia symbols
     metric = interpret(result, numbers, ["metric"])["metric"]
     if not np.isfinite(metric).all():
         return None

@@ -1,7 +1,7 @@
 """What is stored of a substructure, as formulas of its own coordinates and parameters (notation.md, section 6).
 
 The inertia (m, s, J) of every moving part enters as ten symbols, to which its own values and whatever a host mounts on
-it are bound later; binding the own values alone folds the program to its lean form.
+it are bound later; binding the own values alone folds the program to its shortest form.
 
 =================  ==========  ===========================================================================
 output             shape       meaning (n joints c; own a, b <= c; I: interface frame)
@@ -32,20 +32,35 @@ load.at, .vector   loads 3     point (carrier's body frame) and vector of forces
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from substructures.expr.program import Formulas, array
-from substructures.mechanics.base_functions import Columns, base_functions, carried
-from substructures.mechanics.inertia import Inertia, composites
-from substructures.mechanics.joints import Link, links
+from substructures.mechanics.composite_form import (
+    Inertia,
+    JointMomentum,
+    christoffel_block,
+    composites,
+    joint_momentum,
+    metric_column,
+)
+from substructures.mechanics.kinematics import (
+    INTERFACE,
+    Columns,
+    Link,
+    Pose,
+    base_functions,
+    columns_beyond,
+    fixed_columns,
+    fixed_link,
+    links,
+)
 from substructures.mechanics.linear3 import (
-    E3,
     IDENTITY,
     SYMMETRIC_INDEX,
     ZERO,
     Matrix,
     Planar,
     Rotation,
+    Scalar,
     Turn,
     Vector,
     add,
@@ -56,34 +71,27 @@ from substructures.mechanics.linear3 import (
     subtract,
     transpose,
 )
-from substructures.mechanics.metric import JointMomentum, christoffel_block, joint_momentum, metric_column
 from substructures.part.frames import Frame
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.loads import Loads, PointKinematics, applied_forces
 from substructures.part.mechanism import Mechanism
-from substructures.part.topology import INTERFACE
 
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Recursion results: links, columns, rotations I -> c and positions in I."""
+    """Recursion results: links; columns and poses in the interface frame, by carrier."""
 
     links: tuple[Link, ...]
-    columns: list[Columns]
-    R: list[Matrix]
-    r: list[Vector]
+    columns: dict[int, Columns]
+    poses: dict[int, Pose]
 
 
-def kinematics(chain: tuple[Link, ...], columns: list[Columns]) -> Kinematics:
-    """R_c = E_c R_p, r_c = r_p + R_p^T Z_c beside the base functions."""
-    R: list[Matrix] = []
-    r: list[Vector] = []
-    for link in chain:
-        R_p, r_p = (R[link.parent], r[link.parent]) if link.parent >= 0 else (IDENTITY, ZERO)
-        x, y, z = (link.rotation.forward(column) for column in transpose(R_p))
-        R.append(transpose((x, y, z)))
-        r.append(add(r_p, apply(transpose(R_p), link.Z)))
-    return Kinematics(chain, columns, R, r)
+def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinematics:
+    """R_c and r_c beside the base functions."""
+    poses = {INTERFACE: Pose(IDENTITY, ZERO)}
+    for c, link in enumerate(chain):
+        poses[c] = poses[link.parent].beyond(link)
+    return Kinematics(chain, columns, poses)
 
 
 def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
@@ -93,17 +101,19 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     """
     chain = links(m.joints)
     columns = base_functions(chain)
-    subtree, base = composites(m.joints, inertia_symbols(m))
-    momenta = [joint_momentum(joint.s, composite) for joint, composite in zip(m.joints, subtree, strict=True)]
-    outputs = _own_dynamics(m, columns, momenta)
+    carried = composites(m.joints, inertia_symbols(m))
+    momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
+    outputs = own_dynamics(m, columns, momenta)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
-    outputs |= _inertia_outputs("subtree", subtree) | _inertia_outputs("inertia", list(m.own))
-    outputs |= _inertia_outputs("composite", [base + m.base], scalar=True)
+    outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])
+    outputs |= _inertia_outputs("inertia", list(m.own))
+    outputs |= _inertia_outputs("composite", [carried[INTERFACE] + m.base], scalar=True)
     outputs |= _inertia_outputs("base", [m.base], scalar=True)
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
     outputs |= _interface_outputs(k, momenta)
-    forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(m, k, carrier, at))
+    # what acts between bodies of the part does no work when the interface alone moves: complete without a host
+    forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(k, carrier, at))
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
     outputs["potential"] = array((), lambda: potential)
     outputs |= _frame_outputs(m, k)
@@ -115,7 +125,8 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
 def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     n = len(m.joints)
     E = [link.rotation.matrix() for link in k.links]
-    factors: dict[str, dict[tuple[int, ...], Any]] = {"tilt": {}, "turn": {}, "full": {}}
+    # E = (turn about e3) (tilt about e1), or one full matrix: what coupling replays instead of E
+    factors: dict[str, dict[tuple[int, ...], Scalar]] = {"tilt": {}, "turn": {}, "full": {}}
     for c, link in enumerate(k.links):
         for factor in link.rotation.factors:
             if isinstance(factor, Planar):
@@ -123,7 +134,8 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
                 factors[key] |= {(c, 0): factor.c, (c, 1): factor.s}
             else:
                 factors["full"] |= {(c, i, j): factor.e[i][j] for i in range(3) for j in range(3)}
-    own = {(c, a): twist for c, columns in enumerate(k.columns) for a, twist in columns.items()}
+    # U_ca, Omega_ca for a <= c
+    own = {(c, a): twist for c in range(n) for a, twist in k.columns[c].items()}
     return {
         "E": array((n, 3, 3), lambda c, i, j: E[c][i][j]),
         "E.tilt": Formulas((n, 2), factors["tilt"]),
@@ -131,8 +143,8 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
         "E.full": Formulas((n, 3, 3), factors["full"]),
         "Z": array((n, 3), lambda c, i: k.links[c].Z[i]),
         "tau": array((n,), lambda c: m.joints[c].tau),
-        "R": array((n, 3, 3), lambda c, i, j: k.R[c][i][j]),
-        "r": array((n, 3), lambda c, i: k.r[c][i]),
+        "R": array((n, 3, 3), lambda c, i, j: k.poses[c].R[i][j]),
+        "r": array((n, 3), lambda c, i: k.poses[c].r[i]),
         "U": _sparse((n, n, 3), {i: twist.U for i, twist in own.items()}),
         "Omega": _sparse((n, n, 3), {i: twist.Omega for i, twist in own.items()}),
     }
@@ -158,21 +170,27 @@ def _inertia_outputs(prefix: str, values: list[Inertia], scalar: bool = False) -
 
 
 def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    """What couples the part to any host, in the interface frame about its origin (notation.md, section 6)."""
     n = len(momenta)
     values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in ("f", "n", "kappa", "F", "N")}
     K: list[Matrix] = []
     for c, momentum in enumerate(momenta):
-        back, r = transpose(k.R[c]), k.r[c]
+        R, r = k.poses[c].R, k.poses[c].r
+        back = transpose(R)
+        # f_c = R_c^T p_c,   n_c = R_c^T H_c + r_c x f_c
         f = apply(back, momentum.p)
         K_c = momentum.matrix()
         values["f"][(c,)] = f
         values["n"][(c,)] = add(apply(back, momentum.H), cross(r, f))
-        K.append(subtract(multiply(back, multiply(K_c, k.R[c])), multiply(skew(r), skew(f))))
+        # K_c^I = R_c^T K_c R_c - skew(r_c) skew(f_c)
+        K.append(subtract(multiply(back, multiply(K_c, R)), multiply(skew(r), skew(f))))
         for a, twist in k.columns[c].items():
+            # F_ac = R_c^T (Omega_ca x p_c),   N_ac = R_c^T K_c Omega_ca + r_c x F_ac
             F = apply(back, cross(twist.Omega, momentum.p))
             values["F"][a, c] = F
             values["N"][a, c] = add(apply(back, momentum.moment(twist.Omega)), cross(r, F))
             if a != c:
+                # kappa_ac = R_c^T (p_c x U_ca + K_c^T Omega_ca)
                 moment = add(cross(momentum.p, twist.U), apply(transpose(K_c), twist.Omega))
                 values["kappa"][a, c] = apply(back, moment)
     outputs = {
@@ -184,36 +202,34 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
 
 
-def _own_dynamics(m: Mechanism, columns: list[Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
+def own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
+    """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5)."""
     n = len(momenta)
-    g: dict[tuple[int, ...], Any] = {}
-    gamma: dict[tuple[int, ...], Any] = {}
+    g: dict[tuple[int, ...], Scalar] = {}
+    gamma: dict[tuple[int, ...], Scalar] = {}
     for c, momentum in enumerate(momenta):
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
+        # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
         gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
     return {"metric": Formulas((n, n), g, "symmetric"), "christoffel": Formulas((n, n, n), gamma, "christoffel")}
 
 
-def _frame_link(m: Mechanism, frame: Frame) -> Link:
+def _frame_link(k: Kinematics, frame: Frame) -> Link:
     """A frame as a link without degree of freedom, from O of its carrier."""
-    if frame.carrier == INTERFACE:
-        return Link(INTERFACE, 0, Rotation((Turn(frame.E),)), frame.position)
-    x, y, z = frame.position
-    return Link(frame.carrier, 0, Rotation((Turn(frame.E),)), (x, y, z + m.joints[frame.carrier].tau))
+    return fixed_link(k.links, frame.carrier, Rotation((Turn(frame.E),)), frame.position)
 
 
-def point_kinematics(m: Mechanism, k: Kinematics, carrier: int, at: Vector) -> PointKinematics:
+def point_kinematics(k: Kinematics, carrier: int, at: Vector) -> PointKinematics:
     """Position and own partial velocities of a point (carrier's body frame) in the interface frame."""
-    if carrier == INTERFACE:
-        return PointKinematics(at, {})
-    link = _frame_link(m, Frame(carrier, IDENTITY, at))
-    back = transpose(k.R[carrier])
-    u = {}
-    for a, twist in k.columns[carrier].items():
-        start = add(twist.U, E3) if a == carrier and m.joints[a].s else twist.U
-        u[a] = apply(back, add(start, cross(twist.Omega, link.Z)))
-    return PointKinematics(add(k.r[carrier], apply(back, link.Z)), u)
+    z = _frame_link(k, Frame(carrier, IDENTITY, at)).Z
+    back = transpose(k.poses[carrier].R)
+    # u_a = R^T (U_ka + s_a [a = k] e3 + Omega_ka x z)
+    u = {
+        a: apply(back, add(twist.U, cross(twist.Omega, z)))
+        for a, twist in fixed_columns(k.links, k.columns, carrier).items()
+    }
+    return PointKinematics(add(k.poses[carrier].r, apply(back, z)), u)
 
 
 def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
@@ -227,13 +243,13 @@ def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     Omega: dict[tuple[int, int], Vector] = {}
     R, r = [], []
     for i, frame in enumerate(m.ports.values()):
-        link = _frame_link(m, frame)
-        R_c, r_c = (k.R[frame.carrier], k.r[frame.carrier]) if frame.carrier >= 0 else (IDENTITY, ZERO)
-        R.append(multiply(frame.E, R_c))
-        r.append(add(r_c, apply(transpose(R_c), link.Z)))
-        for a, twist in (k.columns[frame.carrier] if frame.carrier >= 0 else {}).items():
-            moved = carried(twist, link, a == frame.carrier and bool(m.joints[a].s))
-            U[i, a], Omega[i, a] = moved.U, moved.Omega
+        link = _frame_link(k, frame)
+        # R = E R_k,   r = r_k + R_k^T z
+        pose = k.poses[frame.carrier]
+        R.append(multiply(frame.E, pose.R))
+        r.append(add(pose.r, apply(transpose(pose.R), link.Z)))
+        for a, twist in columns_beyond(k.links, k.columns, link).items():
+            U[i, a], Omega[i, a] = twist.U, twist.Omega
     ports = len(m.ports)
     return outputs | {
         "port.R": array((ports, 3, 3), lambda i, x, y: R[i][x][y]),

@@ -26,8 +26,8 @@ class Frame:
     E: Matrix
     position: Vector
 
-    def mounted(self, E: Matrix, position: Vector) -> Frame:
-        """A frame placed in this one."""
+    def placed(self, E: Matrix, position: Vector) -> Frame:
+        """A frame placed in this one, seen from the carrier: E E_f, r_f + E_f^T r."""
         return Frame(self.carrier, multiply(E, self.E), self.point(position))
 
     def point(self, position: Vector) -> Vector:
@@ -65,7 +65,8 @@ def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Ma
     length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2]
     root = graph.sqrt(length2)
     unit: Vector = (n[0] / root, n[1] / root, n[2] / root)
+    # |e_i x n|^2 = |n|^2 - n_i^2
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
-    first: Vector = (across[0] / length, across[1] / length, across[2] / length)
+    first: Vector = (graph.lift(across[0]) / length, graph.lift(across[1]) / length, graph.lift(across[2]) / length)
     return first, cross(unit, first), unit

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from substructures.expr.program import Symbol
-from substructures.mechanics.inertia import Inertia
+from substructures.expr.operations import Symbol
+from substructures.mechanics.composite_form import Inertia
 from substructures.part.mechanism import Mechanism
 
 UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
@@ -11,10 +11,10 @@ UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
 
 def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
     """Ten symbols for every carrier of a named body; nothing for the massless bodies inside compound joints."""
-    graph, bodies = m.graph, m.skeleton.carrier
-    name = {carrier: body for body, carrier in reversed(bodies.items())}
+    graph, name = m.graph, m.topology.body_of
     result = []
     for k in range(len(m.joints)):
+        # a link inside a compound joint has neither mass nor moments
         if k not in name:
             result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
             continue

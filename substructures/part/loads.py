@@ -12,12 +12,11 @@ from fractions import Fraction
 
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub, transpose
+from substructures.mechanics.newton_euler import Wrench
 from substructures.part.definition import Definition, ForceLoad, JointLoad, SpringLoad, TorqueLoad
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
-from substructures.part.scope import Scope
-
-Lookup = Callable[[str], Expr | None]
+from substructures.part.scope import Lookup, Scope
 
 
 @dataclass(frozen=True)
@@ -80,9 +79,10 @@ def read_loads(m: Mechanism) -> Loads:
 
 def load_names(scope: Scope, m: Mechanism) -> Lookup:
     """Names for load expressions; a symbol is declared when it is first used."""
-    coordinates = set(m.skeleton.coordinates)
+    coordinates = set(m.topology.coordinates)
 
     def lookup(name: str) -> Expr | None:
+        """Parameters, then the time, inputs, coordinates and velocities."""
         if name in scope.names:
             return scope.names[name]
         if name == "t":
@@ -92,7 +92,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
         if name in coordinates:
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:
-            return velocity(m, m.skeleton.coordinates.index(name[:-1]))
+            return velocity(m, m.topology.coordinates.index(name[:-1]))
         return None
 
     return lookup
@@ -100,7 +100,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
 
 def velocity(m: Mechanism, a: int) -> Expr:
     """The symbol of q'^a."""
-    joint = m.skeleton.joints[a]
+    joint = m.topology.joints[a]
     return m.scope.declare(f"{joint.coordinate}'", "velocity", "m/s" if joint.s else "rad/s")
 
 
@@ -115,12 +115,13 @@ def _wrench(m: Mechanism, load: ForceLoad | TorqueLoad, pointer: str, lookup: Lo
     frame = _frame(m, load.body, f"{pointer}/body")
     if frame is None:
         return []
-    vector = m.scope.vector(load.vector, f"{pointer}/vector", lookup)
+    vector: Vector = m.scope.vector(load.vector, f"{pointer}/vector", lookup)
     at = ZERO
     if isinstance(load, ForceLoad):
         at = frame.point(m.scope.vector(load.at, f"{pointer}/at"))
     world = load.frame == "world"
     if not world:
+        # from the axes of the body to those of its carrier: E^T v
         vector = apply(transpose(frame.E), vector)
     return [AppliedWrench(frame.carrier, isinstance(load, TorqueLoad), world, at, vector)]
 
@@ -138,10 +139,10 @@ def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> lis
 
 
 def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
-    if load.coordinate not in m.skeleton.coordinates:
+    if load.coordinate not in m.topology.coordinates:
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
         return
-    a = m.skeleton.coordinates.index(load.coordinate)
+    a = m.topology.coordinates.index(load.coordinate)
     forces[a] = forces.get(a, m.graph.zero) + m.scope.read(load.force, f"{pointer}/force", lookup)
 
 
@@ -160,8 +161,9 @@ def applied_forces(
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
     potential = zero
-    for a, (law, entry) in enumerate(zip(m.laws, m.skeleton.joints, strict=True)):
+    for a, (law, entry) in enumerate(zip(m.laws, m.topology.joints, strict=True)):
         q = m.graph.symbol(entry.coordinate)
+        # Q_a = tau_a - k (q - rest) - c q',   V = k (q - rest)^2 / 2
         stretch = q - law.rest
         tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
         forces[a] = forces[a] + tau - law.stiffness * stretch
@@ -179,28 +181,32 @@ def _spring_force(
 ) -> Expr:
     """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
     start, end = (point(*e) for e in spring.ends)
+    # x = r_to - r_from,   w_a = x . (u_to,a - u_from,a),   l l' = w_a q'^a
     x = sub(end.position, start.position)
-    reach = {a: dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO))) for a in {**start.u, **end.u}}
-    length2: Expr = m.graph.zero + dot(x, x)
+    reach = {a: m.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in {**start.u, **end.u}}
+    length2 = m.graph.lift(dot(x, x))
     if length2.is_zero:
         m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
         return m.graph.zero
+    # of a spring without rest length: k, and V = k l^2 / 2
     factor: Expr = spring.stiffness
     energy: Expr = spring.stiffness * length2
     if not spring.length.is_zero:
+        # k (1 - l0/l) in place of k, and V = k (l - l0)^2 / 2
         length = m.graph.sqrt(length2)
         factor = factor - spring.stiffness * spring.length / length
         energy = spring.stiffness * (length - spring.length) ** 2
     if not spring.damping.is_zero:
         speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
+        # c l'/l = c (l l') / l^2
         factor = factor + spring.damping * speed / length2
+    # Q_a = -(k (1 - l0/l) + c l'/l) w_a
     for a, w in reach.items():
         forces[a] = forces[a] - factor * w
     return energy * Fraction(1, 2)
 
 
-def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> tuple[Vector, Vector]:
-    """(force, moment about the carrier's body frame origin)."""
-    if moment:
-        return ZERO, vector
-    return vector, cross(at, vector)
+def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> Wrench:
+    """The wrench of a force at a point, or of a moment, about the carrier's body frame origin."""
+    # n = x x f of a force at x
+    return Wrench(ZERO, vector) if moment else Wrench(vector, cross(at, vector))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Symbol
+from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
-from substructures.mechanics.inertia import Inertia, binet
-from substructures.mechanics.joints import OneDofJoint, lean_rotation
+from substructures.mechanics.composite_form import Inertia, binet
+from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation
 from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
@@ -24,7 +24,7 @@ from substructures.mechanics.linear3 import (
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.scope import Scope, no_names
-from substructures.part.topology import BASE, INTERFACE, JointEntry, Skeleton, skeleton
+from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -44,7 +44,7 @@ class Mechanism:
     """Joints with the inertia of everything fixed to them; frames of bodies and ports."""
 
     definition: Definition
-    skeleton: Skeleton
+    topology: Topology
     scope: Scope
     joints: tuple[OneDofJoint, ...]
     own: tuple[Inertia, ...]  #: own inertia of carrier k about its body frame origin
@@ -62,24 +62,24 @@ class Mechanism:
 
 def mechanism(definition: Definition) -> Mechanism:
     """Read all expressions of a definition. Raises InvalidDocument with a pointer to every fault."""
-    bones = skeleton(definition)
-    scope = _scope(definition, bones)
-    builder = _Builder(definition, bones, scope)
-    for i in bones.order:
+    layout = topology(definition)
+    scope = _scope(definition, layout)
+    builder = _Builder(definition, layout, scope)
+    for i in layout.order:
         builder.add(i, definition.bodies[i])
     ports = {}
     for i, port in enumerate(definition.ports):
         pointer = f"/ports/{i}"
         E = scope.rpy(port.rotation.rpy, f"{pointer}/rotation/rpy").matrix()
-        ports[port.name] = builder.bodies[port.body].mounted(E, scope.vector(port.position, f"{pointer}/position"))
+        ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
     scope.finish()
     return Mechanism(
         definition,
-        bones,
+        layout,
         scope,
         tuple(builder.joints),
-        tuple(builder.own),
-        builder.base,
+        tuple(builder.own[k] for k in range(len(builder.joints))),
+        builder.own[INTERFACE],
         tuple(builder.laws),
         builder.bodies,
         ports,
@@ -87,13 +87,13 @@ def mechanism(definition: Definition) -> Mechanism:
     )
 
 
-def _scope(definition: Definition, bones: Skeleton) -> Scope:
+def _scope(definition: Definition, layout: Topology) -> Scope:
     scope = Scope(Graph())
     for name, parameter in sorted(definition.parameters.items()):
         scope.declare(name, "parameter", parameter.unit)
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)
-    for joint in bones.joints:
+    for joint in layout.joints:
         scope.symbols[joint.coordinate] = _coordinate(joint)
     return scope
 
@@ -105,14 +105,13 @@ def _coordinate(joint: JointEntry) -> Symbol:
 class _Builder:
     """Adds bodies one by one, parents first."""
 
-    def __init__(self, definition: Definition, bones: Skeleton, scope: Scope) -> None:
+    def __init__(self, definition: Definition, layout: Topology, scope: Scope) -> None:
         self.definition, self.scope = definition, scope
         self.entries: dict[int, list[JointEntry]] = {}
-        for entry in bones.joints:
+        for entry in layout.joints:
             self.entries.setdefault(entry.body, []).append(entry)
         self.joints: list[OneDofJoint] = []
-        self.own: list[Inertia] = []
-        self.base = Inertia()
+        self.own = {INTERFACE: Inertia()}
         self.laws: list[JointLaw] = []
         self.central: dict[int, tuple[Expr, Symmetric]] = {}
         self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
@@ -138,13 +137,15 @@ class _Builder:
             if any(not x.is_zero for x in (psi, theta, d, sigma)):
                 message = "give either psi, theta, d, sigma or a placement, not both"
                 self.scope.fault(f"{pointer}/placement", "row-and-placement", message)
+            # A and Z as constants in place of the row
             rotation = self.scope.rpy(joint.placement.rpy, f"{pointer}/placement/rpy")
-            return parent.mounted(
+            return parent.placed(
                 rotation.matrix(), self.scope.vector(joint.placement.position, f"{pointer}/placement/position")
             )
+        # A = Rx(theta)^T Rz(psi)^T,   (d cos psi, d sin psi, sigma)
         c, s = cos_sin(psi)
         E = Rotation((Planar(2, c, s), Planar(0, *cos_sin(theta)))).matrix()
-        return parent.mounted(E, (d * c, d * s, sigma))
+        return parent.placed(E, (d * c, d * s, sigma))
 
     def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
         """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
@@ -152,7 +153,7 @@ class _Builder:
             if getattr(body.joint, name) not in (0, None):
                 self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
-        return frame.mounted(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
+        return frame.placed(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
 
     def _axis(self, body: Body, pointer: str) -> Matrix:
         """E from the placed frame to the frame whose third axis is the joint axis."""
@@ -171,10 +172,11 @@ class _Builder:
         q = self.scope.graph.symbol(entry.coordinate)
         phi, tau = self._offsets(entry, body, pointer)
         constant = multiply(turned, frame.E)
+        # revolute: phi = q + phi0, tau constant;   prismatic: tau = q + tau0, phi constant
         phi, tau = (phi, q + tau) if entry.s else (q + phi, tau)
-        rotation = lean_rotation(constant, *cos_sin(phi))
+        rotation = joint_rotation(constant, *cos_sin(phi))
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
-        self.own.append(Inertia())
+        self.own[len(self.joints) - 1] = Inertia()
         self.laws.append(self._law(entry, body, pointer))
         self._limits(entry, body, pointer)
         return Frame(len(self.joints) - 1, transpose(turned), ZERO)
@@ -220,14 +222,13 @@ class _Builder:
         xx, yy, zz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xx", "yy", "zz"))
         xy, xz, yz = (scope.read(getattr(tensor, e), f"{pointer}/inertia/{e}") for e in ("xy", "xz", "yz"))
         J = binet((xx, yy, zz, xy, xz, yz))
+        # J = J_C + m h h^T, s = m h about the body frame origin
         if tensor.about == "com":
             inertia = Inertia(mass, ZERO, J).shifted(com)
         else:
             inertia = Inertia(mass, scale(mass, com), J)
-            J = Inertia(-mass, ZERO, J).shifted(com).J  # J about the mass centre: J - m h h^T
+            # J_C = J - m h h^T
+            J = Inertia(-mass, ZERO, J).shifted(com).J
         self.central[i] = mass, J
-        moved = inertia.turned_back(Rotation((Turn(frame.E),))).shifted(frame.position)
-        if frame.carrier == INTERFACE:
-            self.base = self.base + moved
-        else:
-            self.own[frame.carrier] = self.own[frame.carrier] + moved
+        moved = inertia.in_parent(Rotation((Turn(frame.E),)), frame.position)
+        self.own[frame.carrier] = self.own[frame.carrier] + moved

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.base_functions import base_functions
-from substructures.mechanics.inertia import composites
-from substructures.mechanics.joints import links
+from substructures.mechanics.composite_form import composites, joint_momentum
+from substructures.mechanics.kinematics import INTERFACE, base_functions, links
 from substructures.mechanics.linear3 import Vector, dot
-from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
 from substructures.part.definition import Definition
+from substructures.part.formulas import own_dynamics
 from substructures.part.mechanism import Mechanism, mechanism
 
 
@@ -27,24 +26,13 @@ def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = 
 
 
 def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
-    """The outputs metric, christoffel and gravity."""
+    """The outputs metric, christoffel and gravity; ``gravity``: acceleration in base axes, expressions."""
     chain = links(m.joints)
-    columns = base_functions(chain)
-    subtree, _ = composites(m.joints, m.own)
-    g: dict[tuple[int, ...], Any] = {}
-    gamma: dict[tuple[int, ...], Any] = {}
-    fields: list[Vector] = []
-    Q = []
+    carried = composites(m.joints, m.own)
+    momenta = [joint_momentum(link.s, carried[c]) for c, link in enumerate(chain)]
+    outputs = own_dynamics(m, base_functions(chain), momenta)
+    gamma = {INTERFACE: gravity}
     for c, link in enumerate(chain):
-        momentum = joint_momentum(link.s, subtree[c])
-        g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
-        g[c, c] = g[c, c] + m.laws[c].armature
-        gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
-        fields.append(link.rotation.forward(fields[link.parent] if link.parent >= 0 else gravity))
-        Q.append(dot(fields[c], momentum.p))
-    n = len(chain)
-    return {
-        "metric": Formulas((n, n), g, "symmetric"),
-        "christoffel": Formulas((n, n, n), gamma, "christoffel"),
-        "gravity": array((n,), lambda c: Q[c]),
-    }
+        gamma[c] = link.rotation.forward(gamma[link.parent])
+    # Q_c = gamma_c . p_c
+    return outputs | {"gravity": array((len(chain),), lambda c: dot(gamma[c], momenta[c].p))}

@@ -1,28 +1,40 @@
-"""Vectors, tensors, inertias and rotations out of replayed (or evaluated) outputs of a stored program."""
+"""What the stored program of a part gives for values of its symbols: over formulas, floats or arrays alike."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from substructures.expr.program import Formulas
-from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.linear3 import Matrix, Planar, Rotation, S, Turn, Vector, packed
+from substructures.expr.graph import Graph
+from substructures.expr.program import Formulas, Program
+from substructures.expr.program import program as collect
+from substructures.expr.replay import replay
+from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.kinematics import INTERFACE
+from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, packed
+from substructures.part.part import Part
+
+#: outputs with the own inertia of all carriers
+OWN_INERTIA = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J")
 
 
 @dataclass(frozen=True)
-class Stored:
-    """Access by output name and index; entries that are structurally zero are the integer 0."""
+class PartOutputs:
+    """Outputs by name; elements that are structurally zero are the integer 0."""
 
-    outputs: Mapping[str, Formulas]
+    formulas: Mapping[str, Formulas]
 
-    def scalar(self, name: str, *index: int) -> S:
+    def entries(self, name: str) -> Mapping[tuple[int, ...], Scalar]:
+        """The elements of an output that are not structurally zero."""
+        return self.formulas[name].entries
+
+    def scalar(self, name: str, *index: int) -> Scalar:
         """One element."""
-        return self.outputs[name].entries.get(index, 0)
+        return self.formulas[name].entries.get(index, 0)
 
     def vector(self, name: str, *index: int) -> Vector:
         """The last axis at an index."""
-        get = self.outputs[name].entries.get
+        get = self.formulas[name].entries.get
         return get((*index, 0), 0), get((*index, 1), 0), get((*index, 2), 0)
 
     def matrix(self, name: str, *index: int) -> Matrix:
@@ -31,17 +43,61 @@ class Stored:
 
     def inertia(self, name: str, *index: int) -> Inertia:
         """m, s and J."""
+        # stored as a full matrix (J_ij = J_ji), used as six entries
         tensor = packed(self.matrix(f"{name}.J", *index))
         return Inertia(self.scalar(f"{name}.m", *index), self.vector(f"{name}.s", *index), tensor)
 
+    def own_inertia(self, carrier: int) -> Inertia:
+        """What the definition fixes in a carrier, about its body frame origin (of the interface: about its own)."""
+        return self.inertia("base") if carrier == INTERFACE else self.inertia("inertia", carrier)
+
     def rotation(self, c: int) -> Rotation:
         """E_c by its factors."""
-        full = self.outputs["E.full"].entries
+        # E = Ehat(phi + psi), or Ehat(phi) Rx(theta)^T (turn and tilt), or one full matrix
+        full = self.formulas["E.full"].entries
         if any((c, i, j) in full for i in range(3) for j in range(3)):
             return Rotation((Turn(self.matrix("E.full", c)),))
         factors = []
         for axis, name in ((0, "E.tilt"), (2, "E.turn")):
             cosine, sine = self.scalar(name, c, 0), self.scalar(name, c, 1)
-            if (c, 0) in self.outputs[name].entries or (c, 1) in self.outputs[name].entries:
+            if (c, 0) in self.formulas[name].entries or (c, 1) in self.formulas[name].entries:
                 factors.append(Planar(axis, cosine, sine))
         return Rotation(tuple(factors))
+
+
+#: runs the stored program of a part: the named outputs for values of its symbols, over the scalars of these values
+Run = Callable[[Part, Mapping[str, Scalar], Sequence[str]], PartOutputs]
+
+
+def over_formulas(graph: Graph) -> Run:
+    """Stored programs as formulas in a graph; symbols without a value stand for themselves."""
+
+    def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+        """Replay in the graph."""
+        lifted = {name: graph.lift(x) for name, x in bindings.items()}
+        return PartOutputs(replay(part.program, graph, lifted, names))
+
+    return run
+
+
+def inertia_bindings(part: Part, inertias: Mapping[int, Inertia]) -> dict[str, Scalar]:
+    """Values of the ten inertia symbols of every carrier that has them."""
+    bindings: dict[str, Scalar] = {}
+    for carrier, symbols in part.inertia_symbols.items():
+        inertia = inertias[carrier]
+        bindings |= zip(symbols, (inertia.m, *inertia.s, *inertia.J), strict=True)
+    return bindings
+
+
+def with_own_inertia(part: Part, program: Program) -> Program:
+    """A program of stored formulas as they are for the part alone, with nothing mounted on it.
+
+    The inertia symbols stand for the inertia of every body with whatever is mounted on it; binding the own values
+    alone folds the program to its shortest form (notation.md, section 6).
+    """
+    graph = Graph()
+    own = over_formulas(graph)(part, {}, OWN_INERTIA)
+    bindings = inertia_bindings(part, {carrier: own.own_inertia(carrier) for carrier in part.inertia_symbols})
+    known = {symbol.name: symbol for symbol in part.program.symbols}
+    lifted = {name: graph.lift(x) for name, x in bindings.items()}
+    return collect(graph, replay(program, graph, lifted), known)

@@ -9,14 +9,15 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.program import Output, Program, program
+from substructures.expr.operations import Output
+from substructures.expr.program import Program, program
 from substructures.part.certificate import certify_part
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import read_loads, wrench_places
 from substructures.part.mechanism import mechanism
-from substructures.part.topology import BASE, Skeleton, christoffel_entries, skeleton
+from substructures.part.topology import BASE, Topology, christoffel_entries, topology
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -55,9 +56,9 @@ class Part:
         return cls(definition, Program.from_bytes(program_bytes), certificate)
 
     @cached_property
-    def skeleton(self) -> Skeleton:
+    def topology(self) -> Topology:
         """Names and topology."""
-        return skeleton(self.definition)
+        return topology(self.definition)
 
     @property
     def name(self) -> str:
@@ -67,22 +68,22 @@ class Part:
     @property
     def dof(self) -> int:
         """Number of coordinates."""
-        return len(self.skeleton.joints)
+        return len(self.topology.joints)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Coordinate names."""
-        return self.skeleton.coordinates
+        return self.topology.coordinates
 
     @property
     def bodies(self) -> tuple[str, ...]:
         """Names of the bodies, the interface frame ``base`` not included."""
-        return tuple(name for name in self.skeleton.carrier if name != BASE)
+        return tuple(name for name in self.topology.carrier if name != BASE)
 
     @property
     def joints(self) -> str:
         """'R' or 'P' for every coordinate."""
-        return self.skeleton.kinds
+        return self.topology.kinds
 
     @property
     def ports(self) -> tuple[str, ...]:
@@ -92,24 +93,24 @@ class Part:
     @property
     def frames(self) -> tuple[str, ...]:
         """All frames something can be mounted on, in the order of the outputs ``frame.*``: bodies, then ports."""
-        return (*self.skeleton.carrier, *self.ports)
+        return (*self.topology.carrier, *self.ports)
 
     @cached_property
     def frame_carriers(self) -> tuple[int, ...]:
         """The carrier of every frame."""
-        carrier = self.skeleton.carrier
+        carrier = self.topology.carrier
         return (*carrier.values(), *(carrier[port.body] for port in self.definition.ports))
 
     @cached_property
     def wrenches(self) -> tuple[tuple[int, bool, bool], ...]:
         """(carrier, is a moment, in world axes) of every force and torque load."""
-        return wrench_places(self.definition, self.skeleton.carrier)
+        return wrench_places(self.definition, self.topology.carrier)
 
     @cached_property
     def inertia_symbols(self) -> dict[int, tuple[str, ...]]:
         """The ten inertia symbols of every carrier that has them."""
-        name = {carrier: body for body, carrier in reversed(self.skeleton.carrier.items()) if carrier >= 0}
-        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in name.items()}
+        names = self.topology.body_of.items()
+        return {k: tuple(symbol for symbol, _ in inertia_names(body)) for k, body in names}
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:
@@ -149,7 +150,7 @@ class Part:
     @cached_property
     def _joint_bodies(self) -> tuple[str, ...]:
         """For every joint the body it carries (the next named one for the links inside a compound joint)."""
-        return tuple(self.definition.bodies[j.body].name for j in self.skeleton.joints)
+        return tuple(self.definition.bodies[j.body].name for j in self.topology.joints)
 
 
 #: what the leading axes of an output mean; the remaining axes are components (or coordinate indices) of one formula
@@ -180,7 +181,8 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     """
     start = perf_counter()
     m = mechanism(definition)
-    entries = christoffel_entries([(j.parent, j.s) for j in m.skeleton.joints])
+    # a definition of 500 bodies may have millions: refused before any work is done
+    entries = christoffel_entries([(j.parent, j.s) for j in m.topology.joints])
     if entries > MAX_ENTRIES:
         raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)
     loads = read_loads(m)

@@ -52,10 +52,11 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
 
 def _checks(m: Mechanism) -> Iterator[_Check]:
     for i, (mass, J) in m.central.items():
+        # J about the mass centre
         full = dense(J)
         yield _Check(i, "mass", array((), lambda mass=mass: mass))
         yield _Check(i, "inertia", array((3, 3), lambda a, b, full=full: full[a][b]))
-    for entry, law in zip(m.skeleton.joints, m.laws, strict=True):
+    for entry, law in zip(m.topology.joints, m.laws, strict=True):
         yield _Check(entry.body, "joint/armature", array((), lambda law=law: law.armature))
 
 
@@ -82,6 +83,7 @@ def _problem(field: str, value: Array) -> PhysicsFault | None:
 
 def _impossible_tensor(binet: Array) -> PhysicsFault | None:
     """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
+    # J_i = (Theta_j + Theta_k - Theta_i) / 2 >= 0,   Theta_i = sum of all J - J_i
     eigenvalues = np.linalg.eigvalsh(binet)
     if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
         return None

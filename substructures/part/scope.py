@@ -9,10 +9,14 @@ from typing import Any
 
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.operations import Symbol
 from substructures.expr.parse import MAX_DIGITS, ExpressionError, decimal_number, parse
-from substructures.expr.program import Symbol
 from substructures.expr.trigonometry import cos_sin
-from substructures.mechanics.linear3 import Planar, Rotation, Vector
+from substructures.mechanics.linear3 import Planar, Rotation
+
+#: a name to what it stands for; None for one that is not known
+Lookup = Callable[[str], Expr | None]
+ExprVector = tuple[Expr, Expr, Expr]
 
 
 def no_names(_name: str) -> Expr | None:
@@ -47,7 +51,7 @@ class Scope:
         if self.faults:
             raise InvalidDocument(self.faults)
 
-    def read(self, value: Any, pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Expr:
+    def read(self, value: Any, pointer: str, lookup: Lookup | None = None) -> Expr:
         """An exact number, or an expression in the known names; zero after a fault."""
         try:
             if isinstance(value, str):
@@ -66,13 +70,14 @@ class Scope:
             self.fault(pointer, "too-large", str(error))
         return self.graph.zero
 
-    def vector(self, values: Sequence[Any], pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Vector:
+    def vector(self, values: Sequence[Any], pointer: str, lookup: Lookup | None = None) -> ExprVector:
         """Three numbers or expressions."""
         x, y, z = (self.read(v, f"{pointer}/{i}", lookup) for i, v in enumerate(values))
         return x, y, z
 
-    def rpy(self, values: Sequence[Any], pointer: str, lookup: Callable[[str], Expr | None] | None = None) -> Rotation:
+    def rpy(self, values: Sequence[Any], pointer: str, lookup: Lookup | None = None) -> Rotation:
         """E of a frame turned by fixed-axis roll, pitch, yaw: v' = Rx(roll)^T Ry(pitch)^T Rz(yaw)^T v."""
+        # the factors of E = Rx(roll)^T Ry(pitch)^T Rz(yaw)^T from the right; a turn by zero is left out
         angles = self.vector(values, pointer, lookup)
         factors = ((2, angles[2]), (1, angles[1]), (0, angles[0]))
         return Rotation(tuple(Planar(axis, *cos_sin(angle)) for axis, angle in factors if not angle.is_zero))

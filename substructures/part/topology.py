@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.parse import RESERVED
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Body, Definition
 
 BASE = "base"
-INTERFACE = -1  #: carrier index of everything that is fixed to the interface frame
 
 #: (kind, axis of the frame before the joint) of every one degree of freedom joint in a joint type, in order.
 #: ``spherical`` is yaw, pitch, roll (about the third, the new second, the new first axis); singular at pitch = +-pi/2.
@@ -40,7 +40,7 @@ class JointEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class Skeleton:
+class Topology:
     """Joints in order (parents first), the carrier of every named body (-1: interface) and the order of the bodies."""
 
     joints: tuple[JointEntry, ...]
@@ -51,6 +51,11 @@ class Skeleton:
     def coordinates(self) -> tuple[str, ...]:
         """Coordinate names in order."""
         return tuple(j.coordinate for j in self.joints)
+
+    @property
+    def body_of(self) -> dict[int, str]:
+        """The body by which every moving carrier goes, the first one on it; none inside compound joints."""
+        return {carrier: body for body, carrier in reversed(self.carrier.items()) if carrier != INTERFACE}
 
     @property
     def kinds(self) -> str:
@@ -65,12 +70,13 @@ def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
     """
     paths: list[tuple[int, int]] = []
     for parent, s in joints:
+        # of every path to c: its length, and how many revolute joints are on it (Gamma_abc = 0 for prismatic b < c)
         length, turning = paths[parent] if parent >= 0 else (0, 0)
         paths.append((length + 1, turning + 1 - s))
     return sum(length * turning for length, turning in paths)
 
 
-def skeleton(definition: Definition) -> Skeleton:
+def topology(definition: Definition) -> Topology:
     """Names and topology. Raises InvalidDocument: unknown parents, cycles, duplicate, reserved or missing names."""
     faults = _name_faults(definition)
     order, more = _order(definition)
@@ -89,7 +95,7 @@ def skeleton(definition: Definition) -> Skeleton:
     faults += _coordinate_faults(definition, joints)
     if faults:
         raise InvalidDocument(faults)
-    return Skeleton(tuple(joints), carrier, tuple(order))
+    return Topology(tuple(joints), carrier, tuple(order))
 
 
 def _name_faults(definition: Definition) -> list[Fault]:

@@ -56,7 +56,7 @@ def _pose(parts: Mapping[str, Part], model: Model) -> list[float]:
     """A little beyond the middle of the limits; a fixed angle or distance for joints without limits."""
     pose = {}
     for name, part in parts.items():
-        for joint in part.skeleton.joints:
+        for joint in part.topology.joints:
             limits: Any = part.definition.bodies[joint.body].joint.limits
             if limits and isinstance(limits[0], tuple):
                 limits = limits[joint.step]
@@ -89,7 +89,7 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _
         for port in part.definition.ports:
             scene.lines.append((f"{name}.{port.body}", f"{name}.{port.name}", colour))
             scene.ports.append((f"{name}.{port.name}", colour))
-        for joint in part.skeleton.joints:
+        for joint in part.topology.joints:
             frame = f"{name}.{part.definition.bodies[joint.body].name}"
             a = model.coordinates.index(f"{name}.{joint.coordinate}")
             column = kinematics["U" if joint.s else "Omega"][index[frame], a]

@@ -110,7 +110,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     return r.program({FD: vector(found), "pivots": vector(pivots), f"{FD}_derivative": vector(result)})
 
 
-def _factors(r: Replayed, max_nodes: int) -> tuple[Factors, list[Expr]]:
+def _factors(r: Replayed, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
     """L and D of the metric, and D_k / |g_kk|."""
     size = factor_operations(r.n, r.model.program.outputs["metric"].index)
     if size > max_nodes:
@@ -123,6 +123,6 @@ def _factors(r: Replayed, max_nodes: int) -> tuple[Factors, list[Expr]]:
     return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
 
 
-def _accelerations(r: Replayed, factors: Factors) -> list[Expr]:
+def _accelerations(r: Replayed, factors: Factors[Expr]) -> list[Expr]:
     """g x = -ID at q'' = 0."""
     return factors.solve([-x for x in r.inverse_dynamics([r.graph.zero] * r.n)])

@@ -18,18 +18,19 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.errors import MissingValue
+from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
-from substructures.mechanics.linear3 import S
-from substructures.part.outputs import Stored
+from substructures.mechanics.linear3 import Scalar
+from substructures.part.outputs import PartOutputs, Run
 from substructures.part.part import Part
 from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
 from substructures.quantities.states import default_number
 from substructures.tree.assembly import assemble
-from substructures.tree.coupling import ASKED, Run, couple_parts
+from substructures.tree.coupling import ASKED, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import model_outputs
-from substructures.tree.mounted_part import Mounted
+from substructures.tree.mounted_part import MountedPart
 
 Scalars = list[Any]
 #: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
@@ -97,7 +98,7 @@ class NumericTree:
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
-            bound = {name: x for name, x in m.bindings.items() if getattr(x, "op", "") != "sym"}
+            bound = {name: x for name, x in m.bindings.items() if not (isinstance(x, Expr) and x.op == "sym")}
             outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in bound.items()}
         return program(self.assembly.scope.graph, outputs, self.assembly.scope.symbols)
 
@@ -137,7 +138,7 @@ class NumericTree:
         given = {**self._rest, **values}
         found = interpret_entries(self._constants, given, self._constants.outputs)
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
-        mounted = [_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted)]
+        mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]))
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
@@ -149,12 +150,12 @@ class NumericTree:
             self._layout(name, outputs[name]).fill(list(outputs[name].entries.values()), out)
 
     def _run(self) -> Run:
-        def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+        def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
             values = {name: plain(x) for name, x in bindings.items()}
             found, outputs = self.engine(part.program, values, names), part.program.outputs
             if any(map(is_array, values.values())):
                 found = self._in_lanes(part.program, values, found)
-            return Stored({n: _formulas(outputs[n], found[n]) for n in names})
+            return PartOutputs({n: _formulas(outputs[n], found[n]) for n in names})
 
         return run
 
@@ -222,20 +223,19 @@ def _filled(output: Output, values: Scalars) -> Scalars:
     return [known.get(index, 0) for index in product(*map(range, output.shape))]
 
 
-def _numeric(m: Mounted, k: int, numbers: Mapping[str, Scalars], given: Mapping[str, Any]) -> Mounted:
+def _numeric(m: MountedPart, k: int, numbers: Mapping[str, Scalars], given: Mapping[str, Any]) -> MountedPart:
     """A mounted part with numbers in place of the expressions of the tree; exact integers stay what they are."""
     E = [_kept(x, number) for x, number in zip(sum(m.E, ()), numbers[f"E.{k}"], strict=True)]
     x, y, z = (_kept(*pair) for pair in zip(m.position, numbers[f"position.{k}"], strict=True))
     try:
         bindings = {
-            name: numbers[f"{k}:{name}"][0] if f"{k}:{name}" in numbers else lanes(given[x.value])
+            name: lanes(given[x.value]) if isinstance(x, Expr) and x.op == "sym" else numbers[f"{k}:{name}"][0]
             for name, x in m.bindings.items()
         }
     except KeyError as error:
         raise MissingValue(str(error.args[0])) from None
-    return Mounted(
-        m.part, m.host, m.frame, ((E[0], E[1], E[2]), (E[3], E[4], E[5]), (E[6], E[7], E[8])), (x, y, z), bindings
-    )
+    rotation = ((E[0], E[1], E[2]), (E[3], E[4], E[5]), (E[6], E[7], E[8]))
+    return replace(m, E=rotation, position=(x, y, z), bindings=bindings)
 
 
 def _kept(x: Any, number: Any) -> Any:

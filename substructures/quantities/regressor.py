@@ -25,24 +25,22 @@ from substructures.array import Array
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.base_functions import Columns, carried
-from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.joints import lean_rotation
-from substructures.mechanics.linear3 import S, negate, transpose
-from substructures.mechanics.metric import pairing
+from substructures.mechanics.composite_form import Inertia, pairing
+from substructures.mechanics.kinematics import INTERFACE, Columns, constant_rotation, from_body
+from substructures.mechanics.linear3 import Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
-from substructures.part.outputs import Stored
+from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.part.topology import BASE, INTERFACE
+from substructures.part.topology import BASE
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.closures import ClosureRows
-from substructures.tree.coupling import OWN, Run, couple_parts, over_formulas
+from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.inverse_dynamics import body_motions, from_body
+from substructures.tree.inverse_dynamics import body_motions
 from substructures.tree.model import Model, rate_symbols
-from substructures.tree.mounted_part import Mounted, State, frame_link
+from substructures.tree.mounted_part import MountedPart, PlacedPart
 
 OUTPUTS = ("regressor", "inertial_parameters")
 
@@ -111,7 +109,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     n = sum(m.part.dof for m in assembly.mounted)
     try:
         links = _links(over_formulas(assembly.scope.graph), assembly)
-        Y: dict[tuple[int, ...], S] = {
+        Y: dict[tuple[int, ...], Scalar] = {
             (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
         }
         pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
@@ -134,11 +132,11 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     )
 
 
-def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, Mounted]]:
+def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, MountedPart]]:
     return zip(assembly.instances, assembly.mounted, strict=True)
 
 
-def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
+def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, Scalar]]]]:
     """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
     for i in range(10):
         m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
@@ -148,39 +146,35 @@ def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, S]]]]:
 
 def _links(run: Run, assembly: Assembly) -> list[_Link]:
     """All links, and their motion in one pass outwards."""
-    states = couple_parts(_bare(run), assembly.mounted, assembly.gravity).states
-    motions = body_motions(assembly.mounted, states, *rate_symbols(assembly))
+    placed = couple_parts(_bare(run), assembly.mounted, assembly.gravity).placed
+    motions = body_motions(placed, *rate_symbols(assembly))
     result: list[_Link] = []
-    for (instance, m), state, own_motions in zip(_pairs(assembly), states, motions, strict=True):
+    for (instance, m), here, own_motions in zip(_pairs(assembly), placed, motions, strict=True):
         own = run(m.part, m.bindings, OWN)
-        frames = list(m.part.skeleton.carrier)
+        frames = list(m.part.topology.carrier)
         named = {c: symbols[0].removesuffix(".m") for c, symbols in sorted(m.part.inertia_symbols.items())}
-        if state.outside and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
+        if here.columns[INTERFACE] and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
             named[INTERFACE] = BASE
         result += [
-            _link(f"{instance.name}.{body}", m, state, frames.index(body), own, own_motions) for body in named.values()
+            _link(f"{instance.name}.{body}", here, frames.index(body), own, own_motions) for body in named.values()
         ]
     return result
 
 
-def _link(name: str, m: Mounted, state: State, frame: int, own: Stored, motions: Sequence[BodyMotion]) -> _Link:
+def _link(name: str, here: PlacedPart, frame: int, own: PartOutputs, motions: Mapping[int, BodyMotion]) -> _Link:
     """Inertia, motion and partial velocities of a carrier, in the frame of the body it is named by."""
-    link = frame_link(m, state, frame)
-    c = link.parent
-    inertia = own.inertia("base") if c == INTERFACE else own.inertia("inertia", c)
-    E, r = state.stored.matrix("frame.E", frame), state.stored.vector("frame.position", frame)
-    inertia = inertia.shifted(negate(r)).turned_back(lean_rotation(transpose(E), 1, 0))
-    source = state.outside if c == INTERFACE else state.columns[c]
-    slides = m.first + c if c != INTERFACE and state.links[c].s else None
-    columns = {a: carried(twist, link, a == slides) for a, twist in source.items()}
-    return _Link(name, inertia, motions[c].at(from_body(state, c, link.Z), link.rotation), columns)
+    link = here.frame_link(frame)
+    E, r = here.outputs.matrix("frame.E", frame), here.outputs.vector("frame.position", frame)
+    inertia = own.own_inertia(link.parent).shifted(negate(r)).turned_back(constant_rotation(transpose(E)))
+    columns = here.columns_beyond(link)
+    return _Link(name, inertia, motions[link.parent].at(from_body(here.links, link), link.rotation), columns)
 
 
 def _bare(run: Run) -> Run:
     """Parts without mass and loads: coupling them gives the kinematics, and the rest is zero at once."""
 
-    def massless(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
+    def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
         found = run(part, bindings, [name for name in names if name not in DYNAMIC])
-        return Stored({**found.outputs, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
+        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
 
     return massless

@@ -7,28 +7,29 @@ from dataclasses import dataclass
 
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Symbol
+from substructures.expr.operations import Symbol
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
+from substructures.part.definition import Placement
 from substructures.part.frames import axis_rotation
+from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
-from substructures.part.topology import INTERFACE
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
-from substructures.tree.coupling import over_formulas
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.mounted_part import WORLD, Mounted
+from substructures.tree.mounted_part import WORLD, MountedPart
 
 
-@dataclass
+@dataclass(frozen=True)
 class Assembly:
     """Everything coupling needs, with the symbols and parameters of the tree."""
 
     scope: Scope
-    instances: list[Instance]  #: hosts first
-    mounted: list[Mounted]
+    instances: tuple[Instance, ...]  #: hosts first
+    mounted: tuple[MountedPart, ...]
     gravity: Vector
     parameters: dict[str, dict[str, object]]
-    cuts: list[Cut]
+    cuts: tuple[Cut, ...]
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -60,12 +61,18 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    mounted = [_mount(spec, i, parts, scope, place, bound) for i in order]
+    reading = _Reading(spec, parts, scope, place, bound)
+    mounted: list[MountedPart] = []
+    first = 0
+    for i in order:
+        mounted.append(reading.mounted(i, first))
+        first += mounted[-1].part.dof
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
-    cuts = [_cut(spec, i, parts, scope, place, bound) for i in range(len(spec.closures))]
+    cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
-    return Assembly(scope, [spec.instances[i] for i in order], mounted, gravity, left, cuts)
+    instances = tuple(spec.instances[i] for i in order)
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts)
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -147,6 +154,7 @@ class _Bindings:
         if name not in self.given:
             return self.scope.names.get(name)
         value, pointer = self.given[name]
+        # a parameter bound to itself over others, or so many of them that reading would nest too deeply
         if name in self.open or len(self.open) > 50:
             self.scope.fault(pointer, "cycle", f"the binding of '{name}' refers to itself")
             return self.scope.graph.zero
@@ -156,79 +164,90 @@ class _Bindings:
         return self.values[name]
 
 
-def _mount(
-    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
-) -> Mounted:
-    instance, part = spec.instances[i], parts[spec.instances[i].name]
-    host, frame = _frame(instance.at, f"/instances/{i}/at", parts, scope, place)
-    pointer = f"/instances/{i}/placement"
-    E = scope.rpy(instance.placement.rpy, f"{pointer}/rpy", bound.lookup).matrix()
-    position = scope.vector(instance.placement.position, f"{pointer}/position", bound.lookup)
-    return Mounted(part, host, frame, E, position, _symbols(instance.name, part, scope, bound))
+@dataclass(frozen=True)
+class _Reading:
+    """What instances and closures are read with; ``place``: index of an instance, by name, hosts first."""
+
+    spec: TreeSpec
+    parts: Mapping[str, Part]
+    scope: Scope
+    place: Mapping[str, int]
+    bound: _Bindings
+
+    def placement(self, placement: Placement, pointer: str) -> tuple[Matrix, Vector]:
+        """E and position, both constant."""
+        E = self.scope.rpy(placement.rpy, f"{pointer}/rpy", self.bound.lookup).matrix()
+        return E, self.scope.vector(placement.position, f"{pointer}/position", self.bound.lookup)
+
+    def frame(self, at: str, pointer: str) -> tuple[int, int]:
+        """Index of an instance (or WORLD) and of its frame, for ``world`` or ``instance.frame``."""
+        if at == "world":
+            return WORLD, 0
+        name, frame = at.split(".")
+        if name not in self.place:
+            self.scope.fault(pointer, "unknown-instance", f"unknown instance '{name}'")
+            return WORLD, 0
+        frames = self.parts[name].frames
+        if frame not in frames:
+            known = ", ".join(frames)
+            self.scope.fault(pointer, "unknown-port", f"'{name}' has no port or body '{frame}'; it has {known}")
+            return self.place[name], 0
+        return self.place[name], frames.index(frame)
+
+    def mounted(self, i: int, first: int) -> MountedPart:
+        """An instance of the document; ``first``: index of its first coordinate."""
+        instance = self.spec.instances[i]
+        part = self.parts[instance.name]
+        host, frame = self.frame(instance.at, f"/instances/{i}/at")
+        E, position = self.placement(instance.placement, f"/instances/{i}/placement")
+        return MountedPart(part, host, frame, E, position, self.symbols(instance.name, part), first)
+
+    def symbols(self, instance: str, part: Part) -> dict[str, Expr]:
+        """What every symbol of a stored program is in the tree (inertia symbols are bound by coupling)."""
+        result: dict[str, Expr] = {}
+        for symbol in part.program.symbols:
+            if symbol.kind == "inertia":
+                continue
+            name = tree_name(instance, symbol.name)
+            value = self.bound.lookup(name) if symbol.kind == "parameter" else None
+            if value is None:
+                self.scope.symbols.setdefault(name, Symbol(name, symbol.kind, symbol.unit))
+                value = self.scope.graph.symbol(name)
+            result[symbol.name] = value
+        return result
+
+    def cut(self, i: int) -> Cut:
+        """A closure of the document with its frames; the third axes of both ends are the joint axis."""
+        closure, pointer, scope = self.spec.closures[i], f"/closures/{i}", self.scope
+        if any(other.name == closure.name for other in self.spec.closures[:i]):
+            scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
+        axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
+        E, position = self.placement(closure.placement, f"{pointer}/placement")
+        # the placement is in the frame ``to``; both ends are turned so that their third axis is the joint axis
+        start = ClosureEnd(*self.frame(closure.from_, f"{pointer}/from"), axis, ZERO)
+        end = ClosureEnd(*self.frame(closure.to, f"{pointer}/to"), multiply(axis, E), position)
+        length = scope.graph.zero
+        if closure.length is not None:
+            length = scope.read(closure.length, f"{pointer}/length", self.bound.lookup)
+            if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
+                scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
+        rows = ClosureRows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
+        return Cut(rows, start, end, length)
 
 
-def _frame(at: str, pointer: str, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int]) -> tuple[int, int]:
-    """Index of an instance (or WORLD) and of its frame, for ``world`` or ``instance.frame``."""
-    if at == "world":
-        return WORLD, 0
-    name, frame = at.split(".")
-    if name not in place:
-        scope.fault(pointer, "unknown-instance", f"unknown instance '{name}'")
-        return WORLD, 0
-    frames = parts[name].frames
-    if frame not in frames:
-        known = ", ".join(frames)
-        scope.fault(pointer, "unknown-port", f"'{name}' has no port or body '{frame}'; it has {known}")
-        return place[name], 0
-    return place[name], frames.index(frame)
-
-
-def _cut(
-    spec: TreeSpec, i: int, parts: Mapping[str, Part], scope: Scope, place: Mapping[str, int], bound: _Bindings
-) -> Cut:
-    """A closure of the document with its frames; the third axes of both ends are the joint axis."""
-    closure, pointer = spec.closures[i], f"/closures/{i}"
-    if any(other.name == closure.name for other in spec.closures[:i]):
-        scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
-    axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
-    E = scope.rpy(closure.placement.rpy, f"{pointer}/placement/rpy", bound.lookup).matrix()
-    position = scope.vector(closure.placement.position, f"{pointer}/placement/position", bound.lookup)
-    start = ClosureEnd(*_frame(closure.from_, f"{pointer}/from", parts, scope, place), axis, ZERO)
-    end = ClosureEnd(*_frame(closure.to, f"{pointer}/to", parts, scope, place), multiply(axis, E), position)
-    length = scope.graph.zero
-    if closure.length is not None:
-        length = scope.read(closure.length, f"{pointer}/length", bound.lookup)
-        if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
-            scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
-    rows = ClosureRows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
-    return Cut(rows, start, end, length)
-
-
-def _symbols(instance: str, part: Part, scope: Scope, bound: _Bindings) -> dict[str, Expr]:
-    """What every symbol of a stored program is in the tree (inertia symbols are bound by coupling)."""
-    result: dict[str, Expr] = {}
-    for symbol in part.program.symbols:
-        if symbol.kind == "inertia":
-            continue
-        name = tree_name(instance, symbol.name)
-        value = bound.lookup(name) if symbol.kind == "parameter" else None
-        if value is None:
-            scope.symbols.setdefault(name, Symbol(name, symbol.kind, symbol.unit))
-            value = scope.graph.symbol(name)
-        result[symbol.name] = value
-    return result
-
-
-def joint_parents(mounted: Sequence[Mounted]) -> list[tuple[int, int]]:
+def joint_parents(mounted: Sequence[MountedPart]) -> list[tuple[int, int]]:
     """(parent, kind) of every joint of a tree, by index in the tree; hosts come first."""
     result: list[tuple[int, int]] = []
-    first: list[int] = []
+    #: the joint of the tree that carries each interface, or WORLD
     seats: list[int] = []
     for m in mounted:
-        carrier = INTERFACE if m.host == WORLD else mounted[m.host].part.frame_carriers[m.frame]
-        outer = WORLD if m.host == WORLD else seats[m.host]
-        seats.append(outer if carrier == INTERFACE else first[m.host] + carrier)
-        first.append(len(result))
-        joints = m.part.skeleton.joints
-        result += [(seats[-1] if j.parent == INTERFACE else first[-1] + j.parent, j.s) for j in joints]
+        seats.append(WORLD if m.host == WORLD else _joint(mounted[m.host], seats[m.host], m.frame))
+        joints = m.part.topology.joints
+        result += [(seats[-1] if j.parent == INTERFACE else m.first + j.parent, j.s) for j in joints]
     return result
+
+
+def _joint(host: MountedPart, seat: int, frame: int) -> int:
+    """The joint of the tree that carries a frame of a part; ``seat``: the one that carries its interface."""
+    carrier = host.part.frame_carriers[frame]
+    return seat if carrier == INTERFACE else host.first + carrier

@@ -13,11 +13,11 @@ from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
 from substructures.mechanics.direct_form import NumericJoint, direct_form
+from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.certificate import STATES, TOLERANCE, compare, finite_comparison, random_values
 from substructures.part.physics import constants
-from substructures.part.topology import INTERFACE
 from substructures.tree.assembly import Assembly
-from substructures.tree.mounted_part import WORLD, Mounted
+from substructures.tree.mounted_part import WORLD, MountedPart
 
 ROWS = (
     *("E", "Z", "tau", "armature", "inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J"),
@@ -57,8 +57,10 @@ def _comparison(
 ) -> dict[str, Any]:
     joints, armature = _numeric_tree(assembly, values)
     form = direct_form(joints, _gravity(assembly, values))
+    # the direct form knows bodies only: g_cc += armature_c
     form.metric[...] += armature[..., None] * np.eye(len(joints))
     rates = np.stack([values[f"{name}'"] for name in names], axis=-1)
+    # bias_a = Gamma_abc q'^b q'^c
     bias = np.einsum("nabc,nb,nc->na", form.christoffel, rates, rates)
     expected = {"metric": form.metric, "christoffel": form.christoffel, "gravity": form.gravity, "bias": bias}
     return compare(interpret(result, values, list(expected)), expected)
@@ -81,17 +83,18 @@ def _numeric_tree(assembly: Assembly, values: Mapping[str, Array]) -> tuple[list
         rows.append(x)
         if seat.joint >= 0:
             joints[seat.joint] = _with_base(joints[seat.joint], seat, x)
-        for c, j in enumerate(m.part.skeleton.joints):
+        for c, j in enumerate(m.part.topology.joints):
             inertia = (x["inertia.m"][:, c], x["inertia.s"][:, c], x["inertia.J"][:, c])
             E, Z, parent = x["E"][:, c], x["Z"][:, c], m.first + j.parent
             if j.parent == INTERFACE:
+                # from the joint under the interface: Z = z_I + E_I^T Z_c,   E = E_c E_I
                 Z, E, parent = seat.z + np.einsum("nij,ni->nj", seat.E, Z), E @ seat.E, seat.joint
             joints.append(NumericJoint(parent, j.s, E, Z, x["tau"][:, c], *inertia))
             armature.append(x["armature"][:, c])
     return joints, np.stack(armature, axis=1) if armature else np.zeros((STATES, 0))
 
 
-def _part_rows(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> dict[str, Array]:
+def _part_rows(assembly: Assembly, m: MountedPart, values: Mapping[str, Array]) -> dict[str, Array]:
     """Joint rows, inertias and frames of a part from its own stored program, with the bound values of its symbols."""
     graph, symbols = assembly.scope.graph, assembly.scope.symbols
     bound = program(graph, {s: array((), lambda e=e: e) for s, e in m.bindings.items()}, symbols)
@@ -101,7 +104,7 @@ def _part_rows(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> d
     return interpret(m.part.program, numbers, ROWS)
 
 
-def _placement(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> tuple[Array, Array]:
+def _placement(assembly: Assembly, m: MountedPart, values: Mapping[str, Array]) -> tuple[Array, Array]:
     outputs = {"E": array((3, 3), lambda i, j: m.E[i][j]), "z": array((3,), lambda i: m.position[i])}
     x = interpret(program(assembly.scope.graph, outputs, assembly.scope.symbols), values)
     return np.broadcast_to(x["E"], (STATES, 3, 3)), np.broadcast_to(x["z"], (STATES, 3))
@@ -109,7 +112,7 @@ def _placement(assembly: Assembly, m: Mounted, values: Mapping[str, Array]) -> t
 
 def _seat(
     assembly: Assembly,
-    m: Mounted,
+    m: MountedPart,
     seats: list[Seat],
     rows: list[dict[str, Array]],
     joints: list[NumericJoint],
@@ -120,11 +123,13 @@ def _seat(
         return Seat(-1, E, z)
     host, x = assembly.mounted[m.host], rows[m.host]
     E_f, z_f = x["frame.E"][:, m.frame], x["frame.position"][:, m.frame]
+    # in the body frame of the carrier: E E_f,   z_f + E_f^T z
     E, z = E @ E_f, z_f + np.einsum("nij,ni->nj", E_f, z)
     carrier = host.part.frame_carriers[m.frame]
     if carrier == INTERFACE:
         seat = seats[m.host]
         return Seat(seat.joint, E @ seat.E, seat.z + np.einsum("nij,ni->nj", seat.E, z))
+    # from O of the carrier: + tau e3
     z = z.copy()
     z[:, 2] += joints[host.first + carrier].tau
     return Seat(host.first + carrier, E, z)
@@ -132,6 +137,7 @@ def _seat(
 
 def _with_base(joint: NumericJoint, seat: Seat, x: Mapping[str, Array]) -> NumericJoint:
     """The joint's body with the masses fixed to an interface frame added, about the body frame origin."""
+    # (m, s, J) about I in its axes -> E^T s + m z, E^T J E + s z^T + z s^T + m z z^T about the body frame origin
     z = seat.z.copy()
     z[:, 2] -= joint.tau
     m = x["base.m"]

@@ -40,12 +40,12 @@ from typing import Any
 
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas
-from substructures.mechanics.base_functions import Twist
+from substructures.mechanics.kinematics import Columns, Pose, Twist, from_body
 from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
     Matrix,
-    S,
+    Scalar,
     Vector,
     add,
     apply,
@@ -57,8 +57,8 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.newton_euler import BodyMotion
-from substructures.tree.inverse_dynamics import body_motions, from_body
-from substructures.tree.mounted_part import WORLD, Mounted, State, frame_kinematics, frame_link
+from substructures.tree.inverse_dynamics import Motions, body_motions
+from substructures.tree.mounted_part import WORLD, PlacedPart
 
 PLACE = ("x", "y", "z")
 #: the rows of every type of closure; the axis of a joint is the third one
@@ -120,11 +120,10 @@ class Cut:
 
 @dataclass(frozen=True)
 class _Frame:
-    """R: world -> frame; origin in the world; columns and motion at q'' = 0 in the axes of the frame."""
+    """Pose in the world; columns and motion at q'' = 0 in the axes of the frame."""
 
-    R: Matrix
-    r: Vector
-    columns: Mapping[int, Twist]
+    pose: Pose
+    columns: Columns
     motion: BodyMotion
 
 
@@ -141,17 +140,15 @@ class _Relative:
     dw: Vector
 
 
-def closure_formulas(
-    mounted: Sequence[Mounted], states: Sequence[State], cuts: Sequence[Cut], rates: Sequence[S]
-) -> dict[str, Formulas]:
+def closure_formulas(placed: Sequence[PlacedPart], cuts: Sequence[Cut], rates: Sequence[Scalar]) -> dict[str, Formulas]:
     """The outputs of the table above; ``rates``: the velocities of all coordinates."""
-    motions = body_motions(mounted, states, rates)
-    entries: dict[str, dict[tuple[int, ...], Any]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
-    directions: dict[tuple[int, ...], Any] = {}
-    alignment: dict[tuple[int, ...], Any] = {}
+    motions = body_motions(placed, rates)
+    entries: dict[str, dict[tuple[int, ...], Scalar]] = {n: {} for n in ("residual", "jacobian", "acceleration")}
+    directions: dict[tuple[int, ...], Scalar] = {}
+    alignment: dict[tuple[int, ...], Scalar] = {}
     k = 0
     for cut in cuts:
-        frames = [_frame(mounted, states, motions, end) for end in (cut.start, cut.end)]
+        frames = [_frame(placed, motions, end) for end in (cut.start, cut.end)]
         relative = _relative(frames[0], frames[1], rates)
         for name in cut.rows.rows:
             residual, direction, columns, acceleration = _row(name, relative, cut.length)
@@ -166,51 +163,57 @@ def closure_formulas(
     return outputs | {"closure.direction": Formulas((k, 3), directions), "closure.alignment": Formulas((k,), alignment)}
 
 
-def _frame(
-    mounted: Sequence[Mounted], states: Sequence[State], motions: Sequence[Sequence[BodyMotion]], end: ClosureEnd
-) -> _Frame:
+def _frame(placed: Sequence[PlacedPart], motions: Sequence[Motions], end: ClosureEnd) -> _Frame:
     if end.part == WORLD:
-        return _Frame(end.E, end.position, {}, BodyMotion())
-    m, state = mounted[end.part], states[end.part]
-    link = frame_link(m, state, end.frame, end.E, end.position)
-    motion = motions[end.part][link.parent].at(from_body(state, link.parent, link.Z), link.rotation)
-    return _Frame(*frame_kinematics(m, state, end.frame, end.E, end.position), motion)
+        return _Frame(Pose(end.E, end.position), {}, BodyMotion())
+    here = placed[end.part]
+    link = here.frame_link(end.frame, end.E, end.position)
+    motion = motions[end.part][link.parent].at(from_body(here.links, link), link.rotation)
+    return _Frame(*here.frame_kinematics(end.frame, end.E, end.position), motion)
 
 
-def _relative(A: _Frame, B: _Frame, rates: Sequence[S]) -> _Relative:
+def _relative(A: _Frame, B: _Frame, rates: Sequence[Scalar]) -> _Relative:
     """v, w: velocity of B's origin and angular velocity seen from A; dv, dw: their rates seen from A at q'' = 0."""
-    d = apply(A.R, sub(B.r, A.r))
-    M = multiply(A.R, transpose(B.R))
+    # d = R_A (r_B - r_A),   M = R_A R_B^T
+    d = apply(A.pose.R, sub(B.pose.r, A.pose.r))
+    M = multiply(A.pose.R, transpose(B.pose.R))
     none = Twist(ZERO, ZERO)
     twists: dict[int, Twist] = {}
     v: Vector = ZERO
     for a in sorted({*A.columns, *B.columns}):
         own, other = A.columns.get(a, none), B.columns.get(a, none)
+        # u_a = M U_Ba - U_Aa - Omega_Aa x d,   w_a = M Omega_Ba - Omega_Aa
         U = sub(sub(apply(M, other.U), own.U), cross(own.Omega, d))
         twists[a] = Twist(U, sub(apply(M, other.Omega), own.Omega))
         v = add(v, scale(rates[a], U))
     omega = A.motion.omega
     w = sub(apply(M, B.motion.omega), omega)
-    # a_B - a_A - alpha_A x d - omega_A x (omega_A x d) - 2 omega_A x v
+    # dv = M a_B - a_A - alpha_A x d - omega_A x (omega_A x d) - 2 omega_A x v
     carried = add(A.motion.a, apply(A.motion.field(), d))
     dv = sub(sub(apply(M, B.motion.a), carried), scale(2, cross(omega, v)))
+    # dw = M alpha_B - alpha_A - omega_A x w
     dw = sub(sub(apply(M, B.motion.alpha), A.motion.alpha), cross(omega, w))
     return _Relative(d, transpose(M), twists, v, w, dv, dw)
 
 
-def _row(name: str, r: _Relative, length: Expr) -> tuple[S, Vector, dict[int, S], S]:
+def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[int, Scalar], Scalar]:
     """Residual, direction of the multiplier, columns of the Jacobian, acceleration term."""
     if name in TURNS:
         j, i, sign = TURNS[name]
         axis = IDENTITY[i]
         direction = scale(sign, cross(r.axes[j], axis))
+        # the axis m_j of B, seen from A: m_j'' = w' x m_j + w x (w x m_j)
         turned = add(cross(r.dw, r.axes[j]), cross(r.w, cross(r.w, r.axes[j])))
         columns = {a: dot(t.Omega, direction) for a, t in r.twists.items()}
+        # phi = +-m_j . e_i,   G_a = +-w_a . (m_j x e_i)
         return sign * dot(r.axes[j], axis), direction, columns, sign * dot(turned, axis)
     if name == "length":
-        direction = r.d[0] / length, r.d[1] / length, r.d[2] / length
-        residual = (dot(r.d, r.d) - length * length) / (2 * length)
-        acceleration = (dot(r.v, r.v) + dot(r.d, r.dv)) / length
+        lift = length.graph.lift
+        # phi = (d . d - L^2) / (2 L),   G_a = d . u_a / L,   G' q' = (v . v + d . dv) / L
+        direction = lift(r.d[0]) / length, lift(r.d[1]) / length, lift(r.d[2]) / length
+        residual = lift(dot(r.d, r.d) - length * length) / (2 * length)
+        acceleration = lift(dot(r.v, r.v) + dot(r.d, r.dv)) / length
         return residual, direction, {a: dot(t.U, direction) for a, t in r.twists.items()}, acceleration
+    # phi = d_i,   G_a = (u_a)_i
     i = PLACE.index(name)
     return r.d[i], IDENTITY[i], {a: t.U[i] for a, t in r.twists.items()}, r.dv[i]

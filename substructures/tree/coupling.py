@@ -8,20 +8,24 @@ Measured against expressing those products in the interface frame (f, n, K), thi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.expr.graph import Expr, Graph
-from substructures.expr.replay import replay
-from substructures.mechanics.base_functions import Twist, carried, transport
-from substructures.mechanics.inertia import Inertia
-from substructures.mechanics.joints import Link, lean_rotation, path
-from substructures.mechanics.linear3 import E3, Matrix, S, Vector, add, cross, dot
-from substructures.mechanics.metric import christoffel_block, joint_momentum, pairing
-from substructures.part.outputs import Stored
-from substructures.part.part import Part
-from substructures.part.topology import INTERFACE
-from substructures.tree.mounted_part import WORLD, Mounted, Pose, State, applied_wrenches, frame_link
+from substructures.mechanics.composite_form import Inertia, christoffel_block, joint_momentum, pairing
+from substructures.mechanics.kinematics import (
+    INTERFACE,
+    Columns,
+    Link,
+    Twist,
+    carrier_link,
+    constant_rotation,
+    fixed_columns,
+    path,
+    transport,
+)
+from substructures.mechanics.linear3 import Scalar, Vector, add, cross, dot
+from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
+from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart
 
 #: outputs of a stored program that coupling uses
 USED = (
@@ -31,160 +35,163 @@ USED = (
 )
 WITHOUT_CHRISTOFFEL = tuple(name for name in USED if name != "christoffel")
 FRAMES = ("frame.E", "frame.position")
-OWN = ("inertia.m", "inertia.s", "inertia.J", "base.m", "base.s", "base.J", "armature")
+OWN = (*OWN_INERTIA, "armature")
 
 #: all lists of outputs that coupling asks a part for
 ASKED = (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED)
 
-#: the outputs of a part's stored program, by name, for the given values of its symbols
-Run = Callable[[Part, Mapping[str, S], Sequence[str]], Stored]
+#: what a part has to carry, by carrier, about its body frame origin (of the interface: about its own)
+Payload = dict[int, Inertia]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Coupled:
     """The result, by indices of the tree's coordinates."""
 
-    metric: dict[tuple[int, ...], S]
-    christoffel: dict[tuple[int, ...], S]
-    gravity: list[S]
-    forces: list[S]
-    potential: S
-    states: list[State]
+    metric: dict[tuple[int, ...], Scalar]
+    christoffel: dict[tuple[int, ...], Scalar]
+    gravity: list[Scalar]
+    forces: list[Scalar]
+    potential: Scalar
+    placed: list[PlacedPart]
 
 
-def over_formulas(graph: Graph) -> Run:
-    """Stored programs as formulas in a graph."""
-
-    def run(part: Part, bindings: Mapping[str, S], names: Sequence[str]) -> Stored:
-        lifted = {name: x if isinstance(x, Expr) else graph.number(x) for name, x in bindings.items()}
-        return Stored(replay(part.program, graph, lifted, names))
-
-    return run
-
-
-def couple_parts(run: Run, mounted: Sequence[Mounted], gravity: Vector, christoffel: bool = True) -> Coupled:
+def couple_parts(run: Run, mounted: Sequence[MountedPart], gravity: Vector, christoffel: bool = True) -> Coupled:
     """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them.
 
     ``run`` gives the outputs of a stored program over the scalars of the bindings: formulas, floats or arrays.
     ``christoffel``: False leaves the Christoffel symbols out.
     """
-    n = 0
-    for part in mounted:
-        part.first, n = n, n + part.part.dof
-    states, total = _pass_up(run, mounted, USED if christoffel else WITHOUT_CHRISTOFFEL)
-    result = Coupled({}, {}, [0] * n, [0] * n, -dot(gravity, total.s), states)
-    for m, state in zip(mounted, states, strict=True):
-        _place(m, state, mounted, states, gravity)
-        _twists(m, state)
-        _dynamics(m, state, result, christoffel)
-        _gravity(m, state, result)
-        _applied(m, state, result)
-    return result
+    evaluated, total = evaluate_parts(run, mounted, USED if christoffel else WITHOUT_CHRISTOFFEL)
+    n = sum(m.part.dof for m in mounted)
+    gamma_abc: dict[tuple[int, ...], Scalar] = {}
+    g_ab: dict[tuple[int, ...], Scalar] = {}
+    Q_gravity: list[Scalar] = [0] * n
+    Q: list[Scalar] = [0] * n
+    # V = -gamma . s of the whole about the world's origin, and the springs of every part
+    V = -dot(gravity, total.s)
+    placed: list[PlacedPart] = []
+    for part in evaluated:
+        here = place(part, placed, gravity)
+        placed.append(here)
+        _add_inertial(here, g_ab, gamma_abc if christoffel else None)
+        _add_gravity(here, Q_gravity, Q)
+        V = V + part.outputs.scalar("potential")
+        _add_wrenches(here, Q)
+    return Coupled(g_ab, gamma_abc, Q_gravity, Q, V, placed)
 
 
-def _pass_up(run: Run, mounted: Sequence[Mounted], names: Sequence[str]) -> tuple[list[State], Inertia]:
-    """Runs every program with the inertia of what is mounted on it; the total is about the world's origin."""
-    payload: list[dict[int, Inertia]] = [{} for _ in mounted]
-    states: list[State] = []
+def evaluate_parts(
+    run: Run, mounted: Sequence[MountedPart], names: Sequence[str]
+) -> tuple[list[EvaluatedPart], Inertia]:
+    """From the leaves: every program with what is mounted on its bodies; the inertia of all about the world's origin.
+
+    What is mounted on a port acts on the body that carries it as additional inertia (notation.md, section 6, payload).
+    """
+    payloads: list[Payload] = [{} for _ in mounted]
+    evaluated: list[EvaluatedPart] = []
     total = Inertia()
-    for i in reversed(range(len(mounted))):
-        m = mounted[i]
-        state = _state(run, m, payload[i], names)
-        states.insert(0, state)
-        whole = state.stored.inertia("composite") + payload[i].get(INTERFACE, Inertia())
+    for m, payload in zip(reversed(mounted), reversed(payloads), strict=True):
+        part = _evaluated(run, m, payload, names)
+        evaluated.insert(0, part)
+        # (m, s, J) of the whole about the origin of I
+        whole = part.outputs.inertia("composite") + payload.get(INTERFACE, Inertia())
         if m.host == WORLD:
-            total = total + _moved(whole, m.E, m.position)
+            total = total + whole.in_parent(constant_rotation(m.E), m.position)
         else:
-            _pay(run, mounted, payload, m, whole)
-    return states, total
+            _load(run, mounted[m.host], payloads[m.host], m, whole)
+    return evaluated, total
 
 
-def _moved(inertia: Inertia, E: Matrix, position: Vector) -> Inertia:
-    return inertia.turned_back(lean_rotation(E, 1, 0)).shifted(position)
+def _load(run: Run, host: MountedPart, payload: Payload, m: MountedPart, whole: Inertia) -> None:
+    """Add the whole of a part to what the carrier of its frame in the host has to carry."""
+    frames = run(host.part, host.bindings, FRAMES)
+    E, position = frames.matrix("frame.E", m.frame), frames.vector("frame.position", m.frame)
+    carrier = host.part.frame_carriers[m.frame]
+    # from the interface to the frame of the host, from there to the body frame of its carrier
+    whole = whole.in_parent(constant_rotation(m.E), m.position).in_parent(constant_rotation(E), position)
+    payload[carrier] = payload.get(carrier, Inertia()) + whole
 
 
-def _pay(run: Run, mounted: Sequence[Mounted], payload: list[dict[int, Inertia]], m: Mounted, whole: Inertia) -> None:
-    """Add the composite of a part to what the carrier of its frame has to carry."""
-    host = mounted[m.host].part
-    frame = run(host, mounted[m.host].bindings, FRAMES)
-    E, position = frame.matrix("frame.E", m.frame), frame.vector("frame.position", m.frame)
-    carrier = host.frame_carriers[m.frame]
-    inertia = _moved(_moved(whole, m.E, m.position), E, position)
-    payload[m.host][carrier] = payload[m.host].get(carrier, Inertia()) + inertia
-
-
-def _state(run: Run, m: Mounted, payload: dict[int, Inertia], names: Sequence[str]) -> State:
+def _evaluated(run: Run, m: MountedPart, payload: Payload, names: Sequence[str]) -> EvaluatedPart:
+    """The stored formulas with own inertia + payload for the inertia symbols of every body."""
     own = run(m.part, m.bindings, OWN)
-    bindings = dict(m.bindings)
-    for k, symbols in m.part.inertia_symbols.items():
-        carried_here = own.inertia("inertia", k) + payload.get(k, Inertia())
-        values = (carried_here.m, *carried_here.s, *carried_here.J)
-        bindings |= zip(symbols, values, strict=True)
-    stored = run(m.part, bindings, names)
-    joints = m.part.skeleton.joints
-    links = [Link(j.parent, j.s, stored.rotation(c), stored.vector("Z", c)) for c, j in enumerate(joints)]
-    momenta = [joint_momentum(j.s, stored.inertia("subtree", c)) for c, j in enumerate(joints)]
-    return State(stored, own, links, [stored.scalar("tau", c) for c in range(len(joints))], momenta)
+    inertias = {k: own.own_inertia(k) + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
+    outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, inertias)}, names)
+    joints = m.part.topology.joints
+    links = tuple(
+        Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
+        for c, j in enumerate(joints)
+    )
+    momenta = tuple(joint_momentum(j.s, outputs.inertia("subtree", c)) for c, j in enumerate(joints))
+    return EvaluatedPart(m, outputs, own, links, momenta)
 
 
-def _place(m: Mounted, state: State, mounted: Sequence[Mounted], states: list[State], gravity: Vector) -> None:
-    """Host columns at the interface; poses of the interface and of all joint frames."""
+def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) -> PlacedPart:
+    """From the root: the host's columns and gravity carried to the interface and to every joint.
+
+    ``placed``: the parts before this one, its host among them; ``gravity``: in world axes.
+    """
+    m = part.mounted
     if m.host == WORLD:
-        gamma = lean_rotation(m.E, 1, 0).forward(gravity)
-        state.poses[INTERFACE] = Pose(m.E, m.position)
+        host, outside = None, Columns()
+        seat = Link(INTERFACE, 0, constant_rotation(m.E), m.position)
+        gamma = {INTERFACE: seat.rotation.forward(gravity)}
     else:
-        host, h = states[m.host], mounted[m.host]
-        link = frame_link(h, host, m.frame, m.E, m.position)
-        carrier = link.parent
-        source = host.outside if carrier == INTERFACE else host.columns[carrier]
-        slides = h.first + carrier if carrier != INTERFACE and host.links[carrier].s else None
-        state.outside = {a: carried(twist, link, a == slides) for a, twist in source.items()}
-        gamma = link.rotation.forward(host.gamma[carrier])
-        state.host, state.link = host, link
-    state.gamma = [gamma]
-    for c, joint in enumerate(state.links):
-        state.gamma.insert(c, joint.rotation.forward(state.gamma[joint.parent]))
+        host = placed[m.host]
+        # z = r + tau_host e3;   Omega_Ia = A Omega_ha;   U_Ia = A (U_ha + s_a [a = h] e3 + Omega_ha x z)
+        seat = host.frame_link(m.frame, m.E, m.position)
+        outside = host.columns_beyond(seat)
+        gamma = {INTERFACE: seat.rotation.forward(host.gamma[seat.parent])}
+    # gamma_k = E_k gamma_p
+    for c, link in enumerate(part.links):
+        gamma[c] = link.rotation.forward(gamma[link.parent])
+    return PlacedPart(part, host, seat, _columns(part, outside), gamma)
 
 
-def _twists(m: Mounted, state: State) -> None:
-    """The host's columns carried to every joint, and the stored own ones."""
-    state.columns = transport(state.links, state.outside)
-    for c in range(len(state.links)):
-        for a in path(state.links, c):
-            state.columns[c][m.first + a] = Twist(state.stored.vector("U", c, a), state.stored.vector("Omega", c, a))
+def _columns(part: EvaluatedPart, outside: Columns) -> dict[int, Columns]:
+    """The host's columns carried to every joint, and the stored own ones, by index in the tree."""
+    columns = transport(part.links, outside)
+    for c in range(len(part.links)):
+        for a in path(part.links, c):
+            own = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
+            columns[c][part.mounted.first + a] = own
+    return columns
 
 
-def _dynamics(m: Mounted, state: State, result: Coupled, christoffel: bool) -> None:
-    """The stored own entries, and the products of host columns with the joint momenta."""
-    first, own = m.first, state.stored.outputs
-    result.metric |= {(first + a, first + c): x for (a, c), x in own["metric"].entries.items()}
-    if christoffel:
-        entries = own["christoffel"].entries
-        result.christoffel |= {(first + a, first + b, first + c): x for (a, b, c), x in entries.items()}
-    for c, momentum in enumerate(state.momenta if state.outside else ()):
-        columns = state.columns[c]
-        result.metric |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in state.outside}
-        if christoffel:
+def _add_inertial(
+    here: PlacedPart, g_ab: dict[tuple[int, ...], Scalar], gamma_abc: dict[tuple[int, ...], Scalar] | None
+) -> None:
+    """The stored own entries, and the products of host columns with the momenta of the joints."""
+    first, outside = here.first, here.columns[INTERFACE]
+    # a, b <= c in S: as stored
+    g_ab |= {(first + a, first + c): x for (a, c), x in here.outputs.entries("metric").items()}
+    if gamma_abc is not None:
+        stored = here.outputs.entries("christoffel")
+        gamma_abc |= {(first + a, first + b, first + c): x for (a, b, c), x in stored.items()}
+    for c, momentum in enumerate(here.evaluated.momenta if outside else ()):
+        columns = here.columns[c]
+        # a host, c in S:   g_ac = U_ca . p_c + Omega_ca . H_c
+        g_ab |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in outside}
+        if gamma_abc is not None:
+            # a or b host, or both, c in S:   Gamma_abc = U_ca . (Omega_cb x p_c) + Omega_ca^T K_c Omega_cb
             block = christoffel_block(first + c, columns, momentum, inside=first)
-            result.christoffel |= {(a, b, first + c): x for (a, b), x in block.items()}
+            gamma_abc |= {(a, b, first + c): x for (a, b), x in block.items()}
 
 
-def _gravity(m: Mounted, state: State, result: Coupled) -> None:
-    """Q_c = gamma_c . p_c."""
-    for c, momentum in enumerate(state.momenta):
-        q = dot(state.gamma[c], momentum.p)
-        result.gravity[m.first + c] = q
-        result.forces[m.first + c] = q + state.stored.scalar("applied", c)
-    result.potential = result.potential + state.stored.scalar("potential")
+def _add_gravity(here: PlacedPart, Q_gravity: list[Scalar], Q: list[Scalar]) -> None:
+    """Gravity on everything that a joint carries, and what joints and springs do by themselves."""
+    for c, momentum in enumerate(here.evaluated.momenta):
+        # Q_c = gamma_c . p_c
+        q = dot(here.gamma[c], momentum.p)
+        Q_gravity[here.first + c] = q
+        Q[here.first + c] = q + here.outputs.scalar("applied", c)
 
 
-def _applied(m: Mounted, state: State, result: Coupled) -> None:
-    """Forces and torques on bodies: Q_a += f . U_ka + n . Omega_ka for all coordinates on the path to the body."""
-    for carrier, force, n in applied_wrenches(m, state):
-        columns = state.outside if carrier == INTERFACE else state.columns[carrier]
-        if carrier != INTERFACE:
-            n = add(n, cross((0, 0, state.tau[carrier]), force))
-        for a, twist in columns.items():
-            if carrier != INTERFACE and a == m.first + carrier and state.links[carrier].s:
-                twist = Twist(add(twist.U, E3), twist.Omega)
-            result.forces[a] = result.forces[a] + pairing(twist, force, n)
+def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:
+    """Forces and torques on bodies, for all coordinates on the path to the body."""
+    for carrier, wrench in here.applied_wrenches():
+        # Q_a += f . (U_ka + s_a [a = k] e3) + (n + tau e3 x f) . Omega_ka
+        moment = add(wrench.n, cross((0, 0, carrier_link(here.links, carrier).tau), wrench.f))
+        for a, twist in fixed_columns(here.links, here.columns, carrier, here.first).items():
+            Q[a] = Q[a] + pairing(twist, wrench.f, moment)

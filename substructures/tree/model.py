@@ -28,17 +28,19 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.linear3 import S, add, apply, cross, transpose
+from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part
 from substructures.part.topology import christoffel_entries
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
 from substructures.tree.closures import ClosureRows, closure_formulas
-from substructures.tree.coupling import Coupled, couple_parts, over_formulas
+from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
-from substructures.tree.mounted_part import frame_kinematics
+from substructures.tree.mounted_part import PlacedPart
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
@@ -137,14 +139,15 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
 def model_outputs(
     assembly: Assembly,
     coupled: Coupled,
-    rates: Sequence[S],
-    accelerations: Sequence[S],
+    rates: Sequence[Scalar],
+    accelerations: Sequence[Scalar],
     names: frozenset[str] | None = None,
 ) -> dict[str, Formulas]:
     """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""
-    n, mounted, states = len(coupled.gravity), assembly.mounted, coupled.states
+    n, placed = len(coupled.gravity), coupled.placed
 
     def wanted(*some: str) -> bool:
+        """Whether all outputs are wanted, or one of these."""
         return names is None or not names.isdisjoint(some)
 
     outputs = {
@@ -154,57 +157,61 @@ def model_outputs(
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),
     }
+    # by recursion, so that neither needs the Christoffel symbols
     if wanted("bias"):
-        bias = bias_forces(mounted, states, rates)
+        bias = bias_forces(placed, rates)
         outputs["bias"] = array((n,), lambda a: bias[a])
     if wanted("inverse_dynamics"):
-        inverse = inverse_dynamics(mounted, states, rates, accelerations)
+        inverse = inverse_dynamics(placed, rates, accelerations)
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
     if wanted(*MOMENTUM):
-        outputs |= _momentum(assembly, coupled)
+        outputs |= _momentum(placed, n)
     if assembly.cuts and names is None:
-        outputs |= closure_formulas(mounted, states, assembly.cuts, rates)
-    return outputs | (_kinematics(assembly, coupled) if wanted(*KINEMATICS) else {})
+        outputs |= closure_formulas(placed, assembly.cuts, rates)
+    return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
 
 
-def rate_symbols(assembly: Assembly) -> tuple[list[Any], list[Any]]:
+def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
     """The symbols of all velocities and accelerations."""
-    rates, accelerations = [], []
+    rates: list[Expr] = []
+    accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
-        for joint in m.part.skeleton.joints:
+        for joint in m.part.topology.joints:
             name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
             rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
             accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))
     return rates, accelerations
 
 
-def _momentum(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
-    """R_c^T p_c and R_c^T H_c + r_c x R_c^T p_c in world axes."""
-    linear: dict[tuple[int, ...], Any] = {}
-    angular: dict[tuple[int, ...], Any] = {}
-    n = len(coupled.gravity)
-    for m, state in zip(assembly.mounted, coupled.states, strict=True):
-        for c, momentum in enumerate(state.momenta):
-            back = transpose(state.pose(c).R)
+def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
+    """Linear momentum, and angular momentum about the world's origin, in world axes."""
+    linear: dict[tuple[int, ...], Scalar] = {}
+    angular: dict[tuple[int, ...], Scalar] = {}
+    for here in placed:
+        for c, momentum in enumerate(here.evaluated.momenta):
+            # R_c^T p_c   and   R_c^T H_c + r_c x R_c^T p_c
+            pose = here.pose(c)
+            back = transpose(pose.R)
             p = apply(back, momentum.p)
-            L = add(apply(back, momentum.H), cross(state.pose(c).r, p))
-            linear |= {(m.first + c, i): p[i] for i in range(3)}
-            angular |= {(m.first + c, i): L[i] for i in range(3)}
+            L = add(apply(back, momentum.H), cross(pose.r, p))
+            linear |= {(here.first + c, i): p[i] for i in range(3)}
+            angular |= {(here.first + c, i): L[i] for i in range(3)}
     return {"linear_momentum": Formulas((n, 3), linear), "angular_momentum": Formulas((n, 3), angular)}
 
 
-def _kinematics(assembly: Assembly, coupled: Coupled) -> dict[str, Formulas]:
-    entries: dict[str, dict[tuple[int, ...], Any]] = {name: {} for name in KINEMATICS}
+def _kinematics(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
+    entries: dict[str, dict[tuple[int, ...], Scalar]] = {name: {} for name in KINEMATICS}
     f = 0
-    for m, state in zip(assembly.mounted, coupled.states, strict=True):
-        for frame in range(len(m.part.frames)):
-            R, r, twists = frame_kinematics(m, state, frame)
-            entries["position"] |= {(f, i): r[i] for i in range(3)}
-            entries["rotation"] |= {(f, j, i): R[i][j] for i in range(3) for j in range(3)}
+    for here in placed:
+        for frame in range(len(here.part.frames)):
+            pose, twists = here.frame_kinematics(frame)
+            entries["position"] |= {(f, i): pose.r[i] for i in range(3)}
+            # from the axes of the frame to those of the world: R^T
+            entries["rotation"] |= {(f, j, i): pose.R[i][j] for i in range(3) for j in range(3)}
+            # U_fa, Omega_fa in the axes of the frame f
             entries["U"] |= {(f, a, i): t.U[i] for a, t in twists.items() for i in range(3)}
             entries["Omega"] |= {(f, a, i): t.Omega[i] for a, t in twists.items() for i in range(3)}
             f += 1
-    n = len(coupled.gravity)
     shapes = {"position": (f, 3), "rotation": (f, 3, 3), "U": (f, n, 3), "Omega": (f, n, 3)}
     return {name: Formulas(shapes[name], some) for name, some in entries.items()}
 

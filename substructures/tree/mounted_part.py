@@ -1,109 +1,141 @@
-"""A part mounted in a tree, and what coupling and all that follows know of it: links, momenta, columns, poses."""
+"""A part in a tree, in the order in which one learns of it: mounted, evaluated, placed.
+
+:class:`MountedPart`: where the tree document puts it. :class:`EvaluatedPart`: what its stored formulas are with all
+that is mounted on it, whatever its own host does. :class:`PlacedPart`: what it knows of the way from the root to it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from substructures.mechanics.base_functions import Columns, Twist, carried
-from substructures.mechanics.joints import Link, lean_rotation
-from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, S, Vector, add, apply, multiply, transpose
-from substructures.mechanics.metric import JointMomentum
+from substructures.mechanics.composite_form import JointMomentum
+from substructures.mechanics.kinematics import (
+    INTERFACE,
+    Columns,
+    Link,
+    Pose,
+    columns_beyond,
+    constant_rotation,
+    fixed_link,
+)
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Scalar, Vector, add, apply, multiply, transpose
+from substructures.mechanics.newton_euler import Wrench
 from substructures.part.loads import wrench_about_origin
-from substructures.part.outputs import Stored
+from substructures.part.outputs import PartOutputs
 from substructures.part.part import Part
-from substructures.part.topology import INTERFACE
 
+#: the host of what is not mounted on a part
 WORLD = -1
 
 
-@dataclass
-class Mounted:
-    """A part in a tree: host (index of an earlier one, or WORLD), frame of the host, constant placement, bindings."""
+@dataclass(frozen=True)
+class MountedPart:
+    """A part in a tree: host (index of an earlier one, or WORLD), frame of the host, constant placement, bindings.
+
+    ``first``: index of its first coordinate in the tree.
+    """
 
     part: Part
     host: int
     frame: int
     E: Matrix
     position: Vector
-    bindings: dict[str, S]
-    first: int = 0  #: index of its first coordinate in the tree
+    bindings: Mapping[str, Scalar]
+    first: int
 
 
-@dataclass(frozen=True, slots=True)
-class Pose:
-    """Rotation world -> frame, origin of the frame in the world."""
+@dataclass(frozen=True)
+class EvaluatedPart:
+    """The stored formulas of a part: ``outputs`` with what is mounted on its bodies, ``own`` values without it."""
 
-    R: Matrix
-    r: Vector
-
-    def beyond(self, link: Link) -> Pose:
-        """The pose of the next frame."""
-        x, y, z = (link.rotation.forward(column) for column in transpose(self.R))
-        return Pose(transpose((x, y, z)), add(self.r, apply(transpose(self.R), link.Z)))
+    mounted: MountedPart
+    outputs: PartOutputs
+    own: PartOutputs
+    links: tuple[Link, ...]
+    momenta: tuple[JointMomentum, ...]
 
 
-@dataclass
-class State:
-    """What the two passes know of a mounted part."""
+@dataclass(frozen=True)
+class PlacedPart:
+    """An evaluated part on its host, or on the world (None).
 
-    stored: Stored
-    own: Stored  #: own inertia of the bodies, without what is mounted on them
-    links: list[Link]
-    tau: list[S]
-    momenta: list[JointMomentum]
-    outside: Columns = field(default_factory=dict)
-    columns: list[Columns] = field(default_factory=list)  #: host's and own columns at every joint
-    gamma: list[Vector] = field(default_factory=list)  #: gravity in every joint frame, and last in the interface frame
-    host: State | None = None
-    link: Link | None = None  #: from the carrier in the host to the interface
-    poses: dict[int, Pose] = field(default_factory=dict)
+    ``seat``: the link from the carrier in the host, or from the world, to the interface. By carrier: ``columns`` of the
+    host's and own coordinates, by index in the tree (of the interface only the host's), and ``gamma``, gravity in its
+    axes.
+    """
+
+    evaluated: EvaluatedPart
+    host: PlacedPart | None
+    seat: Link
+    columns: Mapping[int, Columns]
+    gamma: Mapping[int, Vector]
+    #: poses that were asked for, by carrier
+    _poses: dict[int, Pose] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @property
+    def mounted(self) -> MountedPart:
+        """Where the tree document puts it."""
+        return self.evaluated.mounted
+
+    @property
+    def part(self) -> Part:
+        """The stored part."""
+        return self.evaluated.mounted.part
+
+    @property
+    def first(self) -> int:
+        """Index of its first coordinate in the tree."""
+        return self.evaluated.mounted.first
+
+    @property
+    def outputs(self) -> PartOutputs:
+        """The stored formulas, with what is mounted on the bodies."""
+        return self.evaluated.outputs
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """Of its joints."""
+        return self.evaluated.links
 
     def pose(self, carrier: int) -> Pose:
-        """Of joint frame k or of the interface (-1), computed when it is first needed."""
-        todo: list[tuple[State, int, State, Link]] = []
-        state = self
-        while carrier not in state.poses:
-            link = state.link if carrier == INTERFACE else state.links[carrier]
-            before = state.host if carrier == INTERFACE else state
-            if link is None or before is None:
+        """In the world, of joint frame k or of the interface; formed when it is first asked for, and kept."""
+        # inwards to a pose that is known, and out again: trees may be deeper than recursion goes
+        part, k, way = self, carrier, []
+        while k not in part._poses:
+            if k == INTERFACE and part.host is None:
+                part._poses[k] = Pose(part.mounted.E, part.mounted.position)
                 break
-            todo.append((state, carrier, before, link))
-            state, carrier = before, link.parent
-        for state, k, before, link in reversed(todo):
-            state.poses[k] = before.poses[link.parent].beyond(link)
-        return self.poses[todo[0][1] if todo else carrier]
+            link = part.seat if k == INTERFACE else part.links[k]
+            way.append((part, k, link))
+            part, k = (part.host or part) if k == INTERFACE else part, link.parent
+        pose = part._poses[k]
+        for part, k, link in reversed(way):
+            pose = part._poses[k] = pose.beyond(link)
+        return pose
 
+    def frame_link(self, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
+        """A frame (body or port), and a constant placement in it, as a link from O of its carrier."""
+        # E E_f and r_f + E_f^T r in the body frame of the carrier
+        E_f, r_f = self.outputs.matrix("frame.E", frame), self.outputs.vector("frame.position", frame)
+        r = add(r_f, apply(transpose(E_f), position))
+        return fixed_link(self.links, self.part.frame_carriers[frame], constant_rotation(multiply(E, E_f)), r)
 
-def frame_link(m: Mounted, state: State, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
-    """A frame (body or port) of a part, and a constant placement in it, as a link from O of the carrier."""
-    E_f, r_f = state.stored.matrix("frame.E", frame), state.stored.vector("frame.position", frame)
-    x, y, z = add(r_f, apply(transpose(E_f), position))
-    carrier = m.part.frame_carriers[frame]
-    tau = 0 if carrier == INTERFACE else state.tau[carrier]
-    return Link(carrier, 0, lean_rotation(multiply(E, E_f), 1, 0), (x, y, z + tau))
+    def columns_beyond(self, link: Link) -> Columns:
+        """Columns at the end of a link from one of its carriers, by index in the tree, in the axes there."""
+        return columns_beyond(self.links, self.columns, link, self.first)
 
+    def frame_kinematics(self, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> tuple[Pose, Columns]:
+        """Pose in the world, and columns in the axes of a frame; ``E``, ``position``: a constant placement in it."""
+        link = self.frame_link(frame, E, position)
+        twists = self.columns_beyond(link)
+        return self.pose(link.parent).beyond(link), twists
 
-def applied_wrenches(m: Mounted, state: State) -> Iterator[tuple[int, Vector, Vector]]:
-    """(carrier, force, moment about its body frame origin) of every force and torque, in the carrier's axes."""
-    for i, (carrier, moment, world) in enumerate(m.part.wrenches):
-        vector = state.stored.vector("load.vector", i)
-        if world:
-            vector = apply(state.pose(carrier).R, vector)
-        yield carrier, *wrench_about_origin(state.stored.vector("load.at", i), vector, moment)
-
-
-def frame_kinematics(
-    m: Mounted, state: State, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO
-) -> tuple[Matrix, Vector, dict[int, Twist]]:
-    """Rotation world -> frame, origin in the world, columns in the axes of the frame.
-
-    ``E``, ``position``: a constant placement in the frame.
-    """
-    link = frame_link(m, state, frame, E, position)
-    carrier = link.parent
-    source = state.outside if carrier == INTERFACE else state.columns[carrier]
-    own = m.first + carrier if carrier != INTERFACE and state.links[carrier].s else None
-    twists = {a: carried(twist, link, a == own) for a, twist in source.items()}
-    pose = state.pose(carrier).beyond(link)
-    return pose.R, pose.r, twists
+    def applied_wrenches(self) -> Iterator[tuple[int, Wrench]]:
+        """The carrier of every force and torque, and its wrench about the body frame origin in the carrier's axes."""
+        for i, (carrier, moment, world) in enumerate(self.part.wrenches):
+            vector = self.outputs.vector("load.vector", i)
+            if world:
+                # R_k v: from the axes of the world to those of the carrier
+                vector = apply(self.pose(carrier).R, vector)
+            yield carrier, wrench_about_origin(self.outputs.vector("load.at", i), vector, moment)

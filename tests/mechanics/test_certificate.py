@@ -11,10 +11,11 @@ import pytest
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.expr.program import Program
 from substructures.part.certificate import TOLERANCE, VerificationFailed, compare
+from substructures.part.outputs import over_formulas
 from substructures.part.part import recheck
 from substructures.tree.assembly import assemble
 from substructures.tree.certificate import certify_tree
-from substructures.tree.coupling import couple_parts, over_formulas
+from substructures.tree.coupling import couple_parts
 from substructures.tree.model import rate_symbols
 
 PART: dict[str, Any] = {

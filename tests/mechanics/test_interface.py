@@ -165,7 +165,7 @@ def test_ports_and_joint_frames_with_respect_to_the_interface(pair: Pair) -> Non
         close(x["port.U"][:, i], U[:, n:])
         close(x["port.Omega"][:, i], Omega[:, n:])
     frames = list(pair.guest.frames)
-    for body, c in pair.guest.skeleton.carrier.items():
+    for body, c in pair.guest.topology.carrier.items():
         if c >= 0:
             r, R, _, Omega = pair.frame(f"guest.{body}")
             E, z = x["frame.E"][:, frames.index(body)], x["frame.position"][:, frames.index(body)].copy()
@@ -179,7 +179,7 @@ def test_ports_and_joint_frames_with_respect_to_the_interface(pair: Pair) -> Non
 def test_links_put_together_give_the_positions(pair: Pair) -> None:
     """R_c = E_c R_p, r_c = r_p + R_p^T Z_c; E is the product of its stored factors."""
     x = pair.stored
-    for c, joint in enumerate(pair.guest.skeleton.joints):
+    for c, joint in enumerate(pair.guest.topology.joints):
         p = joint.parent
         R_p = x["R"][:, p] if p >= 0 else np.broadcast_to(np.eye(3), (N, 3, 3))
         r_p = x["r"][:, p] if p >= 0 else np.zeros((N, 3))

@@ -15,13 +15,17 @@ from substructures import Definition, Part, derive
 from substructures.expr.bind import bind
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
-from substructures.mechanics.base_functions import base_functions
-from substructures.mechanics.inertia import Inertia, composites
-from substructures.mechanics.joints import OneDofJoint, links
+from substructures.mechanics.composite_form import (
+    Inertia,
+    christoffel_block,
+    composites,
+    joint_momentum,
+    metric_column,
+)
+from substructures.mechanics.kinematics import OneDofJoint, base_functions, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
-from substructures.mechanics.metric import christoffel_block, joint_momentum, metric_column
-from substructures.part.alone import lean
 from substructures.part.one_piece import derive_in_one_piece
+from substructures.part.outputs import with_own_inertia
 from substructures.quantities.evaluation import evaluate
 
 
@@ -89,7 +93,7 @@ def test_the_same_alone_and_derived_in_one_piece(seed: int) -> None:
     values = {name: float(p["value"]) for name, p in symbolic["parameters"].items()}
     values |= {c.removeprefix("x."): states["q"][:, a] for a, c in enumerate(model.coordinates)}
     found = interpret(whole, values | {"": np.zeros(3)})
-    alone = lean(part, part.program.select(["metric", "christoffel"]))
+    alone = with_own_inertia(part, part.program.select(["metric", "christoffel"]))
     assert not any(s.kind == "inertia" for s in (*whole.symbols, *alone.symbols))
     same({name: expected[name] for name in ("metric", "christoffel", "gravity")}, found, 1e-11)
     same({n: expected[n] for n in ("metric", "christoffel")}, interpret(alone, values | {"": np.zeros(3)}), 1e-11)
@@ -100,13 +104,13 @@ def test_the_same_alone_and_derived_in_one_piece(seed: int) -> None:
 
 def recursion(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...], gravity: Any) -> dict[tuple[Any, ...], Any]:
     """Metric, Christoffel symbols and gravity by calling the mechanics directly."""
-    subtree, _ = composites(joints, bodies)
+    carried = composites(joints, bodies)
     chain = links(joints)
     columns = base_functions(chain)
     result: dict[tuple[Any, ...], Any] = {}
     gamma: list[Any] = []
     for c, joint in enumerate(joints):
-        momentum = joint_momentum(joint.s, subtree[c])
+        momentum = joint_momentum(joint.s, carried[c])
         result |= {("g", a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         result |= {("Gamma", a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
         gamma.append(joint.rotation.forward(gamma[joint.parent] if joint.parent >= 0 else gravity))
@@ -121,7 +125,7 @@ def rows(part: Part, x: Plain, scalar: Any) -> tuple[tuple[OneDofJoint, ...], tu
         return tuple(tuple(scalar(x[name], c, i, j) for j in range(3)) for i in range(3))
 
     joints, bodies, own = [], [], []
-    for c, j in enumerate(part.skeleton.joints):
+    for c, j in enumerate(part.topology.joints):
         tau = scalar(x["tau"], c)
         z = [scalar(x["Z"], c, i) for i in range(3)]
         # Z_k = offset + tau_p e3
@@ -145,7 +149,7 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
     request = request_for(model, seed)
     formulas = evaluate(model, request)
     paths: list[list[int]] = []
-    for c, joint in enumerate(part.skeleton.joints):
+    for c, joint in enumerate(part.topology.joints):
         paths.append([*(paths[joint.parent] if joint.parent >= 0 else []), c])
     entries = {("Q", c) for c in range(part.dof)} | {("g", a, c) for c, path in enumerate(paths) for a in path}
     entries |= {("Gamma", a, b, c) for c, path in enumerate(paths) for a in path[:-1] for b in path}

@@ -17,7 +17,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import ExpressionError, parse
 from substructures.part.definition import Definition
 from substructures.part.part import derive
-from substructures.part.topology import skeleton
+from substructures.part.topology import topology
 
 #: fields of bodies and ports that are no expressions in parameters, or none that deriving reads
 TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits")
@@ -29,7 +29,7 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
 
 def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     definition = Definition.read(item["definition"])
-    skeleton(definition)
+    topology(definition)
     plain = read_json(definition.canonical())
     faults = [
         fault

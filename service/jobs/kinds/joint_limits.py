@@ -8,7 +8,7 @@ from service.jobs.kinds.library import Library, StoredTree
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
-from substructures.part.topology import JointEntry, skeleton
+from substructures.part.topology import JointEntry, topology
 from substructures.quantities.states import default_number
 from substructures.tree.document import Instance, TreeSpec
 
@@ -19,7 +19,7 @@ def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, f
     result = {}
     for instance in spec.instances:
         definition = _definition(instance, library)
-        for joint in skeleton(definition).joints:
+        for joint in topology(definition).joints:
             result[f"{instance.name}.{joint.coordinate}"] = _limits(definition, joint)
     return result
 

@@ -127,7 +127,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
-                result.add(constraint.name, [U[1] for U in frame.U])
+                result.add(constraint.name, [f.graph.lift(U[1]) for U in frame.U])
             else:
                 _roll(f, constraint, pointer, frame, result)
     names = [c.name for c in constraints]
@@ -184,20 +184,20 @@ def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: Veloc
     normal = plane[2]
     n = apply(transpose(frame.R), normal)
     if c.shape == "disc":
-        across = n[0] * n[0] + n[1] * n[1]
-        if (f.graph.zero + across).is_zero:
+        across = f.graph.lift(n[0] * n[0] + n[1] * n[1])
+        if across.is_zero:
             f.scope.fault(f"{pointer}/frame", "flat-disc", "the axis of the disc is the normal of the plane")
             return
-        width = f.graph.sqrt(f.graph.zero + across)
-        rho: Vector = (-(radius * n[0]) / width, -(radius * n[1]) / width, f.graph.zero)
+        width = f.graph.sqrt(across)
+        rho: Vector = (f.graph.lift(-(radius * n[0])) / width, f.graph.lift(-(radius * n[1])) / width, f.graph.zero)
     else:
         rho = (-(radius * n[0]), -(radius * n[1]), -(radius * n[2]))
     columns = []
     for U, Omega in zip(frame.U, frame.Omega, strict=True):
         columns.append(apply(plane, apply(frame.R, add(U, cross(Omega, rho)))))
     for i, row in enumerate(("slip_1", "slip_2", "contact")):
-        result.add(f"{c.name}.{row}", [f.graph.zero + column[i] for column in columns])
-    result.gaps[c.name] = f.graph.zero + dot(normal, frame.c) + dot(n, rho)
+        result.add(f"{c.name}.{row}", [f.graph.lift(column[i]) for column in columns])
+    result.gaps[c.name] = f.graph.lift(dot(normal, frame.c) + dot(n, rho))
 
 
 def linear_row(f: Formulation, text: str, pointer: str) -> list[Expr]:

@@ -1,0 +1,193 @@
+"""The composite form of metric, Christoffel symbols and gravity forces, over any scalar (notation.md, section 5).
+
+Inertias are summed from the leaves to the base; what a joint's unit velocity does to the inertia that it carries, its
+momentum, paired with the columns of the base functions gives g and Gamma. The direct form of section 4, in numbers,
+is in :mod:`substructures.mechanics.direct_form`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from substructures.mechanics.kinematics import INTERFACE, Columns, OneDofJoint, Twist
+from substructures.mechanics.linear3 import (
+    ZERO,
+    ZERO6,
+    Matrix,
+    Rotation,
+    Scalar,
+    Symmetric,
+    Vector,
+    add,
+    add6,
+    cross,
+    dot,
+    exactly,
+    scale,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Inertia:
+    """m [kg], s = m h [kg m] and J = integral of x x^T dm [kg m^2] (Binet tensor) about a point, in a frame.
+
+    ``polar``: J_xx + J_yy where a shorter form than that sum is known: turns about the third axis leave it as it is.
+    """
+
+    m: Scalar = 0
+    s: Vector = ZERO
+    J: Symmetric = ZERO6
+    polar: Scalar | None = None
+
+    @property
+    def about_third_axis(self) -> Scalar:
+        """J_xx + J_yy, the moment of inertia about the third axis."""
+        return self.J[0] + self.J[1] if self.polar is None else self.polar
+
+    def __add__(self, other: Inertia) -> Inertia:
+        polar = None
+        if self.polar is not None or other.polar is not None:
+            polar = self.about_third_axis + other.about_third_axis
+        return Inertia(self.m + other.m, add(self.s, other.s), add6(self.J, other.J), polar)
+
+    def shifted(self, z: Vector) -> Inertia:
+        """The same masses about a point at -z: s + m z, J + s z^T + z s^T + m z z^T."""
+        if all(exactly(component, 0) for component in z):
+            return self
+        s = add(self.s, scale(self.m, z))
+        both = add(self.s, s)
+        j = self.J
+        # s z^T + z s^T + m z z^T has z_i (s_i + (s + m z)_i) on its diagonal and s_i z_j + z_i (s + m z)_j beside it
+        polar = None if self.polar is None else self.polar + (z[0] * both[0] + z[1] * both[1])
+        return Inertia(
+            self.m,
+            s,
+            (
+                j[0] + z[0] * both[0],
+                j[1] + z[1] * both[1],
+                j[2] + z[2] * both[2],
+                j[3] + (self.s[0] * z[1] + z[0] * s[1]),
+                j[4] + (self.s[0] * z[2] + z[0] * s[2]),
+                j[5] + (self.s[1] * z[2] + z[1] * s[2]),
+            ),
+            polar,
+        )
+
+    def turned_back(self, rotation: Rotation) -> Inertia:
+        """Components in the parent frame: E^T s, E^T J E."""
+        return Inertia(self.m, rotation.back(self.s), rotation.back_tensor(self.J))
+
+    def in_parent(self, rotation: Rotation, position: Vector) -> Inertia:
+        """In and about the frame in which this one is placed: with E and the position of its origin there."""
+        return self.turned_back(rotation).shifted(position)
+
+
+def binet(theta: Symmetric, half: Scalar = Fraction(1, 2)) -> Symmetric:
+    """J = tr(Theta)/2 1 - Theta from the inertia tensor Theta (xx, yy, zz, xy, xz, yz)."""
+    # J_xx = (Theta_yy + Theta_zz - Theta_xx) / 2,   J_xy = -Theta_xy
+    xx, yy, zz, xy, xz, yz = theta
+    return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz
+
+
+def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict[int, Inertia]:
+    """Inertia of every carrier with all that hangs on it: about O_k in frame k, of the whole about the interface.
+
+    One pass from the leaves to the base; ``bodies`` are given about the body frame origins, what is fixed to the
+    interface is left out. Joints that are parallel all the way to the base never need J_xx and J_yy alone, only their
+    sum, which their turns leave as it is (notation.md, section 8.4).
+    """
+    total = {INTERFACE: Inertia(), **dict(enumerate(bodies))}
+    parallel = _parallel_to_root(joints)
+    for k in reversed(range(len(joints))):
+        joint = joints[k]
+        # own body, about O_k: z = tau e3 to the body frame origin
+        total[k] = total[k].shifted((0, 0, joint.tau))
+        # m_p += m,   s_p += E^T s + m z,   J_p += E^T J E + s z^T + z s^T + m z z^T
+        up = total[k].turned_back(joint.rotation)
+        if parallel[k]:
+            up = replace(up, polar=total[k].about_third_axis)
+        total[joint.parent] = total[joint.parent] + up.shifted(joint.offset)
+    return total
+
+
+def _parallel_to_root(joints: Sequence[OneDofJoint]) -> list[bool]:
+    """For every joint but a root: whether it and its ancestors turn about one direction, down to the root's axis."""
+    group: list[bool] = []
+    for joint in joints:
+        group.append(joint.parent < 0 or (joint.rotation.keeps_third_axis and group[joint.parent]))
+    return [is_in and joint.parent >= 0 for is_in, joint in zip(group, joints, strict=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class JointMomentum:
+    """What joint c's unit velocity does to the mass it carries, about O_c in frame c.
+
+    ``p`` linear momentum, ``H`` angular momentum, ``K`` the matrix of the Christoffel cubic form.
+    Revolute: p = e3 x s, H = tr(J) e3 - J e3, K = skew(e3)^T J; prismatic: p = m e3, H = s x e3, K = -skew(s) skew(e3).
+    """
+
+    s: int
+    p: Vector
+    H: Vector
+    composite: Inertia
+
+    def moment(self, omega: Vector) -> Vector:
+        """K omega."""
+        if self.s:
+            x, y, z = self.composite.s
+            # K omega = -s x (e3 x omega) = omega s_3 - e3 (s . omega), whose third component needs no s_3
+            return omega[0] * z, omega[1] * z, -(omega[0] * x + omega[1] * y)
+        # K omega = skew(e3)^T J omega = -e3 x J omega = ((J omega)_2, -(J omega)_1, 0)
+        xx, yy, _, xy, xz, yz = self.composite.J
+        return dot((xy, yy, yz), omega), -dot((xx, xy, xz), omega), 0
+
+    def matrix(self) -> Matrix:
+        """K."""
+        x, y, z = self.composite.s
+        if self.s:
+            return (z, 0, 0), (0, z, 0), (-x, -y, 0)
+        xx, yy, _, xy, xz, yz = self.composite.J
+        return (xy, yy, yz), (-xx, -xy, -xz), (0, 0, 0)
+
+
+def joint_momentum(s: int, composite: Inertia) -> JointMomentum:
+    """p, H (and K) of a joint of kind s (1 prismatic, 0 revolute) from the inertia that it carries."""
+    x, y, _ = composite.s
+    if s:
+        # p = m e3,   H = s x e3
+        return JointMomentum(1, (0, 0, composite.m), (y, -x, 0), composite)
+    # p = e3 x s,   H = tr(J) e3 - J e3
+    _, _, _, _, xz, yz = composite.J
+    return JointMomentum(0, (-y, x, 0), (-xz, -yz, composite.about_third_axis), composite)
+
+
+def pairing(twist: Twist, force: Vector, moment: Vector) -> Scalar:
+    """U . f + Omega . n: power of a wrench on a twist."""
+    return dot(twist.U, force) + dot(twist.Omega, moment)
+
+
+def metric_column(c: int, columns: Columns, momentum: JointMomentum) -> dict[int, Scalar]:
+    """g_ac for all a <= c (keys a), from the columns of joint c's carrier and the momentum of its unit velocity."""
+    # g_cc = p_3 = m (prismatic) or H_3 (revolute),   g_ac = U_ca . p + Omega_ca . H
+    own = momentum.p[2] if momentum.s else momentum.H[2]
+    return {a: own if a == c else pairing(t, momentum.p, momentum.H) for a, t in columns.items()}
+
+
+def christoffel_block(
+    c: int, columns: Columns, momentum: JointMomentum, inside: int = 0
+) -> dict[tuple[int, int], Scalar]:
+    """Gamma_abc for a < c, b <= c (keys a, b): U_ca . (Omega_cb x p) + Omega_ca^T K Omega_cb.
+
+    ``inside``: leave out pairs in which both a and b are at least this coordinate (they are known already).
+    """
+    block: dict[tuple[int, int], Scalar] = {}
+    for b, twist in columns.items():
+        # Omega_cb x p  and  K Omega_cb
+        force = cross(twist.Omega, momentum.p)
+        moment = momentum.moment(twist.Omega)
+        for a, other in columns.items():
+            if a != c and (a < inside or b < inside or not inside):
+                block[a, b] = pairing(other, force, moment)
+    return block
