@@ -25,9 +25,10 @@ def test_public_names(name: str) -> None:
         assert value.__name__ == name
 
 
-@pytest.mark.parametrize(
-    "place", sorted(set(re.findall(rf"\\b((?:{FOLDERS})(?:\\.\\w+)+)", substructures.__doc__ or "")))
-)
+PLACES = sorted(set(re.findall(rf"\b(?:{FOLDERS})(?:\.\w+)+", substructures.__doc__ or "")))
+
+
+@pytest.mark.parametrize("place", PLACES)
 def test_the_map_names_what_there_is(place: str) -> None:
     folder, module, *name = place.split(".")
     found = import_module(f"substructures.{folder}.{module}")
