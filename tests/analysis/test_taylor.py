@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from analysis_models import PERIOD, catalogue_model
@@ -60,6 +63,12 @@ def test_what_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InvalidDocument, match="no tables") as error:
         simulate(model, request | {"inputs": table})
     assert error.value.faults[0].pointer == "/method"
-    monkeypatch.setattr(taylor, "heyoka", None)
+    monkeypatch.setattr(taylor, "_heyoka", lambda: None)
     with pytest.raises(InvalidDocument, match="needs the package"):
         simulate(model, request)
+
+
+def test_it_is_loaded_by_the_first_motion_that_needs_it() -> None:
+    """Loading it takes 86 MB and a quarter of the start of a server."""
+    program = "import sys, service.app; raise SystemExit('heyoka' in sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=100)
