@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of
+from substructures.analysis.arguments import real
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of, require_fixed
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start, StateVector
+from substructures.analysis.motion.signals import Signal
 from substructures.array import Array
 from substructures.mechanics.accelerations import RANK
 from substructures.tree.model import Model
@@ -80,16 +82,32 @@ class LoopState:
         return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
 
 
-def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None = None) -> LoopState:
-    """Close the loops at a state and say what moves and what holds.
+def loop_state(
+    model: Model,
+    q: StateVector | None,
+    *,
+    qd: StateVector | None = None,
+    t: float = 0.0,
+    parameters: Mapping[str, float] | None = None,
+    inputs: Mapping[str, Signal] | None = None,
+    fixed: Sequence[str] = (),
+    prescribed: Mapping[str, Signal] | None = None,
+    folder: Path | None = None,
+) -> LoopState:
+    """Close the loops of a model at a state and say what moves and what holds.
 
-    ``request``: see LoopRequest; ``q`` and ``qd`` near a closed position. ``folder``: a cache of compiled kernels.
-    Raises InvalidDocument and MissingValue; loops that cannot be closed, and singular positions, are messages in the
-    result.
+    ``q`` [rad, m], ``qd`` [rad/s, m/s; 0 by default]: near a closed position, (n,) or by name; ``t`` [s]. The
+    coordinates ``fixed`` keep their values while the loops are closed; ``prescribed`` ones move as given: a number, an
+    expression in t or a Table [rad, m]. ``parameters``: in place of their defaults; ``inputs`` [N m, N]: numbers,
+    expressions or tables, 0 by default. ``folder``: a cache of compiled kernels.
+
+    Raises InvalidInput (pointers start with names of arguments) and MissingValue; loops that cannot be closed, and
+    singular positions, are messages in the result.
     """
-    asked = LoopRequest.read(request)
-    s, t = Constrained(model, asked, folder), asked.t
-    state = consistent_state(s, t, s.along.q, s.along.qd, asked.fixed)
+    t = real(t, "/t")
+    require_fixed(model, fixed)
+    s = Constrained(model, Start(q, qd, parameters or {}, inputs or {}), (t, t), prescribed, folder=folder)
+    state = consistent_state(s, t, s.conditions.q, s.conditions.qd, fixed)
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
@@ -132,6 +150,7 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
     """Rows that take part in a dependency: G^T lambda = 0 with a lambda that is not zero there."""
     if not G.size:
         return np.zeros(len(G), dtype=np.bool_)
+    # lambda with G^T lambda = 0 can be added to any multipliers
     free = null_space(G.T, rcond=RANK)
     return np.asarray(np.abs(free).max(axis=1, initial=0) > np.sqrt(RANK))
 
@@ -155,6 +174,7 @@ def least_multipliers(s: Constrained, qdd: Array) -> Array:
     """lambda of least norm with G^T lambda = g q'' + Gamma q'q' - Q."""
     if not len(s.labels):
         return np.zeros(0)
+    # G^T lambda = g q'' - f, f = Q - Gamma q'q'
     found = lstsq(s.G.T, s.g @ qdd - s.f, cond=RANK, lapack_driver="gelsd", check_finite=False)[0]
     return np.asarray(found, dtype=np.float64)
 

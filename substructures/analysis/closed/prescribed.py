@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from scipy.interpolate import PPoly, make_interp_spline
 
-from substructures.analysis.motion.inputs import require_covered
-from substructures.analysis.motion.request_fields import Signal, Table
+from substructures.analysis.arguments import exact, require_read
+from substructures.analysis.motion.signals import Signal, Table, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
@@ -27,7 +27,7 @@ class Prescribed:
     """
 
     def __init__(self, model: Model, given: Mapping[str, Signal], span: tuple[float, float]) -> None:
-        """Raises InvalidDocument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
+        """Raises InvalidArgument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
         the span.
         """
         self.values = np.zeros((len(given), 3))
@@ -43,8 +43,8 @@ class Prescribed:
                 require_covered(one, span, pointer)
                 self._tables.append((k, _spline(np.array(one.times), np.array(one.values))))
             else:
-                formulas[k] = scope.read(one, pointer, time.get)
-        scope.finish()
+                formulas[k] = scope.read(exact(one, pointer), pointer, time.get)
+        require_read(scope)
         self.index = tuple(model.coordinates.index(name) for name in given)
         self._time = np.zeros(1)
         self._places = list(formulas)
@@ -54,6 +54,7 @@ class Prescribed:
     def _compiled(self, graph: Graph, formulas: Sequence[Expr]) -> Callable[[], None] | None:
         """Expressions in t as machine code; constants are put in place at once."""
         rows = []
+        # s(t), s'(t), s''(t)
         for x in formulas:
             rate = derivative(x, "t")
             rows.append((x, rate, derivative(rate, "t")))

@@ -18,7 +18,7 @@ from typing import Any, Literal
 from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
 from substructures.analysis.equations.formulas import Entries, ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidArgument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
@@ -63,7 +63,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
 
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
     What the reactions of closures could change, whatever they are, is not constant.
-    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
+    Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     inputs, zero = list(inputs), list(zero)
@@ -74,7 +74,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
         if name not in some
     ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
     return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
 
 

@@ -37,8 +37,8 @@ from typing import Any
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.formulation import Elements, Formulation
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
-from substructures.analysis.equations.velocity_constraints import VelocityConstraints, velocity_rows
-from substructures.errors import InvalidDocument
+from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
+from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
@@ -62,31 +62,33 @@ class QuasiVelocities:
 
 
 def quasi_velocity_equations(
-    model: Model, document: Mapping[str, Any], near: Mapping[str, float] | None = None
+    model: Model,
+    constraints: Sequence[Constraint] = (),
+    *,
+    velocities: Mapping[str, str] | None = None,
+    independent: Sequence[str] | None = None,
+    near: Mapping[str, float] | None = None,
 ) -> QuasiVelocities:
     """The equations of a model with velocity constraints, all formulas.
 
-    ``document``: see :class:`VelocityConstraints`; ``near``: values of coordinates and parameters at which quasi-
-    velocities that are not given should describe the motion well. Raises InvalidDocument (pointers into the document):
-    constraints that are not linear, quasi-velocities that do not determine the velocities; TooLarge.
+    The quasi-velocities: ``velocities``, as many as the constraints leave free, by name, each an expression linear in
+    the velocities; or those of the coordinates ``independent``; default: chosen for short formulas that describe the
+    motion well ``near`` these values of coordinates and parameters.
+
+    Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
+    do not determine the velocities; TooLarge.
     """
-    return velocity_equations(model, VelocityConstraints.read(document), near)
-
-
-def velocity_equations(
-    model: Model, spec: VelocityConstraints, near: Mapping[str, float] | None = None
-) -> QuasiVelocities:
-    """quasi_velocity_equations for a document that was read."""
     f = Formulation(model)
-    given = velocity_rows(f, spec.constraints)
+    given = velocity_rows(f, constraints)
     rows, dependent = independent_rows(f, given)
-    names, own = quasi_velocity_rows(f, spec, rows, near)
+    names, own = quasi_velocity_rows(f, rows, velocities, independent, near)
+    # Y q' = (v, 0), Y^-1 = [T S]
     Y = [*own, *rows.rows]
     inverted = inverse(Y)
     if inverted is None:
-        pointer = "/independent" if spec.velocities is None else "/velocities"
+        pointer = "/independent" if velocities is None else "/velocities"
         message = "these velocities and the constraints do not determine the velocities of all coordinates"
-        raise InvalidDocument.at(pointer, "dependent", message)
+        raise InvalidArgument.at(pointer, "dependent", message)
     equations = _Equations(f, names, Y, inverted)
     outputs = equations.outputs()
     gaps = list(rows.gaps.values())

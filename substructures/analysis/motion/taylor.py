@@ -14,10 +14,10 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.motion.inputs import Along
+from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_dynamics
 from substructures.array import Array
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
 from substructures.tree.model import Model
 
@@ -39,16 +39,16 @@ def _heyoka() -> Any:
 
 
 def require_taylor(tables: Sequence[str], max_step: float | None) -> None:
-    """Raises InvalidDocument where heyoka is missing, an input is a table, or steps are limited."""
+    """Raises InvalidArgument where heyoka is missing, an input is a table, or steps are limited."""
     if _heyoka() is None:
         message = "the method 'Taylor' needs the package 'heyoka': install it, or leave 'method' out"
-        raise InvalidDocument.at("/method", "not-installed", message)
+        raise InvalidArgument.at("/method", "not-installed", message)
     if max_step is not None:
         message = "the method 'Taylor' chooses its steps: leave 'max_step' out, or take another method"
-        raise InvalidDocument.at("/max_step", "not-supported", message)
+        raise InvalidArgument.at("/max_step", "not-supported", message)
     if tables:
         message = f"the method 'Taylor' takes no tables ('{tables[0]}'): use an expression in t, or another method"
-        raise InvalidDocument.at("/method", "not-supported", message)
+        raise InvalidArgument.at("/method", "not-supported", message)
 
 
 @dataclass(frozen=True)
@@ -64,13 +64,13 @@ class _System:
     source: Program = field(compare=False)
 
 
-def taylor_stepper(along: Along, tolerance: float, has_power: bool) -> _Factory:
-    """Makes steppers with the interface of SciPy's for a request that was read."""
-    model, source = along.model, along.source
+def taylor_stepper(conditions: Conditions, tolerance: float, has_power: bool) -> _Factory:
+    """Makes steppers with the interface of SciPy's for these conditions."""
+    model, source = conditions.model, conditions.expressions
     key = (model.program.digest, source.digest)
-    system = _System(key, along.zero, along.formulas, max(tolerance, 1e-15), has_power, model, source)
+    system = _System(key, conditions.zero, conditions.formulas, max(tolerance, 1e-15), has_power, model, source)
     integrator, names = _compiled(system)
-    return _Factory(integrator, [along.values[name] for name in names])
+    return _Factory(integrator, [conditions.values[name] for name in names])
 
 
 @lru_cache(maxsize=16)
@@ -129,7 +129,7 @@ def _operation(op: str, args: Sequence[Any]) -> Any:
     if op in FUNCTIONS:
         return getattr(_heyoka(), op)(args[0])
     message = f"the method 'Taylor' cannot take '{op}', which has no Taylor series everywhere: choose another method"
-    raise InvalidDocument.at("/method", "not-smooth", message)
+    raise InvalidArgument.at("/method", "not-smooth", message)
 
 
 class _Factory:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.motion.request_fields import Event
+from substructures.analysis.motion.events import Event
 from substructures.array import Array
 
 Rule = Literal["constant", "falling", "zero"]
