@@ -55,7 +55,7 @@ def assert_energy_is_stated(model: Model, motion: Trajectory) -> None:
         assert_stated(check, np.concatenate([energy, energies(model, q, qd)]))
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda x: x.get("method") or x["fixed_step"]["method"])
+@pytest.mark.parametrize("method", METHODS, ids=lambda x: x.get("method") or x["fixed_step"].method)
 @pytest.mark.parametrize("name", TREES)
 def test_trees(name: str, method: Plain) -> None:
     entry, request = TREES[name]

@@ -10,7 +10,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Plain, model_of, random_states
 
-from substructures import InvalidDocument, Model, Program
+from substructures import InvalidDocument, InvalidInput, Model, Program
 from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.linearise import linearise
@@ -188,7 +188,7 @@ def test_a_root_at_zero_is_a_failure_with_advice() -> None:
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         linearise(catalogue_model("double-pendulum"), {"q": [0, 0]} | changes)
     assert error.value.faults[0].pointer == pointer
 
