@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
-from scipy.interpolate import PPoly, make_interp_spline
+import scipy
 
 from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.motion.signals import Signal, Table, require_covered
@@ -31,7 +32,7 @@ class Prescribed:
         the span.
         """
         self.values = np.zeros((len(given), 3))
-        self._tables: list[tuple[int, PPoly]] = []
+        self._tables: list[tuple[int, Any]] = []
         scope = Scope(Graph())
         time = {"t": scope.graph.symbol("t")}
         formulas: dict[int, Expr] = {}
@@ -77,11 +78,15 @@ class Prescribed:
         return self.values
 
 
-def _spline(times: Array, values: Array) -> PPoly:
-    """A spline of degree five (less for few points) and its derivatives as one piecewise polynomial."""
-    spline = PPoly.from_spline(make_interp_spline(times, values, k=min(5, len(times) - 1)))
+def _spline(times: Array, values: Array) -> Any:
+    """A spline of degree five (less for few points) and two derivatives as one piecewise polynomial.
+
+    The second derivative enters the equations of motion: of degree three, it is twice continuously differentiable.
+    """
+    of_degree = scipy.interpolate.make_interp_spline(times, values, k=min(5, len(times) - 1))
+    spline = scipy.interpolate.PPoly.from_spline(of_degree)
     terms = [spline, spline.derivative(1), spline.derivative(2)]
     stacked = np.zeros((*spline.c.shape, 3))
     for i, term in enumerate(terms):
         stacked[len(spline.c) - len(term.c) :, :, i] = term.c
-    return PPoly(stacked, spline.x)
+    return scipy.interpolate.PPoly(stacked, spline.x)

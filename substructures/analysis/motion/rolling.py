@@ -50,7 +50,7 @@ class RollingProblem(MotionProblem):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        one_of(self.integrator.method, "method", tuple(METHODS))
+        one_of(self.integrator.method, "method", METHODS)
         one_of(self.form, "form", tuple(FORMS))
 
 
@@ -190,6 +190,7 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
     names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
     found = interpret_in_blocks(equations.program, values, names, len(t))
     series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
+    # B_ka q'^a
     series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
     checks = _checks(t, series, problem.drift_limit)
     t, x = t[results], x[results]

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from substructures.analysis.arguments import Numbers, Scalar, one_of, reals
 from substructures.errors import InvalidArgument
@@ -91,7 +91,7 @@ def _pieces(table: Table) -> list[list[float]]:
     """Coefficients of every piece, highest power first."""
     t, y = np.array(table.times), np.array(table.values)
     if table.interpolation == "cubic":
-        rows = CubicSpline(t, y).c.T
+        rows = scipy.interpolate.CubicSpline(t, y).c.T
     elif table.interpolation == "linear":
         # s(t) = (y_k+1 - y_k) / (t_k+1 - t_k) (t - t_k) + y_k
         rows = np.stack([np.diff(y) / np.diff(t), y[:-1]], axis=1)
