@@ -89,6 +89,7 @@ def exact(value: Any, pointer: str) -> int | Decimal | str:
     number = real(value, pointer)
     if isinstance(value, int | Decimal):
         return value
+    # a float means its shortest decimal text, as in a document: 0.1 is 1/10
     return int(value) if isinstance(value, np.integer) else Decimal(repr(number))
 
 

@@ -100,6 +100,7 @@ def simulate(
     }
     rolling: dict[str, Any] = {"v": v, "velocities": velocities, "independent": independent}
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
+    # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
         _refuse("velocity constraints", fixed_step=fixed_step, **closed)
         return simulate_rolling(

@@ -184,3 +184,9 @@ def test_a_tree_without_loops_is_the_special_case() -> None:
     driven = loop_state(model, [0.0], prescribed={"x.q_b": "t^2/2"})
     np.testing.assert_allclose(driven.qdd, [1.0])
     np.testing.assert_allclose(driven.actuation["x.q_b"], 1 + 9.81)
+
+
+def test_a_loop_state_says_in_two_lines_what_it_is() -> None:
+    first, second = repr(loop_state(SLIDER, [0.4, -0.1, 0.17], fixed=["x.crank"])).splitlines()
+    assert first == "LoopState: 3 coordinates, 1 free; 2 independent rows, redundant: wrist.z, wrist.rx, wrist.ry"
+    assert second.endswith("reactions: wrist; closed")

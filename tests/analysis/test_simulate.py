@@ -163,3 +163,10 @@ def test_followed_quantities_and_files() -> None:
     assert len(rows) == 5
     assert [float(row["x.q1'"]) for row in rows] == motion.qd[:, 0].tolist()
     assert motion.summary()["checks"][0]["holds"] is True
+
+
+def test_results_say_in_two_lines_what_they_are() -> None:
+    motion = simulate(catalogue_model("simple-pendulum"), [1], (0, 1), count=3)
+    first, second = repr(motion).splitlines()
+    assert first.startswith("Trajectory: 3 states of x.q1, t = 0 to 1 s, ")
+    assert second == "is_right=True: 1 of 1 checks hold (energy constant); series: energy"

@@ -84,6 +84,7 @@ class Constrained:
         self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
         self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
         self.G = np.zeros((m, n))
+        # of q_a - s(t): d phi / d q_a = 1
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
@@ -189,6 +190,7 @@ class Constrained:
         rank = self.rank()
         if not rank:
             return np.zeros(0, dtype=np.int64)
+        # G^T P = Q R: rows in the order of what they add to those before
         pivots = qr(self.G.T, mode="r", pivoting=True)[1]
         return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
 

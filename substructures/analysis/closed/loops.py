@@ -73,6 +73,15 @@ class LoopState:
     actuation: Mapping[str, float]
     message: str = ""
 
+    def __repr__(self) -> str:
+        place, state = self.mobility, self.consistent
+        names = ", ".join(reaction.closure for reaction in self.reactions)
+        return (
+            f"LoopState: {len(state.q)} coordinates, {place.degrees_of_freedom} free; {place.rank} independent rows, "
+            f"redundant: {', '.join(place.dependent) or 'none'}\n"
+            f"residual {state.residual:.2g}; reactions: {names or 'none'}; {self.message or 'closed'}"
+        )
+
     def plain(self) -> dict[str, Any]:
         """As plain data with arrays, for an answer in JSON."""
         state = {k: getattr(self.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
@@ -139,6 +148,7 @@ def mobility(s: Constrained, t: float, q: Array) -> Mobility:
 
 def independent_coordinates(G: Array) -> NDArray[np.int64]:
     """Coordinates whose velocities determine all others, by QR with pivoting of the Jacobian; in order."""
+    # G P = Q R: the first columns of the permutation P are dependent coordinates, G_y y' = -G_x x'
     rank = rank_of(G)
     if not rank:
         return np.arange(G.shape[1])
@@ -158,6 +168,7 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
 def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> bool:
     """Whether the rank is higher at a closed position nearby, in some direction along the closures."""
     _, _, rows = svd(G) if G.size else (None, None, np.eye(s.n))
+    # directions t with G t = 0
     tangent = rows[rank:]
     rng = np.random.default_rng(5)
     for _ in range(2 if rank < min(G.shape) else 0):
@@ -186,6 +197,7 @@ def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reac
     for rows in s.model.closures:
         load = np.zeros((2, 3))
         for row in rows.rows:
+            # force or moment of a row: lambda_k times its direction
             load[int(row not in ("x", "y", "z", "length"))] += multipliers[k] * direction[k]
             k += 1
         result.append(Reaction(rows.name, load[0], load[1], place.entangled.get(rows.name, ())))

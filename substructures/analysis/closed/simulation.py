@@ -73,6 +73,7 @@ def simulate_closed(
     if message:
         return _nothing(problem.model, state, start, message)
     s.move(start, state.q, state.qd)
+    # x = (q, q', W), W the work of forces without potential and of prescribed coordinates
     x = np.concatenate((state.q, state.qd, (0.0,)))
     return _judged(s, problem, _moved(s, problem, x, place.rank, progress, folder))
 
@@ -147,6 +148,7 @@ def _at_states(
 def _forces(s: Constrained) -> dict[str, Any]:
     """Accelerations and multipliers; not finite where they are not determined."""
     try:
+        # g q'' = f + G^T lambda, G q'' = -c; with all rows, the lambda of least norm
         qdd, _ = s.accelerations(s.independent_rows())
         multipliers = least_multipliers(s, qdd)
     except Singular:
@@ -169,6 +171,7 @@ def _residual_checks(t: Array, columns: Mapping[str, Array]) -> Iterator[Check]:
         ("position", "the closures (and prescribed motions) are met", "m, 1"),
         ("velocity", "G q' + phi_t = 0", "m/s, 1/s"),
     ):
+        # max_k |phi_k|, max_k |(G q' + phi_t)_k|
         residual = columns[f"{name}_residual"]
         yield Check.of((f"{name} residual", "zero", reason, unit), residual, t, 1.0, RESIDUAL)
 

@@ -38,6 +38,7 @@ def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows,
     values = _numbers(f, given.rows) if given.rows else np.zeros((3, 0, f.n))
     kept: list[int] = []
     for k, label in enumerate(given.labels):
+        # rank of the rows kept and this one, at states in general position
         if _rank(values[:, [*kept, k]]) > len(kept):
             kept.append(k)
             result.add(label, given.rows[k])
@@ -101,6 +102,7 @@ def _chosen(f: Formulation, rows: MatrixRows, near: Mapping[str, float] | None) 
             columns = [*dependent, a]
             if a in dependent or len(dependent) == len(rows):
                 continue
+            # sigma_min of the columns of the dependent coordinates, so that G_x x' = -G_y y' is well conditioned
             if _weakest(values[:, :, columns]) > share * least:
                 dependent = columns
     return [name for a, name in enumerate(f.model.coordinates) if a not in dependent]

@@ -137,6 +137,7 @@ class _Frame:
             x, y, z = (kinematics[name].get((k, *index, i), zero) for i in range(3))
             return x, y, z
 
+        # R: to the axes of the world; c: origin; U_a, Omega_a: columns in the axes of the frame
         self.R: Matrix = (vector("rotation", 0), vector("rotation", 1), vector("rotation", 2))
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
@@ -162,6 +163,7 @@ def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> Non
     zero = f.graph.zero
     for k, (closure, row) in enumerate(names):
         residual = found["closure.residual"].get((k,), zero)
+        # phi_k = const is the integral of G_ka q'^a = 0
         if closure == name and not residual.is_zero:
             result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
             result.gaps[f"{name}.{row}"] = residual

@@ -91,6 +91,7 @@ class Conditions:
 
         def level(k: int) -> Callable[[float, Array], float]:
             def g(at: float, y: Array) -> float:
+                # g(t, y) = quantity(q, q', t) - level
                 t[0], x[0] = at, state(at, y)
                 run()
                 return float(found[0, k]) - self.events[k].level
@@ -126,11 +127,13 @@ def read_conditions(
         "events": [(e.quantity, f"/events/{i}/quantity") for i, e in enumerate(events)],
         "series": [(x, f"/series/{escape(name)}") for name, x in followed.items()],
     }
+    # u = u(q, q', t), quantities of events and series: one program for all
     expressions = read_expressions(model, groups)
     _check_names(model, start.parameters, followed)
     constant = {name: x for name, x in start.inputs.items() if not isinstance(x, (Table, str))}
     found = symbol_values(model, {"parameters": start.parameters, "inputs": constant}, states, needs)
     values = {n: float(np.ravel(v)[0]) for n, v in found.items()}
+    # what moves is no constant of the kernels
     for name in (*state_names(model), "t", *formulas, *curves):
         values.pop(name, None)
     inputs = {s.name for s in model.program.symbols if s.kind == "input"} | set(model.parameters)

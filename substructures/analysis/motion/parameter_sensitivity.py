@@ -58,6 +58,7 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
     for quantity, formulas in replay(model.program, f.graph, {}, list(quantities)).items():
         roots = [x for x in formulas.entries.values() if isinstance(x, Expr)]
         for name in parameters:
+            # d(quantity)/dp: derivative along dp = 1
             slopes = directional(roots, {name: f.graph.one})
             entries = dict(zip(formulas.entries, slopes, strict=True))
             outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
@@ -166,6 +167,7 @@ def _varied(problem: MotionProblem, f: _Variation, by: Sequence[str], progress: 
     )
     n, k = f.n, len(by)
     x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
+    # rows x, S_1, ..., S_k; the columns of dx/dx_0 were integrated as rows
     series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(by)}
     if f.of_start:
         series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
@@ -187,6 +189,7 @@ class _Variation:
         names = state_names(model)
         self.inputs = VaryingInputs(conditions, self.t, self.x, folder)
         columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
+        # dp_i = 1 in the i-th direction, 0 in all others
         seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}
         kernel = program_kernel(variational(model, parameters), folder)
         self.run = kernel.bind(self.out, conditions.values | {"t": self.t} | seeds, columns=columns)
@@ -194,6 +197,7 @@ class _Variation:
     def start(self) -> Array:
         """The start, S = 0 for parameters and S = 1 for the start itself."""
         rows = np.zeros((self.columns + 1, 2 * self.n))
+        # x(0) = x_0, S(0) = 0 for parameters, dx/dx_0 = 1
         rows[0] = self.conditions.start
         if self.of_start:
             rows[-2 * self.n :] = np.eye(2 * self.n)

@@ -112,5 +112,6 @@ class RightHandSide:
 
 def is_definite(pivots: Sequence[float] | Array) -> bool:
     """Whether g is positive definite, by the pivots D of g = L^T D L."""
+    # g = L^T D L > 0 if and only if D > 0
     d = np.asarray(pivots)
     return bool(np.isfinite(d).all() and (d > 1e-14 * np.abs(d).max(initial=0)).all())

@@ -57,6 +57,7 @@ def simulate_tree(
         if any(fault.code == "singular-metric" for fault in error.faults):
             return _failed(conditions, problem, str(error))
         raise
+    # x = (q, q', W), W only where there is any power
     x = np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
     acceleration, pivots, _ = f.evaluate(problem.span[0], x)
     if not is_definite(pivots):
@@ -119,9 +120,11 @@ def _judged(
     figures: Mapping[str, float],
 ) -> Trajectory:
     model = problem.model
+    # inputs that are 0 all the time leave more constant
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
+    # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
     series = integral_series(model, integrals, states)
     checks = judge(model, integrals, states, series, problem.drift_limit)

@@ -93,6 +93,7 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     found = dynamics.outputs[ACCELERATION]
     for (a,), entry in zip(found.index, found.entries, strict=True):
         rows[a] = nodes[entry]
+    # (q)' = q', (q')' = q''(q, q', t), W' = power
     equations = [(x[c], x[f"{c}'"]) for c in model.coordinates]
     equations += [(x[f"{c}'"], row) for c, row in zip(model.coordinates, rows, strict=True)]
     if system.has_power:
@@ -105,6 +106,7 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
 def _expressions(program: Program, known: Mapping[str, Any], names: Sequence[str]) -> dict[int, Any]:
     """The program's operations that the outputs need, as expressions of heyoka."""
     heyoka = _heyoka()
+    # operations refer to earlier ones only, so that one pass in their order makes them all
     nodes: dict[int, Any] = {}
     for i in program.reachable(names):
         op, *rest = program.operations[i]
@@ -139,6 +141,7 @@ class _Factory:
         self.integrator, self.parameters = integrator, list(parameters)
 
     def __call__(self, _f: Any, start: float, x: Array, end: float) -> TaylorStepper:
+        # what was compiled is shared; time, state and parameters are this motion's
         integrator = copy.copy(self.integrator)
         integrator.time = start
         integrator.state[:] = x
@@ -167,6 +170,7 @@ class TaylorStepper:
             self.status = "failed"
             return "the series does not converge"
         self.t, self.y = self.integrator.time, self.integrator.state.copy()
+        # t + (end - t) may miss the end by rounding
         if outcome == outcomes.time_limit:
             self.t, self.status = self.end, "finished"
         return None

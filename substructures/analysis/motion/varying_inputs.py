@@ -29,6 +29,7 @@ class VaryingInputs:
 
     def fill(self) -> None:
         """Evaluate at the present state and time."""
+        # u_k = s_k(t) of tables, then u = u(q, q', t) of expressions, in place
         for k, curve in enumerate(self._curves.values()):
             self._table[0, k] = curve(self._t[0])
         if self._run is not None:
