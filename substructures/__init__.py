@@ -51,7 +51,9 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.analysis.stability.linearise import linearise
     from substructures.errors import (
         Fault,
+        InvalidArgument,
         InvalidDocument,
+        InvalidInput,
         InvalidProgram,
         MissingValue,
         SubstructuresError,
@@ -70,7 +72,9 @@ __all__ = [
     "Fault",
     "Formula",
     "Instance",
+    "InvalidArgument",
     "InvalidDocument",
+    "InvalidInput",
     "InvalidProgram",
     "MissingValue",
     "Model",
@@ -99,7 +103,10 @@ _WHERE = {
     "analysis.simulate": ("simulate",),
     "analysis.stability.equilibria": ("equilibria",),
     "analysis.stability.linearise": ("linearise",),
-    "errors": ("Fault", "InvalidDocument", "InvalidProgram", "MissingValue", "SubstructuresError", "TooLarge"),
+    "errors": (
+        *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),
+        *("SubstructuresError", "TooLarge"),
+    ),
     "expr.program": ("Program",),
     "part.definition": ("Definition",),
     "part.part": ("Formula", "Part", "derive"),

@@ -1,50 +1,42 @@
-"""Requests of analyses that the science has no document for; units are SI, angles in rad."""
+"""Bodies of requests, of every face (HTTP, jobs, command line), are read here, and become arguments of functions."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Any
 
-from pydantic import Field, RootModel
+from pydantic import BaseModel
 
-from substructures.analysis.motion.requests import ClosedRequest, RollingRequest, SimulationRequest
-from substructures.documents import DocumentPart
-
-
-class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
-    """With ``constraints``: velocity constraints; else of a tree with closures, or with ``prescribed`` coordinates;
-    else of an open tree.
-    """
+from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
+from service.schemas.parts import Part
+from substructures.documents import read_model
+from substructures.errors import InvalidDocument
 
 
-class SensitivityRequest(SimulationRequest):
-    """A simulation, and the parameters by which its motion is differentiated."""
-
-    by: tuple[str, ...] = Field((), description="parameters")
-    of_start: bool = Field(False, description="also by coordinates and velocities at the start")
-
-
-class CurvatureRequest(DocumentPart):
-    """States."""
-
-    q: Any = Field(description="(n,), (N, n) or columns by name; rad, m")
-    parameters: dict[str, Any] = Field({}, description="in place of their defaults")
+def read_request(schema: type[BaseModel], body: Any, is_closed: bool = False) -> BaseModel:
+    """The body of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument with pointers."""
+    if not isinstance(body, Mapping):
+        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    return read_model(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body)
 
 
-Drive = Literal["armature", "viscous", "coulomb", "offset"]
+def _motion(body: Mapping[str, Any], is_closed: bool) -> type[BaseModel]:
+    """Which of the requests for simulations it is, as :func:`substructures.analysis.simulate.simulate` chooses."""
+    if body.get("constraints"):
+        return RollingRequest
+    return ClosedRequest if is_closed or body.get("prescribed") else SimulationRequest
 
 
-class ExcitationRequest(DocumentPart):
-    """A motion: how well does it show the base parameters?"""
-
-    q: Any = Field(description="(N, n) or columns by name; rad, m")
-    qd: Any = Field(None, description="rad/s, m/s")
-    qdd: Any = Field(description="rad/s^2, m/s^2")
-    parameters: dict[str, Any] = Field({}, description="kinematic ones, in place of their defaults")
-    drives: tuple[Drive, ...] = Field((), description="columns of drives that are taken along")
+def arguments(request: BaseModel) -> dict[str, Any]:
+    """The fields that were given, by name, with values of the science; it has the same defaults for all others."""
+    return {name: _value(getattr(request, name)) for name in request.model_fields_set}
 
 
-class IdentificationRequest(ExcitationRequest):
-    """A measured motion."""
-
-    tau: Any = Field(description="forces of the actuators, as q; N m, N")
-    known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
+def _value(given: Any) -> Any:
+    if isinstance(given, Part):
+        return given.value()
+    if isinstance(given, dict):
+        return {name: _value(item) for name, item in given.items()}
+    if isinstance(given, tuple) and given and isinstance(given[0], Part):
+        return tuple(_value(item) for item in given)
+    return given

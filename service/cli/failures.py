@@ -10,7 +10,7 @@ from service.database.migrate import MigrationError
 from service.refusals import Refused
 from service.settings import SettingsError
 from substructures.client import ProblemError
-from substructures.errors import InvalidDocument, SubstructuresError
+from substructures.errors import InvalidInput, SubstructuresError
 
 EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
 
@@ -18,7 +18,7 @@ EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, Pr
 def told_of(error: Exception) -> list[str] | None:
     """The lines that tell of an error; None for one that nobody expects."""
     match error:
-        case InvalidDocument():
+        case InvalidInput():
             return [f"{fault.pointer or '/'}: {fault.message}" for fault in error.faults]
         case DBAPIError():
             return [f"the database refused: {told(error)}"]

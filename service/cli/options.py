@@ -11,7 +11,7 @@ from typing import IO, Any
 
 from service.settings import Settings, from_environment
 from substructures.documents import read_json, read_yaml
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidInput
 
 SERVER = "http://127.0.0.1:8000"
 
@@ -61,6 +61,5 @@ def named(path: Path) -> Iterator[None]:
     """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
     try:
         yield
-    except InvalidDocument as error:
-        faults = [Fault(f"{path}#{f.pointer}" if f.pointer else str(path), f.code, f.message) for f in error.faults]
-        raise InvalidDocument(faults) from None
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from closed_motions import METHODS
 from closed_trees import at, closed_entry
-from random_trees import Plain
 
 from substructures import Model
 from substructures.analysis.closed.constrained import Constrained
@@ -29,8 +28,8 @@ def parallelogram() -> Model:
 def moved(reduction: str, speed: float = -3.0, **more: Any) -> tuple[Trajectory, Check]:
     """Towards the singular position, and the verdict on its energy."""
     model = parallelogram()
-    request: Plain = {"q": at(model, crank=0.5, coupler=-0.5, rocker=0.5), "qd": at(model, crank=speed)}
-    motion = simulate(model, request | {"fixed": ["x.crank"], "reduction": reduction, "span": [0, 1]} | more)
+    start = at(model, crank=0.5, coupler=-0.5, rocker=0.5)
+    motion = simulate(model, start, (0, 1), qd=at(model, crank=speed), fixed=["x.crank"], reduction=reduction, **more)
     return motion, next(check for check in motion.checks if check.name == "energy")
 
 

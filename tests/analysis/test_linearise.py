@@ -10,7 +10,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Plain, model_of, random_states
 
-from substructures import InvalidDocument, Model, Program
+from substructures import InvalidDocument, InvalidInput, Model, Program
 from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.linearise import linearise
@@ -94,7 +94,7 @@ def test_along_a_driven_trajectory() -> None:
     """Inputs and times of a simulation, one for each state; the residual of a motion is zero."""
     model = catalogue_model("furuta-pendulum")
     name = f"tau.{model.coordinates[0]}"
-    motion = simulate(model, {"q": [0, 0.3], "span": [0, 1], "count": 5, "inputs": {name: "sin(5*t)/50"}})
+    motion = simulate(model, [0, 0.3], (0, 1), count=5, inputs={name: "sin(5*t)/50"})
     request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
     found = linearise(model, request)
     assert found.A.shape == (5, 4, 4)
@@ -176,7 +176,7 @@ def test_dampers_that_vanish_at_rest_do_not_make_it_stable(sign: str) -> None:
         assert found.stability is not None
         verdicts.append(found.stability.verdict)
     assert verdicts == ["stable", "undecided"]
-    motion = simulate(model, {"q": [0.3, 0], "span": [0, 50], "count": 2})
+    motion = simulate(model, [0.3, 0], (0, 50), count=2)
     assert (motion.series["energy"][-1] > motion.series["energy"][0]) == (sign == "")
 
 
@@ -229,7 +229,7 @@ def test_a_root_at_zero_is_a_failure_with_advice() -> None:
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         linearise(catalogue_model("double-pendulum"), {"q": [0, 0]} | changes)
     assert error.value.faults[0].pointer == pointer
 

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from scipy.linalg import svdvals
-from scipy.optimize import minimize_scalar
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
@@ -125,6 +125,7 @@ class ClosedStepper:
         if self.reduction.choose():
             self._begin(self.inner.h_abs)
         else:
+            # the step goes on from the state on the closures: y and y' there
             self.inner.y = self.reduction.pack(*self._state(), float(self.y[-1]))
             self.inner.f = self.reduction.rates(self.t, self.inner.y)
         self.s.move(self.t, *self._state())
@@ -141,6 +142,7 @@ class ClosedStepper:
         q, qd = self.reduction.land(self.inner.t, self.inner.y)
         old, rates = self._state()
         way = (self.inner.t - self.t) * np.maximum(np.abs(qd).max(initial=0), np.abs(rates).max(initial=0))
+        # |q_1 - q_0| <= LEAP h |q'| + LENGTH along one branch
         if np.abs(q - old).max(initial=0) > LEAP * way + LENGTH:
             raise Singular(SINGULAR)
         self._way = old, q
@@ -166,6 +168,7 @@ class ClosedStepper:
             return None
         fastest = max(float(np.abs(old).max()), float(np.abs(qd).max()))
         kinked = bool(np.abs(qd - old).max() > KINK * fastest)
+        # det(G_new G_old^T) <= 0: a singular value of G may have passed through zero
         suspicious = kinked or np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0
         singular, beside = self.reduction.is_singular(), self.reduction.is_singular(BESIDE)
         time = self._passed() if suspicious else None
@@ -182,12 +185,13 @@ class ClosedStepper:
 
         def share(part: float) -> float:
             state(start + part * h)
+            # sigma_min / sigma_max of the independent rows
             values = svdvals(self.s.G[rows])
             return float(values[-1] / values[0])
 
         k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
         bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
-        found = minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
+        found = scipy.optimize.minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
         return float(start + found.x * h) if found.fun < least else None
 
     def dense_output(self) -> Callable[[float], Array]:

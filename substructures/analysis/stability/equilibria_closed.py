@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import multipliers_of
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start
 from substructures.analysis.stability.equilibrium_search import RESIDUAL, EquilibriaRequest, RestSearch
 from substructures.array import Array
 from substructures.tree.model import Model
@@ -29,8 +29,8 @@ class ClosedSearch(RestSearch):
 
     def __init__(self, model: Model, read: EquilibriaRequest) -> None:
         super().__init__(model, read)
-        given = {"q": [0.0] * model.dof, "t": read.t, "parameters": read.parameters, "inputs": read.inputs}
-        self.s = Constrained(model, LoopRequest.read(given))
+        start = Start([0.0] * model.dof, parameters=read.parameters, inputs=read.inputs)
+        self.s = Constrained(model, start, (read.t, read.t))
         self.open = ""
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:

@@ -11,9 +11,9 @@ from scipy.optimize import least_squares
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.motion.request_fields import Positive, Real
 from substructures.array import Array
 from substructures.documents import DocumentPart
+from substructures.documents.fields import Positive, Real
 from substructures.errors import InvalidDocument
 from substructures.quantities.states import numeric, read_states, symbol_values
 from substructures.tree.model import Model

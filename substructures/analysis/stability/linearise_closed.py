@@ -26,7 +26,7 @@ from substructures.analysis.closed.loops import independent_coordinates, least_m
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of, require_moving
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start
 from substructures.analysis.stability.linearisation import (
     MATRICES,
     Linearisation,
@@ -85,7 +85,7 @@ def linearise_closed(model: Model, request: Mapping[str, Any]) -> ClosedLinearis
     values = _values(model, read)
     chosen = chosen_inputs(model, read)
     s = _constrained(model, read, values)
-    state = consistent_state(s, values["t"], s.along.q, s.along.qd)
+    state = consistent_state(s, values["t"], s.conditions.q, s.conditions.qd)
     place = mobility(s, values["t"], state.q)
     message = state.message or ("the position is singular: " + SINGULAR if place.singular else "")
     s.move(values["t"], state.q, state.qd)
@@ -123,7 +123,7 @@ def _values(model: Model, read: LinearisationRequest) -> dict[str, float]:
 def _constrained(model: Model, read: LinearisationRequest, values: Mapping[str, float]) -> Constrained:
     numbers = {field: {name: values[name] for name in getattr(read, field)} for field in ("parameters", "inputs")}
     q, qd = ([values[f"{name}{prime}"] for name in model.coordinates] for prime in ("", "'"))
-    return Constrained(model, LoopRequest.read({"q": q, "qd": qd, "t": values["t"], **numbers}))
+    return Constrained(model, Start(q, qd, numbers["parameters"], numbers["inputs"]), (values["t"], values["t"]))
 
 
 def _put(s: Constrained, values: dict[str, float], qdd: Array, multipliers: Array) -> None:

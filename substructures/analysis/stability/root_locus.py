@@ -10,10 +10,10 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
-from substructures.analysis.motion.request_fields import Real
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
 from substructures.documents import DocumentPart, read_model
+from substructures.documents.fields import Real
 from substructures.errors import InvalidDocument
 from substructures.tree.model import Model
 
