@@ -1,69 +1,55 @@
-"""Analyses in numbers, by the names of their endpoints: a request as plain data in, a result out."""
+"""Analyses in numbers, by the names of their endpoints: the body of a request in, a result out."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
 from service.analyses.formulas import base_of, curvature_of
-from service.analyses.requests import (
-    AnySimulationRequest,
-    CurvatureRequest,
-    ExcitationRequest,
-    IdentificationRequest,
-    SensitivityRequest,
-)
+from service.analyses.requests import AnySimulationRequest, SensitivityRequest, arguments, read_request
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Source
+from service.schemas.control import GradientRequest, OptimalControlRequest
+from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
+from service.schemas.stability import EquilibriaRequest, LinearisationRequest, RootLocusRequest
 from substructures.analysis.closed.loops import analyse_loops
-from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
-from substructures.analysis.control.nonlinear_program import OptimalControlRequest
+from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.progress import ProgressReport
-from substructures.analysis.motion.requests import (
-    ClosedRequest,
-    LoopRequest,
-    RollingRequest,
-    SimulationRequest,
-    SpanRequest,
-)
+from substructures.analysis.motion.requests import LoopRequest, SpanRequest
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
-from substructures.analysis.stability.equilibrium_search import EquilibriaRequest
-from substructures.analysis.stability.linearisation import LinearisationRequest
 from substructures.analysis.stability.linearise import linearise
-from substructures.analysis.stability.root_locus import RootLocusRequest, root_locus
-from substructures.documents import read_model
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.analysis.stability.root_locus import root_locus
+from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.quantities.states import read_states
-
-Request = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """``schema``: of the request; ``media``: what the result can be; ``text``: what it is; ``needs_parts``: of the
-    tree, beside its formulas.
+    """``schema``: of the body; ``follow``: computes the result of a body that was read; ``media``: what the result can
+    be; ``text``: what it is; ``needs_parts``: of the tree, beside its formulas.
     """
 
     schema: type[BaseModel]
-    compute: Callable[[Source, Request, ProgressReport], Any]
+    follow: Callable[[Source, Any, ProgressReport], Any]
     text: str
     media: tuple[str, ...] = PLAIN
     needs_parts: bool = False
 
+    def read(self, body: Any, is_closed: bool) -> BaseModel:
+        """The body of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument with pointers."""
+        return read_request(self.schema, body, is_closed)
 
-def require_object(request: Any) -> Request:
-    """Raises InvalidDocument unless the request is an object."""
-    if not isinstance(request, Mapping):
-        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    return request
+    def compute(self, source: Source, body: Any, report: ProgressReport) -> Any:
+        """The result for the body of a request. Raises InvalidInput with pointers into it, MissingValue, TooLarge."""
+        return self.follow(source, self.read(body, bool(source.model.closures)), report)
 
 
 def _check_size(source: Source, states: int, numbers: int) -> None:
@@ -72,81 +58,72 @@ def _check_size(source: Source, states: int, numbers: int) -> None:
         raise TooLarge("the answer (in bytes)", size, source.limits.binary_bytes)
 
 
-def check_request(name: str, request: Any, is_closed: bool) -> None:
-    """Check the shape of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument."""
-    given = require_object(request)
-    read_model(_motion_schema(given, is_closed) if name == "simulations" else ANALYSES[name].schema, given)
-
-
-def _motion_schema(request: Request, is_closed: bool) -> type[SpanRequest]:
-    """As :func:`substructures.analysis.simulate.simulate` chooses."""
-    if request.get("constraints"):
-        return RollingRequest
-    return ClosedRequest if is_closed or request.get("prescribed") else SimulationRequest
-
-
-def _simulation(source: Source, request: Request, report: ProgressReport) -> Any:
+def _simulation(source: Source, request: SpanRequest, report: ProgressReport) -> Any:
     model, n = source.model, source.model.dof
-    read = read_model(_motion_schema(request, bool(model.closures)), request)
     rows = sum(len(closure.rows) for closure in model.closures)
-    _check_size(source, len(read.outputs()), 4 * n + rows + 10 + len(getattr(read, "series", ())) + len(read.inputs))
-    return simulate(model, request, report, source.folder)
+    numbers = 4 * n + rows + 10 + len(request.series) + len(request.inputs)
+    _check_size(source, len(request.outputs()), numbers)
+    return simulate(model, _plain(request), report, source.folder)
 
 
-def _sensitivities(source: Source, request: Request, report: ProgressReport) -> Any:
-    read = read_model(SensitivityRequest, request)
+def _sensitivities(source: Source, request: SensitivityRequest, report: ProgressReport) -> Any:
     n, known = source.model.dof, source.model.parameters
     faults = [
         Fault(f"/by/{i}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
-        for i, name in enumerate(read.by)
+        for i, name in enumerate(request.by)
         if name not in known
     ]
     if faults:
-        raise InvalidDocument(faults)
-    columns = len(read.by) + (2 * n if read.of_start else 0)
-    _check_size(source, len(read.outputs()), 2 * n * (columns + 1))
-    rest = {name: value for name, value in request.items() if name not in ("by", "of_start")}
-    return sensitivities(source.model, rest, read.by, read.of_start, report, source.folder)
+        raise InvalidArgument(faults)
+    columns = len(request.by) + (2 * n if request.of_start else 0)
+    _check_size(source, len(request.outputs()), 2 * n * (columns + 1))
+    rest = {name: value for name, value in _plain(request).items() if name not in ("by", "of_start")}
+    return sensitivities(source.model, rest, request.by, request.of_start, report, source.folder)
 
 
-def _linearisation(source: Source, request: Request, _: ProgressReport) -> Any:
-    read, n = read_model(LinearisationRequest, request), source.model.dof
+def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
+    return analyse_loops(source.model, _plain(request), source.folder)
+
+
+def _plain(request: BaseModel) -> dict[str, Any]:
+    return request.model_dump(exclude_unset=True)
+
+
+def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
+    n = source.model.dof
     inputs = sum(s.kind == "input" for s in source.model.program.symbols)
     states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
     _check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))
-    return linearise(source.model, request)
+    return linearise(source.model, **arguments(read))
 
 
-def _curvature(source: Source, request: Request, _: ProgressReport) -> Any:
-    read, n = read_model(CurvatureRequest, request), source.model.dof
+def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any:
+    n = source.model.dof
     states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
     _check_size(source, states, n**4 + n**3 + 2 * n * n + 1)
-    return curvature_values(source.model, request, source.limits.states, source.engine, curvature_of(source))
+    tools: dict[str, Any] = {"engine": source.engine, "formulas": curvature_of(source)}
+    return curvature_values(source.model, **arguments(read), limit=source.limits.states, **tools)
 
 
-def _optimal_control(source: Source, request: Request, report: ProgressReport) -> Any:
-    most = read_model(OptimalControlRequest, request).iterations
-
+def _optimal_control(source: Source, read: OptimalControlRequest, report: ProgressReport) -> Any:
     def told(iteration: int, _cost: float, _violation: float) -> None:
-        report(min(1.0, iteration / most))
+        report(min(1.0, iteration / read.iterations))
 
-    return optimal_control(source.model, request, told)
+    return optimal_control(source.model, **arguments(read), progress=told)
 
 
-def _excitation(source: Source, request: Request, _: ProgressReport) -> Any:
-    drives = read_model(ExcitationRequest, request).drives
-    found = excitation(base_of(source, drives), _without(request, "drives"))
+def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> Any:
+    found = excitation(base_of(source, read.drives), **_motion(read))
     return {**vars(found), "is_good": found.is_good, "advice": found.advice}
 
 
-def _identification(source: Source, request: Request, _: ProgressReport) -> Any:
-    read = read_model(IdentificationRequest, request)
-    data = _without(request, "drives", "known")
-    return identify(base_of(source, read.drives), data, source.model if read.known else None)
+def _identification(source: Source, read: IdentificationRequest, _: ProgressReport) -> Any:
+    model = source.model if read.known else None
+    return identify(base_of(source, read.drives), **_motion(read), tau=read.tau, model=model)
 
 
-def _without(request: Request, *names: str) -> Request:
-    return {name: value for name, value in request.items() if name not in names}
+def _motion(read: ExcitationRequest) -> dict[str, Any]:
+    return {name: getattr(read, name) for name in ("q", "qd", "qdd", "parameters")}
 
 
 ANALYSES: dict[str, Analysis] = {
@@ -167,19 +144,19 @@ ANALYSES: dict[str, Analysis] = {
     ),
     "equilibria": Analysis(
         EquilibriaRequest,
-        lambda source, request, _: equilibria(source.model, request),
+        lambda source, read, _: equilibria(source.model, **arguments(read)),
         "All equilibria that are found, each with its vibrations and stability; also of closed loops",
     ),
     "root-loci": Analysis(
         RootLocusRequest,
-        lambda source, request, _: root_locus(source.model, request),
+        lambda source, read, _: root_locus(source.model, **arguments(read)),
         "Eigenvalues of an equilibrium over a parameter",
         DRAWN,
     ),
     "curvatures": Analysis(CurvatureRequest, _curvature, "Riemann's tensor of the configuration space, Ricci, scalar"),
     "cost-gradients": Analysis(
         GradientRequest,
-        lambda source, request, _: cost_gradient(source.model, request),
+        lambda source, read, _: cost_gradient(source.model, **arguments(read)),
         "The cost of a motion under given controls and its gradient by the adjoint",
         TRAJECTORY,
     ),
@@ -191,7 +168,7 @@ ANALYSES: dict[str, Analysis] = {
     ),
     "loop-states": Analysis(
         LoopRequest,
-        lambda source, request, _: analyse_loops(source.model, request, source.folder),
+        _loop_state,
         "A consistent state of closed loops: mobility, redundancy, accelerations, reaction forces",
     ),
     "excitations": Analysis(

@@ -1,13 +1,16 @@
-"""Requests of analyses that the science has no document for; units are SI, angles in rad."""
+"""Bodies of requests, of every face (HTTP, jobs, command line), are read here, and become arguments of functions."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Any
 
-from pydantic import Field, RootModel
+from pydantic import BaseModel, Field, RootModel
 
+from service.schemas.parts import Part
 from substructures.analysis.motion.requests import ClosedRequest, RollingRequest, SimulationRequest
-from substructures.documents import DocumentPart
+from substructures.documents import read_model
+from substructures.errors import InvalidDocument
 
 
 class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
@@ -23,28 +26,30 @@ class SensitivityRequest(SimulationRequest):
     of_start: bool = Field(False, description="also by coordinates and velocities at the start")
 
 
-class CurvatureRequest(DocumentPart):
-    """States."""
-
-    q: Any = Field(description="(n,), (N, n) or columns by name; rad, m")
-    parameters: dict[str, Any] = Field({}, description="in place of their defaults")
-
-
-Drive = Literal["armature", "viscous", "coulomb", "offset"]
+def read_request(schema: type[BaseModel], body: Any, is_closed: bool = False) -> BaseModel:
+    """The body of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument with pointers."""
+    if not isinstance(body, Mapping):
+        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    return read_model(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body)
 
 
-class ExcitationRequest(DocumentPart):
-    """A motion: how well does it show the base parameters?"""
-
-    q: Any = Field(description="(N, n) or columns by name; rad, m")
-    qd: Any = Field(None, description="rad/s, m/s")
-    qdd: Any = Field(description="rad/s^2, m/s^2")
-    parameters: dict[str, Any] = Field({}, description="kinematic ones, in place of their defaults")
-    drives: tuple[Drive, ...] = Field((), description="columns of drives that are taken along")
+def _motion(body: Mapping[str, Any], is_closed: bool) -> type[BaseModel]:
+    """Which of the requests for simulations it is, as :func:`substructures.analysis.simulate.simulate` chooses."""
+    if body.get("constraints"):
+        return RollingRequest
+    return ClosedRequest if is_closed or body.get("prescribed") else SimulationRequest
 
 
-class IdentificationRequest(ExcitationRequest):
-    """A measured motion."""
+def arguments(request: BaseModel) -> dict[str, Any]:
+    """The fields that were given, by name, with values of the science; it has the same defaults for all others."""
+    return {name: _value(getattr(request, name)) for name in request.model_fields_set}
 
-    tau: Any = Field(description="forces of the actuators, as q; N m, N")
-    known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
+
+def _value(given: Any) -> Any:
+    if isinstance(given, Part):
+        return given.value()
+    if isinstance(given, dict):
+        return {name: _value(item) for name, item in given.items()}
+    if isinstance(given, tuple) and given and isinstance(given[0], Part):
+        return tuple(_value(item) for item in given)
+    return given

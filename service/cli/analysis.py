@@ -10,7 +10,7 @@ from typing import Any
 import orjson
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options
-from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
@@ -105,7 +105,7 @@ def _numbers(options: argparse.Namespace, name: str) -> int:
     media = _media(options.out, name)
     if is_document(options.tree):
         source = local_source(Path(options.tree))
-        result = ANALYSES[name].compute(source, require_object(request), lambda _: None)
+        result = ANALYSES[name].compute(source, request, lambda _: None)
         told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
     else:
         with Client(options.server, options.key) as client:

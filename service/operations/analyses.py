@@ -6,7 +6,7 @@ from time import perf_counter
 from typing import Any
 
 from service.analyses.formulas import Made, Options, made, velocity_equations_of
-from service.analyses.numbers import ANALYSES, require_object
+from service.analyses.numbers import ANALYSES
 from service.analyses.printing import Style, made_text
 from service.analyses.results import trajectory_of, written
 from service.analyses.source import Source
@@ -39,7 +39,7 @@ def velocity_equations(store: Store, ref: str, document: Any, style: Style) -> A
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
     source = source_of(store, tree, model)
-    return _printed(source, velocity_equations_of(source, require_object(document)), style)
+    return _printed(source, velocity_equations_of(source, document), style)
 
 
 def _printed(source: Source, found: Made, style: Style) -> Answer:
@@ -57,7 +57,7 @@ def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answ
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
     deadline = Deadline(store.settings.limits.sync_seconds)
-    result = analysis.compute(source_of(store, tree, model), require_object(request), deadline)
+    result = analysis.compute(source_of(store, tree, model), request, deadline)
     headers = {"Content-Type": media}
     motion = trajectory_of(result)
     if motion is not None:  # a CSV file has no place for them

@@ -1,10 +1,12 @@
-"""Types of fields that documents share: names, exact numbers, vectors."""
+"""Types of fields that documents share: names, exact and finite numbers, vectors."""
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
@@ -23,11 +25,26 @@ def _number(value: Any) -> Any:
     return value
 
 
+def _real(value: Any) -> float:
+    """A finite number; no text, no truth value."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, np.floating, np.integer)):
+        raise PydanticCustomError("number-expected", "a number is needed")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise PydanticCustomError("number-not-finite", "the number is not finite")
+    return number
+
+
 Number = Annotated[
     int | Decimal | str,
     BeforeValidator(_number),
     WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "maxLength": 10000}]}),
 ]
+Real = Annotated[float, BeforeValidator(_real), WithJsonSchema({"type": "number"})]
+Positive = Annotated[Real, Field(gt=0)]
 NumberVector = tuple[Number, Number, Number]
 Name = Annotated[str, Field(pattern=NAME)]
 LibraryName = Annotated[str, Field(pattern=LIBRARY_NAME)]

@@ -12,7 +12,7 @@ from typing import Any
 
 import orjson
 
-from service.analyses.numbers import ANALYSES, check_request
+from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
@@ -73,7 +73,7 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
         raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
     for request, place in zip(given, places, strict=True):
         with inside(place):
-            check_request(name, request, "closures" in summary)
+            ANALYSES[name].read(request, "closures" in summary)
             if name not in NEAR:
                 check_analysis(summary, request, name in MOTIONS, not ANALYSES[name].needs_parts)
     return given

@@ -1,0 +1,36 @@
+"""States and measured motions as they are sent to analyses; SI units, angles in rad."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from substructures.documents import DocumentPart
+
+
+class CurvatureRequest(DocumentPart):
+    """States."""
+
+    q: Any = Field(description="(n,), (N, n) or columns by name; rad, m")
+    parameters: dict[str, Any] = Field({}, description="in place of their defaults")
+
+
+Drive = Literal["armature", "viscous", "coulomb", "offset"]
+
+
+class ExcitationRequest(DocumentPart):
+    """A motion: how well does it show the base parameters?"""
+
+    q: Any = Field(description="(N, n) or columns by name; rad, m")
+    qd: Any = Field(None, description="rad/s, m/s")
+    qdd: Any = Field(description="rad/s^2, m/s^2")
+    parameters: dict[str, Any] = Field({}, description="kinematic ones, in place of their defaults")
+    drives: tuple[Drive, ...] = Field((), description="columns of drives that are taken along")
+
+
+class IdentificationRequest(ExcitationRequest):
+    """A measured motion."""
+
+    tau: Any = Field(description="forces of the actuators, as q; N m, N")
+    known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
