@@ -12,7 +12,7 @@ import orjson
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
-from substructures.analysis.stability.linearisation import Linearisation
+from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.vibrations import Mode
 from substructures.formats import arrays, arrow

@@ -8,16 +8,12 @@ simulate_tree, _closed,    one each; ``parameter_sensitivity``: derivatives of a
 _rolling                   ``writers``: trajectories as files
 loops                      ``analyse_loops``: mobility, redundancy, reactions at a state
 quasi_velocities           ``quasi_velocity_equations``: Voronets and Boltzmann-Hamel as formulas
-equilibria, linearise,     positions of rest; M, D, K and A, B, C, D, modes (``vibrations``), stability; roots over a
-root_locus                 parameter; ``perturbation``: the same as formulas (``linearise_tree``, ``linearise_closed``:
-                           one each; ``linearisation``: request and result; ``equilibrium_search``,
-                           ``equilibria_closed``: how positions of rest are found)
+stability                  ``equilibria``, ``linearise``, ``root_locus``: positions of rest; M, D, K and A, B, C, D,
+                           modes, stability; roots over a parameter; ``perturbation``: the same as formulas
 first_integrals, routh     constants of the motion as formulas (``energy``: its rule); cyclic coordinates left out
 curvature                  of the configuration space
-adjoint, gradient,         equations of the adjoint as formulas; the gradient of a cost; optimal control by shooting
-optimal_control            (``control``: the documents; ``shooting``, ``shooting_program``)
-base_parameters,           which inertial parameters the motion depends on (``dependencies``), and their values from
-identification             measurements
+control                    equations of the adjoint as formulas; the gradient of a cost; optimal control by shooting
+identification             which inertial parameters the motion depends on, and their values from measurements
 =========================  =========================================================================================
 
 What simulations share: ``requests`` (documents; their parts: ``request_fields``), ``inputs`` (inputs, events, series of

@@ -99,6 +99,7 @@ def adjoint_equations(
     moving = [*model.coordinates, *rates, *varied]
     # d(lambda_0 l - mu . ID)/dz for every z of q, q', u, p in one walk
     slope = pullback([running, *rows], [weight, *(-x for x in mu)], names)
+    # dphi/d(q, q', p)
     end = pullback([terminal], [scope.graph.one], moving)
     accelerations = (scope.names[f"{name}''"] for name in model.coordinates)
     rate = [scope.names[name] for name in rates]

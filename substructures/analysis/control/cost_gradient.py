@@ -35,8 +35,9 @@ ROUGH = (
 
 @dataclass(frozen=True, repr=False)
 class CostGradient:
-    """J and its derivatives: ``controls`` (nodes, m) in the order of ``names``, ``q`` and ``qd`` (n,) by the state at
-    the start, ``parameters`` by name. ``trajectory``: the motion with ``controls``, ``costates`` and ``hamiltonian``.
+    """J and its derivatives: dJ/du ``controls`` (nodes, m) in the order of ``names``; by the state at the start dJ/dq
+    ``q`` and dJ/dq' ``qd`` (n,); dJ/dp ``parameters`` by name. ``trajectory``: the motion with the series ``controls``,
+    ``costates`` and ``hamiltonian``.
 
     ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change.
     """
@@ -107,6 +108,7 @@ def cost_gradient(
 
 def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], vary: tuple[str, ...]) -> CostGradient:
     controls = per_node(problem, values, "values")
+    # x_0 = (q, q') and dJ/dx_0 = lambda_0
     start = initial_state(model, problem)
     shooting = Shooting(model, problem, vary)
     run = shooting.run(start[None], controls)
@@ -136,12 +138,14 @@ def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:
     """
     n, states, lam = shooting.model.dof, run.states, slope.costates[0]
     costates = np.concatenate([lam[:-1].swapaxes(0, 1).reshape(-1, 2 * n), lam[-1:, -1]])
+    # H(x_j, u_j, lambda_j) before every step; there is no stage after the last one
     H = shooting.hamiltonians(run, lam)
     series = {
         "controls": shooting.controls_at_steps(run.controls),
         "costates": costates,
         "hamiltonian": np.append(H, H[-1:]),
     }
+    # t_j = t_0 + j h
     t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(states)), dtype=np.float64)
     finite = np.isfinite(states).all(axis=1)
     if finite.all() and np.isfinite(run.cost):

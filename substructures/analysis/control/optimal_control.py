@@ -49,7 +49,7 @@ ADVICE = {
 
 @dataclass(frozen=True, repr=False)
 class Optimum:
-    """The best controls found (nodes, m), in the order of ``names``, with their cost and motion.
+    """The best ``controls`` found (nodes, m) [N m, N], in the order of ``names``, with their cost and motion.
 
     ``status``: optimal; feasible (demands hold, not stationary yet); failed; ``message`` says what to change.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost;
@@ -168,6 +168,7 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
     # at a lower bound the cost may only rise upwards, at an upper one downwards
     slope[below] = np.minimum(slope[below], 0)
     slope[above] = np.maximum(slope[above], 0)
+    # |dL/dz| relative to |dJ/dz|
     stationarity = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
     violation = float(np.abs(residual).max(initial=0))
     limit = max(1e-6, 10 * search.wanted.tolerance)
@@ -195,6 +196,7 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
 
 def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:
     """The trajectory with the costates of the Lagrangian, and the drift of the Hamiltonian."""
+    # L = J + nu . (end - demand): nu are the costates at the ends of segments
     ends = np.zeros((search.S, search.size))
     gaps = (search.S - 1) * search.size
     ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
@@ -204,5 +206,6 @@ def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajector
     program = search.shooting.equations.program
     if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
         return motion, None
+    # dH/dt = 0 along an optimal motion where neither l nor the forces depend on t
     H = motion.series["hamiltonian"]
     return motion, float(np.ptp(H) / max(float(np.abs(H).max()), 1e-12))

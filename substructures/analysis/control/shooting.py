@@ -119,6 +119,7 @@ class Shooting:
                     total += WEIGHTS[i] * rate
                     cost += self.h * WEIGHTS[i] * float(found["running_cost"].sum())
                 x = x + self.h * total
+            # + phi(x(T))
             cost += float(self._terminal(x[-1:], controls)["terminal_cost"][0])
         return Rollout(controls, stages, accelerations, metrics, x, cost)
 
@@ -177,6 +178,7 @@ class Shooting:
     def _controls(self, controls: Array, j: int, i: int) -> tuple[Array, Array]:
         """u (S, m) and t (S,) of a stage."""
         interval, inside = self._place(j, i)
+        # t = t_0 + (k + s) T/K for the place s in the interval k of K
         t = self.problem.t + (interval + inside) * (self.problem.horizon / self.problem.intervals)
         if self.problem.hold == "constant":
             return controls[interval], t

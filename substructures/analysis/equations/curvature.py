@@ -112,6 +112,7 @@ def curvature_values(
     states = read_states(model, given, limit)
     values = symbol_values(model, given, states, ("metric",))
     found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), len(states.q))
+    # g^ab is not finite where det g = 0, and R, S with it
     good = np.all([np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in found.values()], axis=0)
     failures = tuple(StateFailure(int(i), "not-finite", ADVICE) for i in np.flatnonzero(~good))
     riemann, ricci, scalar, inverse, second = (found[name][0] if states.single else found[name] for name in OUTPUTS)

@@ -12,7 +12,7 @@ import numpy as np
 
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.stability.equilibrium_search import ClosedSearch, Conditions, RestSearch, SearchRange
-from substructures.analysis.stability.linearisation import ClosedLinearisation, Linearisation
+from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
 from substructures.array import Array
 from substructures.tree.model import Model

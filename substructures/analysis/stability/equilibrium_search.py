@@ -85,6 +85,7 @@ class RestSearch:
         outputs |= {"residual": self.F, "stiffness": self.K}
         columns.append((list(model.coordinates), self.q))
         self.run = program_kernel(perturbation(model)).bind(outputs, values, columns=columns)
+        # places in +-pi for angles, +-reach for distances
         turning = [kind == "R" for kind in model.joints]
         self.size = np.where(turning, np.pi, within.reach)
         self.turning = np.array([t and self._is_periodic(a) for a, t in enumerate(turning)], dtype=bool)
@@ -144,6 +145,7 @@ class RestSearch:
                 q[moving] = least_squares(lambda x: both(x)[0], start[moving], lambda x: both(x)[1], **TOLERANCES).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
+        # |Q| <= 1e-10 max(1, |K|)
         if not np.abs(F).max(initial=0) <= RESIDUAL * max(1.0, float(np.abs(K).max(initial=0))):
             return None
         return self._wound(q)

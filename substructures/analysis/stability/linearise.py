@@ -12,7 +12,7 @@ from substructures.analysis.arguments import Scalar
 from substructures.analysis.equations.formulas import inputs_of, require_moving
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
-from substructures.analysis.stability.linearisation import Linearisation
+from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, stability
@@ -64,6 +64,7 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     source = perturbation(model)
     values = symbol_values(model, point.conditions, states, DYNAMICS)
     qdd = _accelerations(model, values, states)
+    # M, D, K, F and the residual at (q, q', q'', u, t)
     values |= {f"{name}''": qdd[:, a] for a, name in enumerate(model.coordinates)}
     found = interpret_in_blocks(source, values, list(MATRICES), len(qdd))
     found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
@@ -96,7 +97,7 @@ def _assembled(
     for m, d, k, f in zip(M, D, K, F, strict=True):
         try:
             pairs.append((first_order(m, d, k), input_matrix(m, f)))
-        except np.linalg.LinAlgError:
+        except np.linalg.LinAlgError:  # M^-1 does not exist: a failure, told below
             n = len(m)
             pairs.append((np.full((2 * n, 2 * n), np.nan), np.full((2 * n, f.shape[1]), np.nan)))
     A, B = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])

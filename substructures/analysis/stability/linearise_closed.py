@@ -27,7 +27,7 @@ from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.motion.requests import LoopRequest
-from substructures.analysis.stability.linearisation import ClosedLinearisation
+from substructures.analysis.stability.linearisation_result import ClosedLinearisation
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, normed, stability
 from substructures.array import Array
@@ -56,6 +56,7 @@ def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     qdd, multipliers = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
     try:
         qdd, _ = s.accelerations(s.independent_rows())
+        # G^T lambda = g q'' + Gamma q' q' - Q
         multipliers = least_multipliers(s, qdd)
     except Singular as error:
         message = message or str(error)
@@ -110,6 +111,7 @@ def _reduced(
     """Everything at the state where s is, in independent coordinates; ``names``: of inputs and outputs."""
     coordinates, n = s.model.coordinates, s.n
     M, D, K, F, C = (found[name] for name in ("metric", "damping", "stiffness", "input", "C"))
+    # dq = N dy by the pivots of G
     y = independent_coordinates(s.G)
     N, rate, second = _tangent(s.independent_rows(), y, *(found[name] for name in ALONG))
     with np.errstate(invalid="ignore"):
@@ -136,7 +138,7 @@ def _reduced(
 def _tangent(
     rows: NDArray[np.int64], y: NDArray[np.int64], G: Array, rate: Array, second: Array
 ) -> tuple[Array, Array, Array]:
-    """N, N', N'' (n, r) (notation.md, section 7)."""
+    """N, N', N'' (n, r) (notation.md, section 10)."""
     n = G.shape[1]
     others = np.setdiff1d(np.arange(n), y)
     G, rate, second = G[rows], rate[rows], second[rows]

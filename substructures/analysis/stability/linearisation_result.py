@@ -47,6 +47,7 @@ class Linearisation:
     message: str = ""
 
     def __repr__(self) -> str:
+        # (N, n, n) for N states, (n, n) for one
         states = self.M.shape[0] if self.M.ndim == 3 else 1
         sizes = f"n={self.M.shape[-1]}, inputs={len(self.inputs)}, outputs={len(self.outputs)}, states={states}"
         return f"{type(self).__name__}({sizes})\n{self._finding()}"
