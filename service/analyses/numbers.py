@@ -92,14 +92,15 @@ def _plain(request: BaseModel) -> dict[str, Any]:
 def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
     n = source.model.dof
     inputs = sum(s.kind == "input" for s in source.model.program.symbols)
-    states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
+    given = {"q": read.q, "qd": read.qd, "qdd": read.qdd}
+    states = read_states(source.model, given, source.limits.states).count
     _check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))
     return linearise(source.model, **arguments(read))
 
 
 def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any:
     n = source.model.dof
-    states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
+    states = read_states(source.model, {"q": read.q, "parameters": read.parameters}, source.limits.states).count
     _check_size(source, states, n**4 + n**3 + 2 * n * n + 1)
     tools: dict[str, Any] = {"engine": source.engine, "formulas": curvature_of(source)}
     return curvature_values(source.model, **arguments(read), limit=source.limits.states, **tools)

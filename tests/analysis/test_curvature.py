@@ -173,3 +173,13 @@ def test_refusals_and_failures() -> None:
     )
     failures = curvature_values(sphere, [[0, 1], [0, 0]]).failures
     assert [f.state for f in failures] == [1]
+
+
+def test_one_position_for_all_parameters() -> None:
+    model = shipped("double-pendulum")
+    name = next(iter(model.parameters))
+    found = curvature_values(model, [0.3, 0.7], parameters={name: [1, 2]})
+    assert found.riemann.shape == (2, 2, 2, 2, 2)
+    one = curvature_values(model, [0.3, 0.7], parameters={name: 2})
+    assert np.array_equal(found.riemann[1], one.riemann)
+    assert repr(one).startswith("CurvatureValues(n=2, states=1, failures=0)\nscalar curvature from ")

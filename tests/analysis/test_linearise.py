@@ -90,6 +90,17 @@ def test_along_a_driven_trajectory() -> None:
     np.testing.assert_allclose(found.residual, 0, atol=1e-12)
 
 
+def test_one_position_for_all_velocities() -> None:
+    """What is given once holds for all states: q for all q', q'' for all q."""
+    model = catalogue_model("double-pendulum")
+    q, qd = np.array([0.3, -0.2]), np.array([[0, 0], [1, 2], [3, 1]])
+    for found in (linearise(model, q, qd=qd), linearise(model, q[None], qd=qd)):
+        np.testing.assert_array_equal(found.A, linearise(model, np.tile(q, (3, 1)), qd=qd).A)
+    found = linearise(model, np.stack([q, 2 * q]), qdd=[1, 2])
+    assert found.qdd.tolist() == [[1, 2], [1, 2]]
+    np.testing.assert_array_equal(found.K[1], linearise(model, 2 * q, qdd=[1, 2]).K)
+
+
 def test_damping_is_twice_coriolis_less_dampers() -> None:
     model = catalogue_model("ur5")
     x = random_states(np.random.default_rng(2), 1, 6)

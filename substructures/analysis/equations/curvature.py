@@ -111,7 +111,7 @@ def curvature_values(
     given = {"q": q, "parameters": parameters or {}}
     states = read_states(model, given, limit)
     values = symbol_values(model, given, states, ("metric",))
-    found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), len(states.q))
+    found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), states.count)
     # g^ab is not finite where det g = 0, and R, S with it
     good = np.all([np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in found.values()], axis=0)
     failures = tuple(StateFailure(int(i), "not-finite", ADVICE) for i in np.flatnonzero(~good))

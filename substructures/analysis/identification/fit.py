@@ -191,7 +191,9 @@ def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (RE
         raise InvalidArgument.at("/qdd", "missing", "accelerations 'qdd' are needed")
     values = symbol_values(view, vars(motion), states, ())
     values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(base.coordinates)}
-    return _Data(states.q, states.qd, states.qdd, interpret_in_blocks(base.program, values, names, len(states.q)))
+    # one position for all accelerations, ...
+    q, qd, qdd = (np.broadcast_to(x, (states.count, states.q.shape[1])) for x in (states.q, states.qd, states.qdd))
+    return _Data(q, qd, qdd, interpret_in_blocks(base.program, values, names, states.count))
 
 
 def _forces(given: Any, data: _Data) -> Array:

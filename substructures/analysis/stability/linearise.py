@@ -78,8 +78,8 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
 
 def _accelerations(model: Model, values: Mapping[str, Any], states: States) -> Array:
     if states.qdd is not None:
-        return np.array(states.qdd)
-    found = interpret_in_blocks(model.program, values, list(DYNAMICS), len(states.q))
+        return np.array(np.broadcast_to(states.qdd, (states.count, model.dof)))
+    found = interpret_in_blocks(model.program, values, list(DYNAMICS), states.count)
     # g q'' = Q - Gamma q' q'
     return cholesky_solve(found["metric"], found["forces"] - found["bias"])
 
