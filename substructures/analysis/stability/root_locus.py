@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -14,7 +15,7 @@ from substructures.analysis.given import StateArray, numbers
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument
-from substructures.quantities.states import read_states
+from substructures.quantities.states import numeric, read_states
 from substructures.tree.model import Model
 
 #: of a parameter
@@ -66,7 +67,7 @@ def root_locus(
     others, constant = numbers(parameters, "parameters"), numbers(inputs, "inputs")
     if parameter not in model.parameters:
         raise InvalidArgument.at("/parameter", "unknown-parameter", f"unknown parameter '{str(parameter)[:80]}'")
-    near = read_states(model, {"q": q}, 1).q[0]
+    near = _start(model, q)
     rows: list[tuple[Array, ComplexArray, str]] = []
     status, message = "finished", ""
     for value in at:
@@ -86,6 +87,16 @@ def root_locus(
         status,
         message,
     )
+
+
+def _start(model: Model, q: Any) -> Array:
+    """One position (n,), by coordinate, or a number where there is one coordinate. Raises InvalidInput."""
+    if isinstance(q, Mapping):
+        return read_states(model, {"q": q}, 1).q[0]
+    start = np.atleast_1d(numeric(q, "/q"))
+    if start.shape != (model.dof,):
+        raise InvalidArgument.at("/q", "wrong-length", f"shape {start.shape} found, ({model.dof},) expected")
+    return start
 
 
 def _nearest(
