@@ -12,7 +12,6 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.part.scope import Scope
-from substructures.quantities.states import numeric
 
 #: a number or an expression (substructures.expr.parse); floats stand for their shortest decimal text
 Scalar = int | float | Decimal | str
@@ -34,11 +33,18 @@ def real(value: Any, pointer: str) -> float:
 
 
 def reals(values: Any, pointer: str) -> tuple[float, ...]:
-    """Finite numbers (K,). Raises InvalidInput."""
-    found = numeric(values, pointer)
-    if found.ndim != 1:
-        raise InvalidArgument.at(pointer, "wrong-length", f"shape {found.shape} found, (K,) expected")
-    return tuple(found.tolist())
+    """Finite numbers (K,). Raises InvalidArgument."""
+    if isinstance(values, np.ndarray):
+        if values.ndim != 1:
+            raise InvalidArgument.at(pointer, "wrong-length", f"shape {values.shape} found, (K,) expected")
+        values = values.tolist()
+    if not isinstance(values, list | tuple):
+        message = f"a list or an array of numbers is needed, found {repr(values)[:80]}"
+        raise InvalidArgument.at(pointer, "number-expected", message)
+    # a million numbers that were checked before take no second look one by one
+    if all(type(x) is float for x in values) and np.isfinite(values).all():
+        return tuple(values)
+    return tuple(real(x, f"{pointer}/{i}") for i, x in enumerate(values))
 
 
 def positive(value: Any, name: str) -> float:
@@ -83,6 +89,7 @@ def exact(value: Any, pointer: str) -> int | Decimal | str:
     number = real(value, pointer)
     if isinstance(value, int | Decimal):
         return value
+    # a float means its shortest decimal text, as in a document: 0.1 is 1/10
     return int(value) if isinstance(value, np.integer) else Decimal(repr(number))
 
 
