@@ -15,10 +15,10 @@ import numpy as np
 from benchmarks.report import options
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.analysis.closed.constrained import Constrained
-from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reductions import REDUCTIONS
-from substructures.analysis.closed.simulation import simulate_closed
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start
+from substructures.analysis.simulate import simulate
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers: start, and values at t = 0.03 s
 SQUEEZER = {
@@ -56,8 +56,8 @@ def requests(model: Model, name: str) -> dict[str, Any]:
 
 def per_call(model: Model, request: dict[str, Any], calls: int = 2000) -> float:
     """Seconds for q'' at one state: compiled formulas and the linear equations."""
-    state = analyse_loops(model, {k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
-    s = Constrained(model, LoopRequest.read({"q": request["q"]}))
+    state = loop_state(model, **{k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
+    s = Constrained(model, Start(request["q"]), (0, 0))
     s.move(0, state.q, state.qd)
     rows = s.independent_rows()
     start = perf_counter()
@@ -74,7 +74,7 @@ def measure(name: str, method: str) -> dict[str, Any]:
     seconds = []
     for _ in range(5):
         start = perf_counter()
-        motion = simulate_closed(model, request)
+        motion = simulate(model, **request)
         seconds.append(perf_counter() - start)
     result: dict[str, Any] = {"mechanism": name, "method": method, "seconds": median(seconds), "steps": motion.steps}
     result |= {check.name: check.worst / check.scale for check in motion.checks}

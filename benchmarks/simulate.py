@@ -23,9 +23,9 @@ from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
 from benchmarks.report import keep, options
 from substructures import couple, derive
-from substructures.analysis.motion.requests import TAYLOR
+from substructures.analysis.motion.problem import TAYLOR
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import FixedStep, simulate
 from substructures.compile import compile_program
 from substructures.tree.model import Model
 
@@ -113,7 +113,7 @@ def ours(model: Model, system: Chain, method: str) -> list[Run]:
 
     def once(k: int) -> Array:
         request = base | {"relative_tolerance": 10.0**-k, "absolute_tolerance": 10.0 ** -(k + 1)}
-        return simulate(model, request).q[-1]
+        return simulate(model, **request).q[-1]
 
     start = perf_counter()
     once(6)
@@ -126,7 +126,7 @@ def ours_fixed(model: Model, system: Chain) -> list[Run]:
     numbers = {name: system.numbers[name.removeprefix("p0.")] for name in model.parameters}
     base = {"q": system.q, "qd": system.qd, "span": [0, SPAN], "count": 2, "parameters": numbers}
     steps = [SPAN / (250 * 2**k) for k in range(7)]
-    return [timed(f"h = {h:.1e}", lambda h=h: simulate(model, base | {"fixed_step": {"step": h}}).q[-1]) for h in steps]
+    return [timed(f"h = {h:.1e}", lambda h=h: simulate(model, **base, fixed_step=FixedStep(h)).q[-1]) for h in steps]
 
 
 def sympy_function(system: Chain) -> Callable[[float, Array], Array]:

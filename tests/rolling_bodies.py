@@ -6,6 +6,7 @@ from closed_trees import tree_model
 from random_trees import Plain
 
 from substructures import Model
+from substructures.analysis.simulate import KnifeEdge, Rolling
 
 
 def single(part: Plain, gravity: list[float]) -> Model:
@@ -27,13 +28,13 @@ def sleigh(gravity: tuple[float, ...] = (0, 0, 0)) -> Model:
     return single({"name": "sleigh", "parameters": parameters, "bodies": [body]}, list(gravity))
 
 
-BLADE: Plain = {"name": "blade", "type": "knife_edge", "frame": "s.b"}
+BLADE = KnifeEdge("blade", "s.b")
 FORWARD = {"u": "cos(s.f)*s.x' + sin(s.f)*s.y'", "w": "s.f'"}
 
 
 #: radius and mass of the disc, its moments of inertia about a diameter and about the axis
 R, M, A, C = 0.5, 2.0, 0.125, 0.25
-FLOOR: Plain = {"name": "floor", "type": "rolling", "frame": "s.disc", "radius": "s.r"}
+FLOOR = Rolling("floor", "s.disc", "s.r")
 
 
 def disc() -> Model:

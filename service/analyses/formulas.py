@@ -9,8 +9,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from pydantic import BaseModel
+
+from service.analyses.requests import arguments, read_request
 from service.analyses.source import Source
 from service.cache import Cache
+from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature
@@ -19,7 +23,6 @@ from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation, state_space
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
-from substructures.analysis.equations.velocity_constraints import VelocityConstraints
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
@@ -105,18 +108,23 @@ def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:
     return found
 
 
-def velocity_equations_of(source: Source, document: Mapping[str, Any]) -> Made:
+def velocity_equations_of(source: Source, body: Any) -> Made:
     """Voronets' and Boltzmann-Hamel equations of a model with velocity constraints.
 
-    Raises InvalidDocument with pointers into the document, TooLarge.
+    Raises InvalidInput with pointers into the body, TooLarge.
     """
-    found = quasi_velocity_equations(source.model, document)
+    found = quasi_velocity_equations(source.model, **arguments(read_constraints(body)))
     names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
     members = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
     size, limit = len(found.program), source.limits.program_nodes
     if size > limit:
         raise TooLarge("the formulas (in operations)", size, limit)
     return Made(found.program, members)
+
+
+def read_constraints(body: Any) -> BaseModel:
+    """A body of ``velocity-equations``. Raises InvalidDocument."""
+    return read_request(VelocityConstraints, body)
 
 
 def base_of(source: Source, drives: tuple[str, ...]) -> BaseParameters:
@@ -211,6 +219,6 @@ QUANTITIES = tuple(_QUANTITIES)
 #: those that need the parts of the tree, beside its formulas
 OF_PARTS = tuple(name for name, quantity in _QUANTITIES.items() if quantity.needs_parts)
 #: formulas that follow from a model and a document: what checks its shape, and what makes them
-WITH_DOCUMENT: dict[str, tuple[Callable[[Any], object], Callable[[Source, Mapping[str, Any]], Made]]] = {
-    "velocity-equations": (VelocityConstraints.read, velocity_equations_of)
+WITH_DOCUMENT: dict[str, tuple[Callable[[Any], object], Callable[[Source, Any], Made]]] = {
+    "velocity-equations": (read_constraints, velocity_equations_of)
 }

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
 from service.analyses.formulas import base_of, curvature_of
-from service.analyses.requests import AnySimulationRequest, SensitivityRequest, arguments, read_request
+from service.analyses.requests import arguments, read_request
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Source
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
+from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest
 from service.schemas.stability import EquilibriaRequest, LinearisationRequest, RootLocusRequest
-from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.progress import ProgressReport
-from substructures.analysis.motion.requests import LoopRequest, SpanRequest
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
@@ -58,35 +58,35 @@ def _check_size(source: Source, states: int, numbers: int) -> None:
         raise TooLarge("the answer (in bytes)", size, source.limits.binary_bytes)
 
 
+def _without(given: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {name: value for name, value in given.items() if name not in names}
+
+
 def _simulation(source: Source, request: SpanRequest, report: ProgressReport) -> Any:
-    model, n = source.model, source.model.dof
+    model, n, given = source.model, source.model.dof, arguments(request)
     rows = sum(len(closure.rows) for closure in model.closures)
     numbers = 4 * n + rows + 10 + len(request.series) + len(request.inputs)
-    _check_size(source, len(request.outputs()), numbers)
-    return simulate(model, _plain(request), report, source.folder)
+    _check_size(source, len(request.output_times().grid()), numbers)
+    return simulate(model, request.q, **_without(given, "q"), progress=report, folder=source.folder)
 
 
 def _sensitivities(source: Source, request: SensitivityRequest, report: ProgressReport) -> Any:
-    n, known = source.model.dof, source.model.parameters
+    n, given = source.model.dof, arguments(request)
     faults = [
-        Fault(f"/by/{i}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
-        for i, name in enumerate(request.by)
-        if name not in known
+        Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
+        for name in ("events", "fixed_step", "series")
+        if getattr(request, name)
     ]
     if faults:
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
-    _check_size(source, len(request.outputs()), 2 * n * (columns + 1))
-    rest = {name: value for name, value in _plain(request).items() if name not in ("by", "of_start")}
-    return sensitivities(source.model, rest, request.by, request.of_start, report, source.folder)
+    _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
+    rest = _without(given, "q", "events", "fixed_step", "series", "drift_limit")
+    return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 
 def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
-    return analyse_loops(source.model, _plain(request), source.folder)
-
-
-def _plain(request: BaseModel) -> dict[str, Any]:
-    return request.model_dump(exclude_unset=True)
+    return loop_state(source.model, request.q, **_without(arguments(request), "q"), folder=source.folder)
 
 
 def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:

@@ -5,25 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel, Field, RootModel
+from pydantic import BaseModel
 
+from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.parts import Part
-from substructures.analysis.motion.requests import ClosedRequest, RollingRequest, SimulationRequest
 from substructures.documents import read_model
 from substructures.errors import InvalidDocument
-
-
-class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
-    """With ``constraints``: velocity constraints; else of a tree with closures, or with ``prescribed`` coordinates;
-    else of an open tree.
-    """
-
-
-class SensitivityRequest(SimulationRequest):
-    """A simulation, and the parameters by which its motion is differentiated."""
-
-    by: tuple[str, ...] = Field((), description="parameters")
-    of_start: bool = Field(False, description="also by coordinates and velocities at the start")
 
 
 def read_request(schema: type[BaseModel], body: Any, is_closed: bool = False) -> BaseModel:

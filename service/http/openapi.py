@@ -14,7 +14,7 @@ from service.analyses.numbers import ANALYSES
 from service.schemas.jobs import CancelRequest, JobRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
-from substructures.analysis.equations.velocity_constraints import VelocityConstraints
+from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.part.definition import Definition
 from substructures.tree.document import Instance, TreeSpec
 

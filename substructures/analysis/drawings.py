@@ -49,6 +49,7 @@ def _drifts(motion: Trajectory) -> Iterator[Line]:
     for check in motion.checks:
         values = _judged(motion, check)
         if values is not None and len(values):
+            # (H(t) - H(0)) / scale
             yield Line(check.name, motion.t, (values - values[0]) / (check.scale or 1.0))
 
 
@@ -56,6 +57,7 @@ def _judged(motion: Trajectory, check: Check) -> Array | None:
     """The series that a check is about."""
     series = motion.series
     if check.name == "energy-balance" and {"energy", "work"} <= series.keys():
+        # H - W
         return np.asarray(series["energy"] - series["work"])
     values = series.get(check.name) if check.rule == "constant" else None
     return values if values is not None and values.ndim == 1 else None
@@ -63,6 +65,7 @@ def _judged(motion: Trajectory, check: Check) -> Array | None:
 
 def draw_root_locus(locus: RootLocus) -> str:
     """SVG: the branches in the complex plane, and the real parts over the parameter; below zero is stable."""
+    # s = real + i imaginary of exp(s t)
     real, imaginary = locus.eigenvalues.real, locus.eigenvalues.imag
     branches = range(real.shape[1])
     plane = tuple(Line(f"branch {k + 1}", real[:, k], imaginary[:, k], dots=True) for k in branches)

@@ -7,7 +7,7 @@ import pytest
 from closed_trees import angles, tree_model
 from random_trees import GRAVITY, Plain, add_inertia, vector
 
-from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.loops import loop_state
 from substructures.quantities.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
@@ -34,7 +34,7 @@ def test_independent_engine(kind: str) -> None:
     seat = {"position": [float(v) for v in where], "rpy": [float(v) for v in reversed(angles(turned))]}
     closure = {"name": "c", "type": kind, "from": "x.tip", "to": "world", "placement": seat}
     model = tree_model(document | {"closures": [closure]}, {"d": definition})
-    found = analyse_loops(model, {"q": start, "qd": rng.uniform(-1, 1, 8)})
+    found = loop_state(model, start, qd=rng.uniform(-1, 1, 8))
     assert found.message == ""
     engine = engine_of(definition, GRAVITY)
     j1, p1 = engine.frames["tip"]

@@ -19,7 +19,7 @@ DOWN = (0, -9.81, 0)
 
 def along(model: Model, found: FirstIntegrals, request: Plain) -> dict[str, Any]:
     """Values of all integrals along a simulated motion."""
-    motion = simulate(model, request | {"span": [0, 0.6], "count": 7})
+    motion = simulate(model, **request, span=(0, 0.6), count=7)
     assert motion.is_right, motion.message
     values: Plain = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= {s.name: 0.0 for s in model.program.symbols if s.kind == "input"} | {"t": motion.t}

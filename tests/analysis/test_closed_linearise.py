@@ -10,7 +10,7 @@ from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank
 from random_trees import Plain
 
 from substructures import Model
-from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.linearise_closed import ClosedLinearisation
 
@@ -32,7 +32,7 @@ def rates(model: Model, at: ClosedLinearisation, y: np.ndarray, speed: np.ndarra
     q, qd = at.q.copy(), at.qd.copy()
     index = [model.coordinates.index(name) for name in at.independent]
     q[index], qd[index] = y, speed
-    found = analyse_loops(model, {"q": q, "qd": qd, "fixed": list(at.independent), "inputs": inputs})
+    found = loop_state(model, q, qd=qd, fixed=list(at.independent), inputs=inputs)
     assert not found.message
     return found.qdd[index]
 
@@ -83,7 +83,7 @@ def test_outputs_of_other_coordinates() -> None:
         q = at.q.copy()
         q[y] += h
         fixed = {"q": q, "qd": at.qd, "fixed": list(at.independent)}
-        return analyse_loops(model, fixed).consistent.qd[rocker : rocker + 1]
+        return loop_state(model, **fixed).consistent.qd[rocker : rocker + 1]
 
     np.testing.assert_allclose(at.C[1, :1], difference(speed), rtol=1e-7)
     np.testing.assert_allclose(at.Dy[:, 0], [0, 0, 1])

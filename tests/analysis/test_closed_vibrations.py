@@ -15,7 +15,7 @@ from substructures import InvalidInput, Model
 from substructures.analysis.drawings import draw_root_locus
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Event, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.linearise_closed import ClosedLinearisation
@@ -74,8 +74,8 @@ def test_the_period_of_small_swings(make: Callable[[], Model]) -> None:
     name, period = at.independent[0], 2 * np.pi / at.modes[0].frequency
     start = at.q + 1e-3 * at.tangent[:, 0]
     level = float(at.q[model.coordinates.index(name)])
-    event = {"name": "up", "quantity": name, "level": level, "direction": "rising", "action": "record"}
-    motion = simulate(model, {"q": start, "span": [0, 3.2 * period], "events": [event], "fixed": [name]})
+    event = Event("up", name, level=level, direction="rising", action="record")
+    motion = simulate(model, start, (0, 3.2 * period), events=[event], fixed=[name])
     assert motion.is_right, motion.message
     np.testing.assert_allclose(np.diff([e.t for e in motion.events]), period, rtol=1e-5)
 

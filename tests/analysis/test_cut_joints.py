@@ -9,7 +9,7 @@ import pytest
 from closed_trees import angles, tree_model
 from random_trees import GRAVITY, Plain, add_inertia, number, vector
 
-from substructures.analysis.closed.loops import analyse_loops
+from substructures.analysis.closed.loops import loop_state
 from substructures.part.topology import CHAINS
 from substructures.quantities.evaluation import evaluate
 
@@ -49,13 +49,13 @@ def test_any_joint_may_be_cut(kind: str) -> None:
     speeds = np.concatenate((qd[:1], np.zeros(6), qd[1 + n :]))
     rates = slopes(chain, q, qd, b2)
     speeds[1:7] = rates
-    found = analyse_loops(closed, {"q": start, "qd": speeds})
+    found = loop_state(closed, start, qd=speeds)
     assert found.message == ""
     assert found.mobility.degrees_of_freedom == chain.dof
     assert not found.mobility.redundant
     np.testing.assert_allclose(found.consistent.q, start, atol=1e-11)
     np.testing.assert_allclose(found.consistent.qd, speeds, atol=1e-6)
-    again = analyse_loops(closed, {"q": found.consistent.q, "qd": speeds})
+    again = loop_state(closed, found.consistent.q, qd=speeds)
     expected = answer["forward_dynamics"]
     np.testing.assert_allclose(again.qdd[[0, -1]], expected[[0, -1]], rtol=1e-6, atol=1e-6 * np.abs(expected).max())
 

@@ -9,7 +9,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
-from substructures import InvalidDocument, Model
+from substructures import InvalidArgument, InvalidDocument, Model
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.equations.routh import routh
 from substructures.expr.interpret import interpret
@@ -213,7 +213,7 @@ def test_a_coordinate_that_is_not_cyclic_is_refused() -> None:
 def test_unknown_names_are_refused() -> None:
     model = catalogue_model("simple-pendulum")
     for given, pointer in (({"inputs": ["tau.y"]}, "/inputs"), ({"zero": ["x.nothing"]}, "/parameters")):
-        with pytest.raises(InvalidDocument) as error:
+        with pytest.raises(InvalidArgument) as error:
             first_integrals(model, **given)
         assert error.value.faults[0].pointer == pointer
 

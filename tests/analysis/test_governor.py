@@ -7,8 +7,8 @@ import pytest
 from closed_motions import right
 from closed_trees import at, governor
 
-from substructures.analysis.closed.loops import analyse_loops
-from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.closed.loops import loop_state
+from substructures.analysis.simulate import simulate
 
 
 def lift(angle: float) -> tuple[float, float, float]:
@@ -36,7 +36,7 @@ def test_governor_accelerations(angle: float, rate: float, spin: float) -> None:
     model = governor()
     start = at(model, right=angle, left=angle, lift=lift(angle)[0])
     speeds = at(model, right=rate, left=rate, lift=lift(angle)[1] * rate, turn=spin)
-    found = analyse_loops(model, {"q": start, "qd": speeds})
+    found = loop_state(model, start, qd=speeds)
     assert (found.mobility.degrees_of_freedom, found.mobility.redundant) == (2, False)
     np.testing.assert_allclose(found.consistent.q, start, atol=1e-12)
     arms, spindle = governor_accelerations(angle, rate, spin)
@@ -49,10 +49,10 @@ def test_governor_keeps_its_speed_and_its_angular_momentum() -> None:
     low, high = governor_accelerations(angle, 0, 0)[0], governor_accelerations(angle, 0, 1)[0]
     steady = np.sqrt(-low / (high - low))
     start = at(model, right=angle, left=angle, lift=lift(angle)[0])
-    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=steady), "span": [0, 0.5], "count": 3})
+    motion = simulate(model, start, (0, 0.5), qd=at(model, turn=steady), count=3)
     right(motion)
     np.testing.assert_allclose(motion.q[-1][1:], start[1:], atol=1e-9)
-    motion = simulate_closed(model, {"q": start, "qd": at(model, turn=1.2 * steady), "span": [0, 1.5], "count": 51})
+    motion = simulate(model, start, (0, 1.5), qd=at(model, turn=1.2 * steady), count=51)
     right(motion)
     arms = motion.q[:, model.coordinates.index("x.right")]
     momentum = (0.011 + 2 * (0.03 + 0.3 * np.sin(arms)) ** 2) * motion.qd[:, 0]

@@ -13,7 +13,7 @@ from rolling_bodies import BLADE, FLOOR, FORWARD, R, disc, sleigh
 
 from substructures import Model
 from substructures.analysis.motion.trajectory import Check, Trajectory
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Event, FixedStep, simulate
 from substructures.quantities.evaluation import evaluate
 
 TREES: dict[str, tuple[str, Plain]] = {
@@ -25,7 +25,7 @@ TREES: dict[str, tuple[str, Plain]] = {
     "arm": ("puma560", {"q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "qd": [0.5] * 6, "span": [0, 2]}),
 }
 METHODS: list[Plain] = [{"method": name} for name in ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")]
-METHODS += [{"fixed_step": {"step": 0.013, "method": name}} for name in ("rk4", "semi-implicit-euler")]
+METHODS += [{"fixed_step": FixedStep(0.013, name)} for name in ("rk4", "semi-implicit-euler")]
 
 
 def stated(motion: Trajectory, *names: str) -> Check:
@@ -55,13 +55,13 @@ def assert_energy_is_stated(model: Model, motion: Trajectory) -> None:
         assert_stated(check, np.concatenate([energy, energies(model, q, qd)]))
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda x: x.get("method") or x["fixed_step"]["method"])
+@pytest.mark.parametrize("method", METHODS, ids=lambda x: x.get("method") or x["fixed_step"].method)
 @pytest.mark.parametrize("name", TREES)
 def test_trees(name: str, method: Plain) -> None:
     entry, request = TREES[name]
     model = catalogue_model(entry)
     coarse = {"relative_tolerance": 1e-6, "absolute_tolerance": 1e-8} if method.get("method") in ("RK23", "BDF") else {}
-    motion = simulate(model, request | method | coarse)
+    motion = simulate(model, **request | method | coarse)
     assert motion.status == "finished", motion.message
     assert_energy_is_stated(model, motion)
     if entry == "puma560":
@@ -71,7 +71,7 @@ def test_trees(name: str, method: Plain) -> None:
 
 def test_all_momenta_of_a_free_body() -> None:
     model = catalogue_model("free-body", (0, 0, 0))
-    motion = simulate(model, {"q": [0] * 6, "qd": [0.3, -0.2, 0.1, 0.4, 0.2, 0.5], "span": [0, 5]})
+    motion = simulate(model, [0] * 6, (0, 5), qd=[0.3, -0.2, 0.1, 0.4, 0.2, 0.5])
     found = evaluate(model, {"quantities": ["momentum"], "q": motion.q, "qd": motion.qd})["momentum"]
     for kind in ("linear", "angular"):
         for k, axis in enumerate("xyz"):
@@ -81,7 +81,7 @@ def test_all_momenta_of_a_free_body() -> None:
 def test_taylor() -> None:
     pytest.importorskip("heyoka", reason="heyoka is in the test extra")
     model = catalogue_model("acrobot")
-    motion = simulate(model, {"q": [1.2, 0], "span": [0, 5], "step": 0.02, "method": "Taylor"})
+    motion = simulate(model, [1.2, 0], (0, 5), step=0.02, method="Taylor")
     assert_energy_is_stated(model, motion)
 
 
@@ -89,10 +89,10 @@ def test_states_of_events_are_judged() -> None:
     """Recorded between steps and results, and the one that stops."""
     model = catalogue_model("acrobot")
     events = [
-        {"name": "level", "quantity": "x.q1", "level": 0.3, "action": "record"},
-        {"name": "end", "quantity": "x.q1'", "level": -1.0, "direction": "falling"},
+        Event("level", "x.q1", level=0.3, action="record"),
+        Event("end", "x.q1'", level=-1.0, direction="falling"),
     ]
-    motion = simulate(model, {"q": [1.2, 0], "span": [0, 5], "times": [0, 4.9], "events": events})
+    motion = simulate(model, [1.2, 0], (0, 5), times=[0, 4.9], events=events)
     assert (motion.status, motion.events[-1].name) == ("stopped", "end")
     assert_energy_is_stated(model, motion)
 
@@ -125,7 +125,7 @@ def test_closed_motions(reduction: str, count: int) -> None:
         (crank, {"q": at(crank, crank=0.3, piston=0.17), "qd": at(crank, crank=40)}, ("rod_end", "pin")),
     ):
         common = {"fixed": ["x.crank"], "span": [0, 0.2], "count": count, "reduction": reduction}
-        motion = simulate(model, request | common)
+        motion = simulate(model, **request | common)
         assert motion.is_right, motion.checks
         assert_energy_is_stated(model, motion)
         assert_pin_is_stated(model, motion, (f"x.{ends[0]}", f"x.{ends[1]}"))
@@ -136,23 +136,21 @@ def test_closed_motions_in_space_driven_and_with_events(reduction: str) -> None:
     a = 1.9
     b = np.arccos(-np.cos(a) / (1 + np.cos(a)))
     model = bricard()
-    event = {"name": "half", "quantity": "l0.q", "level": 1.7, "action": "record"}
-    motion = simulate(
-        model, {"q": [a, b, a, b, a], "span": [0, 1.5], "count": 30, "reduction": reduction, "events": [event]}
-    )
+    event = Event("half", "l0.q", level=1.7, action="record")
+    motion = simulate(model, [a, b, a, b, a], (0, 1.5), count=30, reduction=reduction, events=[event])
     assert motion.events
     assert_energy_is_stated(model, motion)
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
     request |= {"span": [0, 0.3], "inputs": {"tau.x.crank": "-x.crank'/100"}}
-    assert_energy_is_stated(model, simulate(model, request | {"reduction": reduction}))
+    assert_energy_is_stated(model, simulate(model, **request, reduction=reduction))
 
 
 def test_nothing_is_wanted_but_the_judgement() -> None:
     """No times: series without rows, and the checks of all steps."""
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
-    motion = simulate(model, request | {"span": [0, 0.1], "times": []})
+    motion = simulate(model, **request, span=(0, 0.1), times=[])
     assert {len(values) for values in motion.arrays().values()} == {0}
     assert stated(motion, "energy").worst > 0
 
@@ -163,14 +161,14 @@ def test_rolling_motions(form: str) -> None:
     model = disc()
     start = [0, 0, R * np.sin(1.2), 0.2, 1.2, 0]
     request: Plain = {"constraints": [FLOOR], "q": start, "v": [1.0, 0.5, 6.0], "span": [0, 3], "form": form}
-    motion = simulate(model, request | {"count": 2001})
+    motion = simulate(model, **request, count=2001)
     assert motion.is_right, motion.checks
     assert_energy_is_stated(model, motion)
     assert_stated(stated(motion, "gaps"), motion.q[:, 2] - R * np.sin(motion.q[:, 4]))
     model = sleigh()
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [1.0, 0.5], "form": form}
-    event = {"name": "turned", "quantity": "s.f", "level": 0.6, "action": "record"}
-    motion = simulate(model, request | {"span": [0, 2], "times": [0.3, 1.1], "events": [event]})
+    event = Event("turned", "s.f", level=0.6, action="record")
+    motion = simulate(model, **request, span=(0, 2), times=[0.3, 1.1], events=[event])
     assert motion.events
     assert_energy_is_stated(model, motion)
     across = np.cos(motion.q[:, 2]) * motion.qd[:, 1] - np.sin(motion.q[:, 2]) * motion.qd[:, 0]

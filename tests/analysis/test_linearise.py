@@ -81,7 +81,7 @@ def test_along_a_driven_trajectory() -> None:
     """Inputs and times of a simulation, one for each state; the residual of a motion is zero."""
     model = catalogue_model("furuta-pendulum")
     name = f"tau.{model.coordinates[0]}"
-    motion = simulate(model, {"q": [0, 0.3], "span": [0, 1], "count": 5, "inputs": {name: "sin(5*t)/50"}})
+    motion = simulate(model, [0, 0.3], (0, 1), count=5, inputs={name: "sin(5*t)/50"})
     request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
     found = linearise(model, **request)
     assert found.A.shape == (5, 4, 4)

@@ -7,7 +7,7 @@ import pytest
 from analysis_models import catalogue_model, defaults, random_model, values_at
 from random_trees import Plain, model_of, random_states
 
-from substructures import InvalidDocument
+from substructures import InvalidInput
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, sensitivity_formulas
 from substructures.analysis.simulate import simulate
 from substructures.expr.interpret import interpret
@@ -40,7 +40,7 @@ def test_an_oscillator_by_its_stiffness_and_start() -> None:
     slide = {"type": "prismatic", "coordinate": "s", "stiffness": "k"}
     body = {"name": "b", "parent": "base", "joint": slide, "mass": 1}
     model = model_of({"name": "a", "bodies": [body], "parameters": {"k": {"value": 4}}}, (0, 0, 0))
-    found = sensitivities(model, {"q": [1], "span": [0, 3], **FINE}, ["k"], of_start=True)
+    found = sensitivities(model, [1], (0, 3), **FINE, by=["k"], of_start=True)
     t = found.t
     np.testing.assert_allclose(found.q[:, 0], np.cos(2 * t), atol=1e-10)
     np.testing.assert_allclose(found.series["d.k"][:, 0], -t * np.sin(2 * t) / 4, atol=1e-10)
@@ -53,11 +53,11 @@ def test_a_driven_machine_against_differences() -> None:
     names = list(model.parameters)[:3]
     request: Plain = {"q": [0.1, 0.4], "span": [0, 1], "count": 3, **FINE}
     request["inputs"] = {f"tau.{model.coordinates[0]}": "sin(4*t)/100"}
-    found = sensitivities(model, request, names)
+    found = sensitivities(model, **request, by=names)
     for name in names:
         value = defaults(model)[name]
         h = 1e-5 * max(abs(value), 1e-2)
-        ends = [simulate(model, request | {"parameters": {name: value + s}}) for s in (h, -h)]
+        ends = [simulate(model, **request, parameters={name: value + s}) for s in (h, -h)]
         slope = (np.hstack([ends[0].q, ends[0].qd]) - np.hstack([ends[1].q, ends[1].qd])) / (2 * h)
         scale = np.abs(slope).max()
         np.testing.assert_allclose(found.series[f"d.{name}"], slope, rtol=0, atol=1e-4 * scale)
@@ -66,12 +66,15 @@ def test_a_driven_machine_against_differences() -> None:
 def test_what_is_refused() -> None:
     model = catalogue_model("double-pendulum")
     base: Plain = {"q": [0, 0], "span": [0, 1]}
-    with pytest.raises(InvalidDocument, match="unknown parameter") as error:
+    with pytest.raises(InvalidInput, match="unknown parameter") as error:
         sensitivity_formulas(model, ["x.nothing"])
     assert error.value.faults[0].pointer == "/parameters/0"
-    with pytest.raises(InvalidDocument, match="unknown quantity"):
+    with pytest.raises(InvalidInput, match="unknown quantity"):
         sensitivity_formulas(model, ["x.m1"], ["mass"])
-    with pytest.raises(InvalidDocument, match="depend on t only"):
-        sensitivities(model, base | {"inputs": {"tau.x.q1": "x.q2"}}, ["x.m1"])
-    with pytest.raises(InvalidDocument, match="without 'fixed_step'"):
-        sensitivities(model, base | {"fixed_step": {"step": 0.1}}, ["x.m1"])
+    with pytest.raises(InvalidInput, match="depend on t only"):
+        sensitivities(model, **base, inputs={"tau.x.q1": "x.q2"}, by=["x.m1"])
+    with pytest.raises(InvalidInput, match="by the other methods"):
+        sensitivities(model, **base, method="Taylor", by=["x.m1"])
+    with pytest.raises(InvalidInput, match="unknown parameter") as error:
+        sensitivities(model, **base, by=["x.m1", "x.m9"])
+    assert error.value.faults[0].pointer == "/by/1"

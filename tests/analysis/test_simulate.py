@@ -13,7 +13,7 @@ from random_trees import model_of, random_states
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_kernel
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv, to_npz
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Event, FixedStep, Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -46,10 +46,10 @@ def test_kernels_are_reused() -> None:
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 def test_period_of_the_simple_pendulum(method: str) -> None:
     """To 1e-9 of the elliptic integral: the velocity falls through zero once in a period."""
-    event = {"name": "turn", "quantity": "x.q1'", "direction": "falling", "action": "stop"}
+    event = Event("turn", "x.q1'", direction="falling", action="stop")
     fine = FINE if method == "DOP853" else {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12}
     request = {"q": [np.pi / 2 - 1e-15], "span": [0, 3], "events": [event], "method": method, **fine}
-    motion = simulate(catalogue_model("simple-pendulum"), request)
+    motion = simulate(catalogue_model("simple-pendulum"), **request)
     assert motion.status == "stopped"
     assert motion.events[0].t == pytest.approx(PERIOD, abs=1e-9)
     assert motion.t[-1] == motion.events[0].t
@@ -59,7 +59,7 @@ def test_period_of_the_simple_pendulum(method: str) -> None:
 def test_puma_560_keeps_its_energy() -> None:
     """Free motion for 100 s; the vertical moment of momentum is constant, too."""
     request = {"q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "qd": [0.5] * 6, "span": [0, 100], "count": 2, **FINE}
-    motion = simulate(catalogue_model("puma560"), request)
+    motion = simulate(catalogue_model("puma560"), **request)
     assert motion.status == "finished"
     assert motion.is_right
     drifts = {check.name: check.relative for check in motion.checks}
@@ -72,7 +72,7 @@ def test_puma_560_keeps_its_energy() -> None:
 
 def test_a_free_body_keeps_all_six_momenta() -> None:
     request = {"q": [0] * 6, "qd": [0.3, -0.2, 0.1, 0.4, 0.2, 0.5], "span": [0, 5], **FINE}
-    motion = simulate(catalogue_model("free-body", (0, 0, 0)), request)
+    motion = simulate(catalogue_model("free-body", (0, 0, 0)), **request)
     kinds = {f"{kind}_momentum.{axis}" for kind in ("linear", "angular") for axis in "xyz"}
     assert {"energy", *kinds} <= names(motion)
     assert max(check.relative for check in motion.checks) < 1e-11
@@ -82,19 +82,19 @@ def test_a_free_body_keeps_all_six_momenta() -> None:
 def test_balance_of_energy_on_random_trees(number: int) -> None:
     """With dampers, loads and inputs: H less the work of all forces without potential is constant."""
     model = random_model(number)
-    inputs = {f"tau.{model.coordinates[0]}": "sin(3*t)/2", "x.u1": {"times": [0, 0.5, 1], "values": [0, 1, -1]}}
+    inputs = {f"tau.{model.coordinates[0]}": "sin(3*t)/2", "x.u1": Table([0, 0.5, 1], [0, 1, -1])}
     inputs = {name: x for name, x in inputs.items() if name in {s.name for s in model.program.symbols}}
     request = {"q": [0.1] * model.dof, "span": [0, 0.4], "inputs": inputs, **FINE}
     if "x.u1" in inputs:
-        request["inputs"]["x.u1"] |= {"interpolation": "cubic"}
-    motion = simulate(model, request)
+        inputs["x.u1"] = Table([0, 0.5, 1], [0, 1, -1], "cubic")
+    motion = simulate(model, **request)
     assert motion.status == "finished", motion.message
     assert names(motion) & {"energy", "energy-balance"}
     assert max(check.relative for check in motion.checks) < 1e-9, motion.checks
 
 
 def test_energy_falls_with_dampers() -> None:
-    motion = simulate(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), {"q": [1], "span": [0, 10], **FINE})
+    motion = simulate(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), [1], (0, 10), **FINE)
     falling = next(check for check in motion.checks if check.rule == "falling")
     assert falling.holds
     assert motion.series["energy"][-1] < 0.01 * motion.series["energy"][0]
@@ -107,7 +107,7 @@ def test_energy_falls_with_dampers() -> None:
 def test_a_coarse_motion_is_marked_wrong() -> None:
     """The first time and the size of the violation are told."""
     request = {"q": [0.1] * 6, "qd": [1] * 6, "span": [0, 5], "relative_tolerance": 1e-2, "absolute_tolerance": 1e-2}
-    motion = simulate(catalogue_model("puma560"), request)
+    motion = simulate(catalogue_model("puma560"), **request)
     assert motion.status == "finished"
     assert not motion.is_right
     energy = next(check for check in motion.checks if check.name == "energy")
@@ -118,7 +118,7 @@ def test_a_coarse_motion_is_marked_wrong() -> None:
 
 def test_rounding_is_no_violation() -> None:
     """The upright pendulum falls by the error of pi alone: its energy is noise."""
-    motion = simulate(catalogue_model("simple-pendulum"), {"q": [np.pi], "span": [0, 1]})
+    motion = simulate(catalogue_model("simple-pendulum"), [np.pi], (0, 1))
     assert 0 < np.abs(motion.qd).max() < 1e-13
     assert motion.is_right
 
@@ -126,7 +126,7 @@ def test_rounding_is_no_violation() -> None:
 def test_outputs_do_not_depend_on_their_number() -> None:
     model = catalogue_model("double-pendulum")
     base = {"q": [1, 0.5], "span": [0, 2], **FINE}
-    many, few = simulate(model, base | {"step": 0.01}), simulate(model, base | {"times": [0.5, 2]})
+    many, few = simulate(model, **base, step=0.01), simulate(model, **base, times=[0.5, 2])
     assert len(many.t) == 201
     np.testing.assert_allclose(many.q[[50, 200]], few.q, atol=1e-11)
 
@@ -136,9 +136,9 @@ def test_order_of_fixed_steps(method: str, order: int) -> None:
     """Halving the step divides the error by 2^order; the real-time factor is told."""
     model = catalogue_model("double-pendulum")
     base = {"q": [1, 0.5], "span": [0, 1], "count": 2, "drift_limit": 1}
-    exact = simulate(model, base | FINE).q[-1]
+    exact = simulate(model, **base | FINE).q[-1]
     steps = [0.02, 0.01] if order == 4 else [2e-3, 1e-3]
-    runs = [simulate(model, base | {"fixed_step": {"step": h, "method": method}}) for h in steps]
+    runs = [simulate(model, **base, fixed_step=FixedStep(h, method)) for h in steps]
     errors = [np.abs(run.q[-1] - exact).max() for run in runs]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3)
     assert runs[0].figures["real_time_factor"] > 0
@@ -147,13 +147,13 @@ def test_order_of_fixed_steps(method: str, order: int) -> None:
 
 def test_outputs_between_fixed_steps() -> None:
     model = model_of(oscillator(stiffness=4), (0, 0, 0))
-    request = {"q": [1], "span": [0, 1], "times": [0.33333, 1], "fixed_step": {"step": 0.01}}
-    np.testing.assert_allclose(simulate(model, request).q[:, 0], np.cos([0.66666, 2]), atol=1e-7)
+    request = {"q": [1], "span": [0, 1], "times": [0.33333, 1], "fixed_step": FixedStep(0.01)}
+    np.testing.assert_allclose(simulate(model, **request).q[:, 0], np.cos([0.66666, 2]), atol=1e-7)
 
 
 def test_followed_quantities_and_files() -> None:
     model = catalogue_model("double-pendulum")
-    motion = simulate(model, {"q": [1, 0.5], "span": [0, 1], "count": 5, "series": {"sum": "x.q1 + x.q2"}})
+    motion = simulate(model, [1, 0.5], (0, 1), count=5, series={"sum": "x.q1 + x.q2"})
     np.testing.assert_allclose(motion.series["sum"], motion.q.sum(axis=1))
     with np.load(io.BytesIO(to_npz(motion)), allow_pickle=False) as stored:
         assert tuple(stored["coordinates"]) == model.coordinates
@@ -163,3 +163,10 @@ def test_followed_quantities_and_files() -> None:
     assert len(rows) == 5
     assert [float(row["x.q1'"]) for row in rows] == motion.qd[:, 0].tolist()
     assert motion.summary()["checks"][0]["holds"] is True
+
+
+def test_results_say_in_two_lines_what_they_are() -> None:
+    motion = simulate(catalogue_model("simple-pendulum"), [1], (0, 1), count=3)
+    first, second = repr(motion).splitlines()
+    assert first.startswith("Trajectory: 3 states of x.q1, t = 0 to 1 s, ")
+    assert second == "is_right=True: 1 of 1 checks hold (energy constant); series: energy"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
+from typing import Any
 
 import numpy as np
 import pytest
 from analysis_models import catalogue_model, oscillator
 from random_trees import Plain, model_of
 
-from substructures import InvalidDocument, InvalidInput, MissingValue
-from substructures.analysis.simulate import simulate
+from substructures import InvalidArgument, InvalidInput, MissingValue
+from substructures.analysis.simulate import Event, FixedStep, Linear, Rolling, Table, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 
@@ -18,10 +20,10 @@ from substructures.analysis.stability.linearise import linearise
 def test_progress_is_told_and_can_cancel() -> None:
     model = catalogue_model("double-pendulum")
     told: list[float] = []
-    simulate(model, {"q": [1, 0.5], "span": [2, 5]}, lambda share: told.append(share))
+    simulate(model, [1, 0.5], (2, 5), progress=lambda share: told.append(share))
     assert told[-1] == 1
     assert told == sorted(told)
-    motion = simulate(model, {"q": [1, 0.5], "span": [0, 50]}, lambda share: share < 0.1)
+    motion = simulate(model, [1, 0.5], (0, 50), progress=lambda share: share < 0.1)
     assert motion.status == "stopped"
     assert "cancelled" in motion.message
 
@@ -30,7 +32,7 @@ def test_progress_is_told_and_can_cancel() -> None:
 def test_a_motion_that_cannot_go_on_fails_with_advice(method: str) -> None:
     """s'' = 1 + s'^2 goes to infinity at t = pi/2; the motion up to there is kept."""
     definition = oscillator() | {"loads": [{"type": "joint", "coordinate": "s", "force": "1 + s'^2"}]}
-    motion = simulate(model_of(definition, (0, 0, 0)), {"q": [0], "span": [0, 2], "step": 0.1, "method": method})
+    motion = simulate(model_of(definition, (0, 0, 0)), [0], (0, 2), step=0.1, method=method)
     assert motion.status == "failed"
     assert "the integrator could not go on" in motion.message
     assert 10 <= len(motion.t) <= 17
@@ -40,18 +42,18 @@ def test_a_motion_that_cannot_go_on_fails_with_advice(method: str) -> None:
 
 def test_a_singular_start_fails_with_advice() -> None:
     """The free body has no unique rates of its angles at pitch = 90 degrees."""
-    motion = simulate(catalogue_model("free-body"), {"q": [0, 0, 0, 0, np.pi / 2, 0], "span": [0, 1]})
+    motion = simulate(catalogue_model("free-body"), [0, 0, 0, 0, np.pi / 2, 0], (0, 1))
     assert motion.status == "failed"
     assert "pitch" in motion.message
     assert motion.t.tolist() == [0]
     empty = {"name": "empty", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "revolute"}}]}
-    motion = simulate(model_of(empty), {"q": [0], "span": [0, 1]})
+    motion = simulate(model_of(empty), [0], (0, 1))
     assert motion.status == "failed"
     assert "no inertia" in motion.message
 
 
 def test_steps_are_limited() -> None:
-    motion = simulate(catalogue_model("double-pendulum"), {"q": [1, 1], "span": [0, 100], "max_steps": 20})
+    motion = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 100), max_steps=20)
     assert motion.status == "failed"
     assert "max_steps" in motion.message
     assert motion.steps == 20
@@ -63,10 +65,23 @@ def test_steps_are_limited() -> None:
         ({"q": [1]}, "/q"),
         ({"q": {"x.q1": 1}}, "/q"),
         ({"qd": [1, "a"]}, "/qd/1"),
-        ({"span": [1, 0]}, ""),
+        ({"span": [1, 0]}, "/span"),
+        ({"span": [0]}, "/span"),
         ({"span": [0, "b"]}, "/span/1"),
-        ({"step": 0.1, "count": 3}, ""),
-        ({"times": [0, 2]}, ""),
+        ({"step": 0.1, "count": 3}, "/step"),
+        ({"step": 0}, "/step"),
+        ({"step": 1e-9}, "/step"),
+        ({"count": 1}, "/count"),
+        ({"count": 2.5}, "/count"),
+        ({"times": [0, 2]}, "/times"),
+        ({"times": [0.5, 0.5]}, "/times"),
+        ({"times": [[0, 1]]}, "/times/0"),
+        ({"times": np.linspace(0, 1, 1_000_001)}, "/times"),
+        ({"max_step": -1}, "/max_step"),
+        ({"max_steps": 0}, "/max_steps"),
+        ({"relative_tolerance": 1}, "/relative_tolerance"),
+        ({"absolute_tolerance": -1}, "/absolute_tolerance"),
+        ({"drift_limit": 0}, "/drift_limit"),
         ({"method": "euler"}, "/method"),
         ({"parameters": {"x.mass": 1}}, "/parameters/x.mass"),
         ({"parameters": {"x.m1": "heavy"}}, "/parameters/x.m1"),
@@ -75,25 +90,64 @@ def test_steps_are_limited() -> None:
         ({"span": [0, 10**400]}, "/span/1"),
         ({"inputs": {"tau.x.q9": 1}}, "/inputs/tau.x.q9"),
         ({"inputs": {"tau.x.q1": "3*x.q7"}}, "/inputs/tau.x.q1"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 0.5], "values": [0, 1]}}}, "/inputs/tau.x.q1/times"),
-        ({"inputs": {"tau.x.q1": {"times": [0, 1], "values": [0]}}}, "/inputs/tau.x.q1/values"),
-        ({"events": [{"name": "e", "quantity": "x.q1 +"}]}, "/events/0/quantity"),
+        ({"inputs": {"tau.x.q1": Table([0, 0.5], [0, 1])}}, "/inputs/tau.x.q1/times"),
+        ({"events": [Event("e", "x.q1 +")]}, "/events/0/quantity"),
         ({"series": {"a": "nothing"}}, "/series/a"),
         ({"series": {"energy": "x.q1"}}, "/series/energy"),
-        ({"fixed_step": {"step": 0.1}, "events": [{"name": "e", "quantity": "x.q1"}]}, "/events"),
-        ({"stepp": 1}, "/stepp"),
+        ({"fixed_step": FixedStep(0.1), "events": [Event("e", "x.q1")]}, "/events"),
+        ({"fixed": ["x.q1"]}, "/fixed"),
+        ({"v": np.zeros(2)}, "/v"),
+        ({"prescribed": {"x.q1": 1}, "fixed_step": FixedStep(0.1)}, "/fixed_step"),
+        ({"prescribed": {"x.q1": 1}, "method": "Radau"}, "/method"),
+        ({"constraints": [Linear("c", "x.q1'")], "prescribed": {"x.q1": 1}}, "/prescribed"),
+        ({"constraints": [Linear("c", "x.q1'")], "method": "Taylor"}, "/method"),
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
-        simulate(catalogue_model("double-pendulum"), {"q": [0, 0], "span": [0, 1]} | changes)
+    with pytest.raises(InvalidInput) as error:
+        simulate(catalogue_model("double-pendulum"), **{"q": [0, 0], "span": [0, 1]} | changes)
     assert error.value.faults[0].pointer == pointer
+
+
+@pytest.mark.parametrize(
+    ("make", "pointer", "code"),
+    [
+        (lambda: Table([0, 1], [0]), "/values", "too-short"),
+        (lambda: Table([0, 1, 2], [0, 1]), "/values", "wrong-length"),
+        (lambda: Table([0, 0], [0, 1]), "/times", "not-increasing"),
+        (lambda: Table([0, "x"], [0, 1]), "/times/1", "number-expected"),
+        (lambda: Table([0, 1], [0, 1], "quintic"), "/interpolation", "literal-error"),
+        (lambda: Event("e", "x.q1", level=np.inf), "/level", "number-not-finite"),
+        (lambda: Event("e", "x.q1", level=True), "/level", "number-expected"),
+        (lambda: Event("e", "x.q1", direction="up"), "/direction", "literal-error"),
+        (lambda: FixedStep(-1), "/step", "greater-than"),
+        (lambda: FixedStep(1, "euler"), "/method", "literal-error"),
+        (lambda: Rolling("r", "x.a", 1, "cube"), "/shape", "literal-error"),
+    ],
+)
+def test_parts_of_a_call_are_checked_where_they_are_made(make: Callable[[], object], pointer: str, code: str) -> None:
+    with pytest.raises(InvalidArgument) as error:
+        make()
+    assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
+
+
+def test_numbers_of_all_kinds_are_the_same() -> None:
+    """Of Python, numpy and exact decimals, where numbers and where expressions may be."""
+    model = catalogue_model("double-pendulum")
+    kinds: list[Any] = [0.25, np.float64(0.25), Decimal("0.25"), "0.25", "1/4"]
+    ends = [
+        simulate(model, [1, 0.5], (0, 1), count=2, inputs={"tau.x.q1": x}, series={"same": x}, events=[Event("e", x)])
+        for x in kinds
+    ]
+    for end in ends:
+        np.testing.assert_array_equal(end.series["same"], 0.25)
+        np.testing.assert_allclose(end.q, ends[0].q, rtol=1e-9)
 
 
 def test_nothing_that_moves() -> None:
     """A camera on the wall can neither be simulated nor linearised."""
     model = catalogue_model("camera")
-    for call in (lambda m: simulate(m, {"q": [], "span": [0, 1]}), lambda m: linearise(m, []), equilibria):
+    for call in (lambda m: simulate(m, [], (0, 1)), lambda m: linearise(m, []), equilibria):
         with pytest.raises(InvalidInput, match="nothing that moves"):
             call(model)
 
@@ -102,4 +156,4 @@ def test_a_parameter_without_value_is_missing() -> None:
     definition = oscillator() | {"parameters": {"m": {}}}
     definition["bodies"][0]["mass"] = "m"
     with pytest.raises(MissingValue):
-        simulate(model_of(definition), {"q": [0], "span": [0, 1]})
+        simulate(model_of(definition), [0], (0, 1))

@@ -7,32 +7,32 @@ import pytest
 from analysis_models import FINE, oscillator
 from random_trees import Plain, model_of
 
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Event, Table, simulate
 
 
 def test_constant_force_and_tables() -> None:
     """s'' = u: a number, an expression, a held, a linear and a cubic table against their integrals."""
     model = model_of(oscillator(), (0, 0, 0))
     times = np.linspace(0, 2, 5)
-    held = {"times": [0, 1, 2], "values": [1, -1, 0], "interpolation": "hold"}
+    held = Table([0, 1, 2], [1, -1, 0], "hold")
     for given, exact in (
         (3, 1.5 * times**2),
         ("6*t", times**3),
-        ({"times": [0, 2], "values": [0, 12]}, times**3),
-        ({"times": [0, 1, 2, 3], "values": [0, 1, 4, 9], "interpolation": "cubic"}, times**4 / 12),
+        (Table([0, 2], [0, 12]), times**3),
+        (Table([0, 1, 2, 3], [0, 1, 4, 9], "cubic"), times**4 / 12),
         (held, np.where(times <= 1, times**2 / 2, 0.5 + (times - 1) - (times - 1) ** 2 / 2)),
     ):
         request = {"q": [0], "span": [0, 2], "times": times, "inputs": {"tau.x.s": given}, **FINE}
-        motion = simulate(model, request)
+        motion = simulate(model, **request)
         np.testing.assert_allclose(motion.q[:, 0], exact, atol=1e-12)
         assert motion.is_right
 
 
 def test_jumps_of_tables_cost_no_accuracy_and_few_steps() -> None:
     """The integrator begins anew at a jump, with the value from the side it is on."""
-    held = {"times": [0, 0.3, 0.7, 1], "values": [2, -3, 5, 0], "interpolation": "hold"}
+    held = Table([0, 0.3, 0.7, 1], [2, -3, 5, 0], "hold")
     base: Plain = {"q": [0], "span": [0, 1], "inputs": {"tau.x.s": held}, "count": 2, **FINE}
-    motion = simulate(model_of(oscillator(), (0, 0, 0)), base)
+    motion = simulate(model_of(oscillator(), (0, 0, 0)), **base)
     # v = 0.6, -0.6, 0.9 at the ends of the pieces
     exact = 0.5 * 2 * 0.09 + (0.6 * 0.4 - 1.5 * 0.16) + (-0.6 * 0.3 + 2.5 * 0.09)
     assert motion.q[-1, 0] == pytest.approx(exact, abs=1e-14)
@@ -43,8 +43,8 @@ def test_jumps_of_tables_cost_no_accuracy_and_few_steps() -> None:
 def test_feedback_as_an_expression() -> None:
     """A spring and a damper by an input; energy changes by their work."""
     law = {"tau.x.s": "-4*x.s - x.s'/2"}
-    one = simulate(model_of(oscillator(), (0, 0, 0)), {"q": [1], "span": [0, 3], "inputs": law, **FINE})
-    two = simulate(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), {"q": [1], "span": [0, 3], **FINE})
+    one = simulate(model_of(oscillator(), (0, 0, 0)), [1], (0, 3), inputs=law, **FINE)
+    two = simulate(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), [1], (0, 3), **FINE)
     np.testing.assert_allclose(one.q, two.q, atol=1e-12)
     assert one.is_right
     assert "work" in one.series
@@ -54,11 +54,11 @@ def test_events_are_found_in_order() -> None:
     """Of s = cos 2t: recorded crossings, directions, levels, and the stop."""
     model = model_of(oscillator(stiffness=4), (0, 0, 0))
     events = [
-        {"name": "down", "quantity": "x.s", "direction": "falling", "action": "record"},
-        {"name": "half", "quantity": "x.s", "level": 0.5, "action": "record"},
-        {"name": "late", "quantity": "t", "level": 4, "action": "stop"},
+        Event("down", "x.s", direction="falling", action="record"),
+        Event("half", "x.s", level=0.5, action="record"),
+        Event("late", "t", level=4, action="stop"),
     ]
-    motion = simulate(model, {"q": [1], "span": [0, 100], "step": 0.5, "events": events, **FINE})
+    motion = simulate(model, [1], (0, 100), step=0.5, events=events, **FINE)
     found = [(e.name, e.t) for e in motion.events]
     turns = [np.pi / 6, np.pi / 4, 5 * np.pi / 6, 7 * np.pi / 6, 5 * np.pi / 4, 4.0]
     assert [name for name, _ in found] == ["half", "down", "half", "half", "down", "late"]

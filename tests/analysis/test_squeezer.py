@@ -11,8 +11,8 @@ from closed_trees import SQUEEZER, at, closed_entry, tree_model
 from random_trees import Plain
 
 from substructures import Model, catalogue
-from substructures.analysis.closed.loops import analyse_loops
-from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.closed.loops import loop_state
+from substructures.analysis.simulate import simulate
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers; IFToMM benchmark A03: start, and values at 0.03 s
 START = [-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550]
@@ -72,17 +72,17 @@ def squeezer_from_parts() -> tuple[Model, Plain, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("build", [squeezer_in_one_piece, squeezer_from_parts])
 def test_andrews_squeezer(build: Any) -> None:
     model, request, start, end = build()
-    first = analyse_loops(model, request | {"q": start})
+    first = loop_state(model, **request, q=start)
     assert first.mobility.degrees_of_freedom == 1
     expected = np.zeros(7)
     expected[:2] = 14222.4439199541138, -10666.8329399655854
     np.testing.assert_allclose(first.qdd, expected, rtol=1e-9, atol=1e-6)
-    motion = simulate_closed(model, request | {"q": start, "span": [0, 0.03], "count": 4})
+    motion = simulate(model, **request, q=start, span=(0, 0.03), count=4)
     right(motion)
     np.testing.assert_allclose(motion.q[-1], end, rtol=1e-7)
 
 
 def test_both_methods_agree() -> None:
     model, _, start, _ = squeezer_in_one_piece()
-    ends = [simulate_closed(model, {"q": start, "span": [0, 0.01], "reduction": method}).q[-1] for method in METHODS]
+    ends = [simulate(model, start, (0, 0.01), reduction=method).q[-1] for method in METHODS]
     np.testing.assert_allclose(*ends, rtol=1e-8, atol=1e-10)

@@ -12,14 +12,14 @@ from rolling_bodies import FLOOR, R, disc
 
 from substructures import Model
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import FixedStep, simulate
 
 ACROBOT: Plain = {"q": [1.2, 0.4], "span": [0, 1]}
 
 
 def assert_same_drift(model: Model, request: Plain, count: int) -> tuple[Trajectory, Trajectory]:
     """With many results, and with those at the ends of the span only; the energy drifts about as far."""
-    many, few = (simulate(model, request | {"count": k}) for k in (count, 2))
+    many, few = (simulate(model, **request, count=k) for k in (count, 2))
     assert many.steps == few.steps
     one, two = (next(c for c in motion.checks if c.name == "energy") for motion in (many, few))
     assert one.worst <= 1.3 * two.worst + 2e-13 * one.scale
@@ -35,7 +35,7 @@ def test_trees(method: str, count: int) -> None:
 
 @pytest.mark.parametrize("method", ["rk4", "semi-implicit-euler"])
 def test_fixed_steps(method: str) -> None:
-    assert_same_drift(catalogue_model("acrobot"), ACROBOT | {"fixed_step": {"step": 0.01, "method": method}}, 1234)
+    assert_same_drift(catalogue_model("acrobot"), ACROBOT | {"fixed_step": FixedStep(0.01, method)}, 1234)
 
 
 @pytest.mark.parametrize("reduction", METHODS)
@@ -55,7 +55,7 @@ def test_rolling_motions() -> None:
 def test_many_states_of_a_step_are_those_of_few(method: str) -> None:
     """A polynomial through shorter steps against these steps themselves."""
     model = catalogue_model("acrobot")
-    many, few = (simulate(model, ACROBOT | {"count": count, "method": method}) for count in (2401, 13))
+    many, few = (simulate(model, **ACROBOT, count=count, method=method) for count in (2401, 13))
     np.testing.assert_allclose(many.q[::200], few.q, atol=1e-11)
     np.testing.assert_allclose(many.qd[::200], few.qd, atol=1e-10)
 
@@ -67,7 +67,7 @@ def test_many_states_before_a_singular_position(reduction: str) -> None:
     flat = closed_entry("four-bar", [pin], l0=0.3, l1=0.2, l2=0.3, l3=0.2)
     request: Plain = {"q": at(flat, crank=0.5, coupler=-0.5, rocker=0.5), "qd": at(flat, crank=-3)}
     request |= {"fixed": ["x.crank"], "reduction": reduction, "span": [0, 1]}
-    motion = simulate(flat, request | {"count": 5001})
+    motion = simulate(flat, **request, count=5001)
     assert motion.status == "failed"
     assert motion.is_right, motion.checks
     assert len(motion.t) > 700

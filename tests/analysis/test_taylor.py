@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from analysis_models import PERIOD, catalogue_model
 from random_trees import Plain, model_of
 
-from substructures import InvalidDocument
+from substructures import InvalidInput
 from substructures.analysis.motion import taylor
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Event, Table, simulate
 
 pytest.importorskip("heyoka", reason="heyoka is in the test extra")
 
@@ -18,9 +21,9 @@ FINE: Plain = {"relative_tolerance": 1e-14, "absolute_tolerance": 1e-14}
 
 def test_period_of_the_simple_pendulum() -> None:
     """To 1e-12 of the elliptic integral."""
-    event = {"name": "turn", "quantity": "x.q1'", "direction": "falling", "action": "stop"}
+    event = Event("turn", "x.q1'", direction="falling", action="stop")
     request = {"q": [np.pi / 2 - 1e-15], "span": [0, 3], "events": [event], "method": "Taylor", **FINE}
-    motion = simulate(catalogue_model("simple-pendulum"), request)
+    motion = simulate(catalogue_model("simple-pendulum"), **request)
     assert motion.status == "stopped"
     assert motion.t[-1] == pytest.approx(PERIOD, abs=1e-12)
 
@@ -31,14 +34,15 @@ def test_agreement_with_runge_kutta() -> None:
     request: Plain = {"q": [0.1, 0.4], "span": [0.5, 2], "times": [0.7, 1.1, 2], **FINE}
     request["inputs"] = {f"tau.{model.coordinates[0]}": f"sin(4*t)/100 - {model.coordinates[0]}'/50"}
     request["parameters"] = {next(iter(model.parameters)): 0.17}
-    one, two = (simulate(model, request | {"method": method}) for method in ("Taylor", "DOP853"))
+    one, two = (simulate(model, **request, method=method) for method in ("Taylor", "DOP853"))
     np.testing.assert_allclose(one.q, two.q, atol=1e-11)
     np.testing.assert_allclose(one.series["work"], two.series["work"], atol=1e-11)
     assert one.is_right
     assert one.steps < two.steps
     # parameters are free in what was compiled
     before = taylor._compiled.cache_info().misses
-    simulate(model, request | {"method": "Taylor", "parameters": {}})
+    del request["parameters"]
+    simulate(model, **request, method="Taylor")
     assert taylor._compiled.cache_info().misses == before
 
 
@@ -47,7 +51,7 @@ def test_a_motion_that_cannot_go_on() -> None:
     body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "s"}}
     loads = [{"type": "joint", "coordinate": "s", "force": "1 + s'^2"}]
     model = model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
-    motion = simulate(model, {"q": [0], "span": [0, 2], "step": 0.1, "method": "Taylor"})
+    motion = simulate(model, [0], (0, 2), step=0.1, method="Taylor")
     assert motion.status == "failed"
     assert "could not go on" in motion.message
     np.testing.assert_allclose(motion.qd[:15, 0], np.tan(motion.t[:15]), rtol=1e-8)
@@ -56,10 +60,16 @@ def test_a_motion_that_cannot_go_on() -> None:
 def test_what_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     model = catalogue_model("simple-pendulum")
     request: Plain = {"q": [0], "span": [0, 1], "method": "Taylor"}
-    table = {"tau.x.q1": {"times": [0, 1], "values": [0, 1]}}
-    with pytest.raises(InvalidDocument, match="no tables") as error:
-        simulate(model, request | {"inputs": table})
+    table = {"tau.x.q1": Table([0, 1], [0, 1])}
+    with pytest.raises(InvalidInput, match="no tables") as error:
+        simulate(model, **request, inputs=table)
     assert error.value.faults[0].pointer == "/method"
-    monkeypatch.setattr(taylor, "heyoka", None)
-    with pytest.raises(InvalidDocument, match="needs the package"):
-        simulate(model, request)
+    monkeypatch.setattr(taylor, "_heyoka", lambda: None)
+    with pytest.raises(InvalidInput, match="needs the package"):
+        simulate(model, **request)
+
+
+def test_it_is_loaded_by_the_first_motion_that_needs_it() -> None:
+    """Loading it takes 86 MB and a quarter of the start of a server; integrators of SciPy take a tenth."""
+    program = "import sys, service.app; raise SystemExit(bool({'heyoka', 'scipy.integrate'} & set(sys.modules)))"
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=100)

@@ -12,10 +12,10 @@ from random_trees import Kind, Plain, model_of, random_definition
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 
 from substructures import Model
-from substructures.analysis.closed.loops import analyse_loops
-from substructures.analysis.closed.simulation import simulate_closed
+from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
-from substructures.analysis.motion.rolling import simulate_rolling
+from substructures.analysis.equations.velocity_constraints import Constraint
+from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Rolling, simulate
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
@@ -39,7 +39,7 @@ def test_chaplygin_sleigh() -> None:
     """m u' = m a w^2, (I + m a^2) w' = -m a u w (S. A. Chaplygin 1911; Neimark and Fufaev 1972; A. M. Bloch,
     Nonholonomic Mechanics and Control, 2003, section 1.7), as formulas and in both forms.
     """
-    equations = quasi_velocity_equations(sleigh(), {"constraints": [BLADE], "velocities": FORWARD})
+    equations = quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD)
     bias = {(0,): "-s.m*s.a*w^2", (1,): "s.m*s.a*u*w"}
     metric = {(0, 0): "s.m", (1, 1): "s.I + s.m*s.a^2"}
     structure = {(2, 0, 1): "-1", (2, 1, 0): "1"}
@@ -50,7 +50,7 @@ def test_chaplygin_sleigh() -> None:
 
 
 def test_formulas_print_in_every_format() -> None:
-    equations = quasi_velocity_equations(sleigh(), {"constraints": [BLADE], "velocities": FORWARD})
+    equations = quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD)
     for language in ("text", "latex", "python", "c", "matlab", "julia", "sympy"):
         assert len(render(equations.program, language)) > 500
 
@@ -62,7 +62,7 @@ def test_rolling_disc() -> None:
         (A + m r^2) th'' + (C + m r^2) w3 psi' sin th - A psi'^2 sin th cos th + m g r cos th = 0
         A (psi'' sin th + 2 psi' th' cos th) - C w3 th' = 0        (C + m r^2) w3' = m r^2 psi' th' sin th
     """
-    equations = quasi_velocity_equations(disc(), {"constraints": [FLOOR]})
+    equations = quasi_velocity_equations(disc(), [FLOOR])
     assert equations.velocities == ("s.psi'", "s.th'", "s.ph'")
     assert not equations.dependent
     rng = np.random.default_rng(2)
@@ -99,27 +99,25 @@ def test_cart_on_two_wheels() -> None:
         ports.append({"name": f"{side}_axle", "body": side, "rotation": {"rpy": ["-pi/2", 0, 0]}})
     parameters = {"b": {"value": 0.3}, "r": {"value": 0.1}}
     model = single({"name": "cart", "parameters": parameters, "bodies": bodies, "ports": ports}, [0, 0, -9.81])
-    wheels = [
-        {"name": side, "type": "rolling", "frame": f"s.{side}_axle", "radius": "s.r"} for side in ("left", "right")
-    ]
+    wheels = [Rolling(side, f"s.{side}_axle", "s.r") for side in ("left", "right")]
     document: Plain = {"constraints": wheels, "independent": ["s.left", "s.right"]}
-    equations = quasi_velocity_equations(model, document)
+    equations = quasi_velocity_equations(model, **document)
     assert (len(equations.constraints), len(equations.dependent)) == (3, 1)
     along = {(0, 0): "s.r/2*cos(s.f)", (0, 1): "s.r/2*cos(s.f)", (1, 0): "s.r/2*sin(s.f)", (1, 1): "s.r/2*sin(s.f)"}
     turning = {(2, 0): "-s.r/(2*s.b)", (2, 1): "s.r/(2*s.b)", (3, 0): "1", (4, 1): "1"}
     exact(equations, {"T": along | turning})
 
 
-def random_constraints(rng: np.random.Generator, model: Model, count: int) -> list[Plain]:
+def random_constraints(rng: np.random.Generator, model: Model, count: int) -> list[Constraint]:
     """Coefficients are cosines and sines of coordinates, and numbers."""
-    result = []
+    result: list[Constraint] = []
     for k in range(count):
         terms = []
         for name in model.coordinates:
             other = model.coordinates[rng.integers(model.dof)]
             shapes = ["1", f"cos({other})", f"(2 + sin({other}))", f"({other}/3 - 1)"]
             terms.append(f"{rng.uniform(0.5, 2):.2f}*{shapes[rng.integers(4)]}*{name}'")
-        result.append({"name": f"c{k}", "type": "linear", "expression": " + ".join(terms)})
+        result.append(Linear(f"c{k}", " + ".join(terms)))
     return result
 
 
@@ -130,7 +128,7 @@ def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
     kind = Kind(4, joints=("revolute", "prismatic"), massive=True, depth=4, loads=1)
     model = model_of(random_definition(rng, kind))
     document = {"constraints": random_constraints(rng, model, 1 + seed % 2)}
-    equations = quasi_velocity_equations(model, document)
+    equations = quasi_velocity_equations(model, **document)
     n, p = model.dof, len(equations.velocities)
     q, v = rng.uniform(-0.8, 0.8, n), rng.uniform(-1, 1, p)
     inputs = {s.name: 0.4 for s in model.program.symbols if s.kind == "input"}
@@ -163,11 +161,11 @@ def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
 def test_closed_loops_in_independent_velocities() -> None:
     """A slider-crank as one equation for the crank: g* is the inertia that the crank feels, J(a) of the textbooks."""
     model = slider_crank()
-    document: Plain = {"constraints": [{"name": "wrist", "type": "closure"}], "independent": ["x.crank"]}
-    equations = quasi_velocity_equations(model, document)
+    document: Plain = {"constraints": [Closed("wrist")], "independent": ["x.crank"]}
+    equations = quasi_velocity_equations(model, **document)
     assert equations.constraints == ("wrist.x", "wrist.y")
     request = {"q": at(model, crank=0.5, piston=0.17), "qd": at(model, crank=30), "fixed": ["x.crank"]}
-    state = analyse_loops(model, request)
+    state = loop_state(model, **request)
     q, qd = state.consistent.q, state.consistent.qd
     values = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= {s.name: 0.0 for s in equations.program.symbols if s.kind == "input"}
@@ -177,15 +175,15 @@ def test_closed_loops_in_independent_velocities() -> None:
         np.testing.assert_allclose(out["rates"], qd, rtol=1e-12)
         np.testing.assert_allclose(out["forces"][0] - out[bias][0], out["metric"][0, 0] * state.qdd[0], rtol=1e-9)
         np.testing.assert_allclose(out["multipliers"], state.multipliers[:2], rtol=1e-9)
-    motion = simulate_rolling(model, document | {"q": q, "v": [30], "span": [0, 0.2], "count": 5})
-    closed = simulate_closed(model, {"q": q, "qd": qd, "span": [0, 0.2], "count": 5})
+    motion = simulate(model, **document, q=q, v=[30], span=(0, 0.2), count=5)
+    closed = simulate(model, q, (0, 0.2), qd=qd, count=5)
     assert motion.is_right, motion.checks
     np.testing.assert_allclose(motion.q, closed.q, atol=1e-8)
 
 
 def test_rows_that_follow_from_others_are_left_out() -> None:
-    twice = [BLADE, BLADE | {"name": "again"}]
-    equations = quasi_velocity_equations(sleigh(), {"constraints": twice})
+    twice = [BLADE, KnifeEdge("again", BLADE.frame)]
+    equations = quasi_velocity_equations(sleigh(), twice)
     assert (equations.constraints, equations.dependent) == (("blade",), ("again",))
 
 

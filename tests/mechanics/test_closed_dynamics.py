@@ -10,8 +10,8 @@ import pytest
 from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart
 from random_trees import Plain
 
-from substructures import InvalidDocument, Model, TreeSpec, catalogue, derive
-from substructures.analysis.closed.loops import analyse_loops
+from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue, derive
+from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature
@@ -42,7 +42,7 @@ def test_accelerations_are_those_of_the_loops(make: Callable[[], Model]) -> None
     states, expected = [], []
     while len(states) < 3:
         request = {"q": rng.uniform(-0.4, 0.4, model.dof), "qd": rng.uniform(-1, 1, model.dof), "inputs": inputs}
-        found = analyse_loops(model, request)
+        found = loop_state(model, **request)
         if not found.message:
             states.append(found.consistent)
             expected.append(found.qdd)
@@ -58,7 +58,7 @@ def test_accelerations_are_those_of_the_loops(make: Callable[[], Model]) -> None
 def test_open_and_singular_states_have_no_accelerations() -> None:
     """Open positions, open velocities, and a branching point: two links that are folded; other states keep theirs."""
     model = four_bar(DOWN)
-    good = analyse_loops(model, {"q": [0.7, 0.2, 1.2], "qd": [1, 0, 0]}).consistent
+    good = loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0]).consistent
     rest = np.zeros(3)
     answer = accelerations(model, np.array([good.q, good.q + 0.1, good.q]), np.array([good.qd, rest, good.qd + 0.1]))
     assert np.isfinite(answer[FD][0]).all()
@@ -72,7 +72,7 @@ def test_open_and_singular_states_have_no_accelerations() -> None:
 
 def test_one_position_for_many_velocities_and_inputs() -> None:
     model = four_bar(DOWN)
-    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2], "qd": [1, 0, 0]}).consistent
+    state = loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0]).consistent
     speeds, torque = np.array([0.0, 1.0, 3.0]), {"tau.x.crank": [0.0, 1.0, 2.0]}
     many = accelerations(model, state.q, speeds[:, None] * state.qd, inputs=torque)[FD]
     for k, speed in enumerate(speeds):
@@ -83,7 +83,7 @@ def test_one_position_for_many_velocities_and_inputs() -> None:
 def test_a_redundant_closure_does_not_lock_what_is_nearly_closed() -> None:
     """1e-8 beside a closed position of Bricard's linkage five rows are independent: nothing could move."""
     model = bricard()
-    state = analyse_loops(model, {"q": [2, 0.1, 2, 0.1, 2]}).consistent
+    state = loop_state(model, [2, 0.1, 2, 0.1, 2]).consistent
     beside = state.q + 1e-8 * np.array([1, 2, -1, 0, 0])
     answer = accelerations(model, np.array([state.q, beside]), np.zeros(5))
     assert np.abs(answer[FD][0]).max() > 0.1
@@ -93,7 +93,7 @@ def test_a_redundant_closure_does_not_lock_what_is_nearly_closed() -> None:
 def test_numbers_do_not_make_formulas() -> None:
     """What accelerations are computed from is not kept as their formula."""
     model = four_bar()
-    state = analyse_loops(model, {"q": [0.7, 0.2, 1.2]}).consistent
+    state = loop_state(model, [0.7, 0.2, 1.2]).consistent
     accelerations(model, state.q, state.qd)
     with pytest.raises(InvalidDocument, match="'pin'"):
         kept(model, FD)
@@ -109,14 +109,14 @@ def refused() -> list[tuple[str, Callable[[Model], Any]]]:
         ("perturbation", state_space),
         ("first integrals", routh),
         ("simulations", lambda m: variational(m, [])),
-        ("simulations", lambda m: sensitivities(m, span, [])),
-        ("'type': 'closure'", lambda m: quasi_velocity_equations(m, {"constraints": []})),
+        ("simulations", lambda m: sensitivities(m, **span, by=[])),
+        ("'type': 'closure'", lambda m: quasi_velocity_equations(m, [])),
     ]
 
 
 @pytest.mark.parametrize(("advice", "call"), refused())
 def test_closures_are_refused_by_name_and_with_advice(advice: str, call: Callable[[Model], Any]) -> None:
-    with pytest.raises(InvalidDocument, match="'pin'") as caught:
+    with pytest.raises(InvalidInput, match="'pin'") as caught:
         call(four_bar())
     assert advice in caught.value.faults[0].message
     assert caught.value.faults[0].code in ("has-closures", "open-closure")
@@ -134,7 +134,7 @@ def test_base_parameters_of_a_closed_tree_are_refused() -> None:
 def test_a_dead_centre_at_rest() -> None:
     """Crank and rod in line, the crank drives: regular; the piston cannot drive there, but is not asked to."""
     model = slider_crank(DOWN)
-    state = analyse_loops(model, {"q": at(model, crank=0.0, rod=0.0, piston=0.2), "fixed": ["x.crank"]})
+    state = loop_state(model, at(model, crank=0.0, rod=0.0, piston=0.2), fixed=["x.crank"])
     assert not state.message
     answer = accelerations(model, state.consistent.q, state.consistent.qd)
     np.testing.assert_allclose(answer[FD], state.qdd, atol=1e-8)

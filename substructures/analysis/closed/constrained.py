@@ -9,7 +9,7 @@ where c = G' q' for closures and -s'' for prescribed coordinates, whose multipli
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -18,14 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
+from substructures.analysis.arguments import Scalar
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
-from substructures.analysis.motion.inputs import VaryingInputs, read_along, state_names
-from substructures.analysis.motion.requests import ClosedRequest, LoopRequest
+from substructures.analysis.motion.conditions import read_conditions, state_names
+from substructures.analysis.motion.events import Event
+from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, RANK
@@ -49,25 +53,38 @@ class Constrained:
     ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
     """
 
-    def __init__(self, model: Model, request: LoopRequest | ClosedRequest, folder: Path | None = None) -> None:
-        """``folder``: a cache of compiled kernels. Raises InvalidDocument (pointers into the request), MissingValue."""
+    def __init__(
+        self,
+        model: Model,
+        start: Start,
+        span: tuple[float, float],
+        prescribed: Mapping[str, Signal] | None = None,
+        *,
+        events: Sequence[Event] = (),
+        series: Mapping[str, Scalar] | None = None,
+        folder: Path | None = None,
+    ) -> None:
+        """``span`` [s]: the times at which states will be; (t, t) for one. ``prescribed``: coordinates whose motion is
+        given [rad, m]; ``folder``: a cache of compiled kernels.
+
+        Raises InvalidInput (``/q``, ``/inputs/name``, ``/prescribed/name``, ...) and MissingValue.
+        """
         self.model, self.n = model, model.dof
-        _check_fixed(model, request.fixed)
-        span = request.span if isinstance(request, ClosedRequest) else (request.t, request.t)
         needs = [*NEEDS, *(CLOSED if model.closures else ())]
-        self.along = read_along(model, request, span, needs)
-        self.prescribed = Prescribed(model, request.prescribed, span)
+        self.conditions = read_conditions(model, start, span, needs, events, series)
+        self.prescribed = Prescribed(model, prescribed or {}, span)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
         self.closed = len(self.labels)
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
-        self._bind(list(request.inputs), folder)
+        self._bind(list(start.inputs), folder)
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
         self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
         self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
         self.G = np.zeros((m, n))
+        # of q_a - s(t): d phi / d q_a = 1
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
@@ -77,10 +94,10 @@ class Constrained:
         source, kernel = _compiled(known, tuple(outputs), frozenset(inputs), folder)
         self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
+        self.inputs = VaryingInputs(self.conditions, self._t, self._x, folder)
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
         columns = [(state_names(self.model), self._x), *self.inputs.columns]
-        self._run = kernel.bind(self._out, self.along.values | {"t": self._t}, columns=columns)
+        self._run = kernel.bind(self._out, self.conditions.values | {"t": self._t}, columns=columns)
         self.g = self._out["metric"][0]
 
     def move(self, t: float, q: Array, qd: Array) -> None:
@@ -90,12 +107,14 @@ class Constrained:
         x[:n], x[n:], self._t[0] = q, qd, t
         self.inputs.fill()
         self._run()
+        # f = Q - Gamma q'q'
         np.subtract(out["forces"][0], out["bias"][0], out=self.f)
         m = self.closed
         if m:
             self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
             self.G[:m] = out["closure.jacobian"][0]
         if self.prescribed.index:
+            # phi = q_a - s(t), phi_t = -s'(t), c = -s''(t)
             motion = self.prescribed.at(t)
             self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
             self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
@@ -108,6 +127,7 @@ class Constrained:
     @property
     def energies(self) -> tuple[float, float]:
         """T and V [J]."""
+        # T = q'^T g q' / 2
         return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
 
     @property
@@ -135,13 +155,14 @@ class Constrained:
         if not self.closed:
             return np.zeros(empty)
         rates = [f"{name}'" for name in self.model.coordinates]
-        values = self.along.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
+        values = self.conditions.values | dict(zip(rates, self.qd, strict=True)) | {"t": self.t}
         values |= dict(zip(self.model.coordinates, self.q, strict=True))
         return interpret(self.model.program, values, [name])[name]
 
     def factor(self, rows: NDArray[np.int64]) -> Factor:
         """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
         n, r = self.n, len(rows)
+        # A = [g G^T; G 0]
         A = np.zeros((n + r, n + r), order="F")
         A[:n, :n] = self.g
         if r:
@@ -154,6 +175,7 @@ class Constrained:
 
     def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
         """q'' (n,) and the multipliers of the given rows. Raises Singular."""
+        # g q'' + G^T (-lambda) = f, G q'' = -c
         q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
         if not np.isfinite(q2).all():
             raise Singular("the accelerations are not finite: check masses, inertias and loads")
@@ -168,6 +190,7 @@ class Constrained:
         rank = self.rank()
         if not rank:
             return np.zeros(0, dtype=np.int64)
+        # G^T P = Q R: rows in the order of what they add to those before
         pivots = qr(self.G.T, mode="r", pivoting=True)[1]
         return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
 
@@ -203,7 +226,8 @@ def rank_of(G: Array) -> int:
     return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
 
 
-def _check_fixed(model: Model, fixed: Sequence[str]) -> None:
+def require_fixed(model: Model, fixed: Sequence[str]) -> None:
+    """Raises InvalidArgument (``/fixed/i``) for names that are no coordinates of the model."""
     for i, name in enumerate(fixed):
         if name not in model.coordinates:
-            raise InvalidDocument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+            raise InvalidArgument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")

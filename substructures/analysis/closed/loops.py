@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq, null_space, qr, svd
 
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of
+from substructures.analysis.arguments import real
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of, require_fixed
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start, StateVector
+from substructures.analysis.motion.signals import Signal
 from substructures.array import Array
 from substructures.mechanics.accelerations import RANK
 from substructures.tree.model import Model
@@ -71,6 +73,15 @@ class LoopState:
     actuation: Mapping[str, float]
     message: str = ""
 
+    def __repr__(self) -> str:
+        place, state = self.mobility, self.consistent
+        names = ", ".join(reaction.closure for reaction in self.reactions)
+        return (
+            f"LoopState: {len(state.q)} coordinates, {place.degrees_of_freedom} free; {place.rank} independent rows, "
+            f"redundant: {', '.join(place.dependent) or 'none'}\n"
+            f"residual {state.residual:.2g}; reactions: {names or 'none'}; {self.message or 'closed'}"
+        )
+
     def plain(self) -> dict[str, Any]:
         """As plain data with arrays, for an answer in JSON."""
         state = {k: getattr(self.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
@@ -80,16 +91,32 @@ class LoopState:
         return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
 
 
-def analyse_loops(model: Model, request: Mapping[str, Any], folder: Path | None = None) -> LoopState:
-    """Close the loops at a state and say what moves and what holds.
+def loop_state(
+    model: Model,
+    q: StateVector | None,
+    *,
+    qd: StateVector | None = None,
+    t: float = 0.0,
+    parameters: Mapping[str, float] | None = None,
+    inputs: Mapping[str, Signal] | None = None,
+    fixed: Sequence[str] = (),
+    prescribed: Mapping[str, Signal] | None = None,
+    folder: Path | None = None,
+) -> LoopState:
+    """Close the loops of a model at a state and say what moves and what holds.
 
-    ``request``: see LoopRequest; ``q`` and ``qd`` near a closed position. ``folder``: a cache of compiled kernels.
-    Raises InvalidDocument and MissingValue; loops that cannot be closed, and singular positions, are messages in the
-    result.
+    ``q`` [rad, m], ``qd`` [rad/s, m/s; 0 by default]: near a closed position, (n,) or by name; ``t`` [s]. The
+    coordinates ``fixed`` keep their values while the loops are closed; ``prescribed`` ones move as given: a number, an
+    expression in t or a Table [rad, m]. ``parameters``: in place of their defaults; ``inputs`` [N m, N]: numbers,
+    expressions or tables, 0 by default. ``folder``: a cache of compiled kernels.
+
+    Raises InvalidInput (pointers start with names of arguments) and MissingValue; loops that cannot be closed, and
+    singular positions, are messages in the result.
     """
-    asked = LoopRequest.read(request)
-    s, t = Constrained(model, asked, folder), asked.t
-    state = consistent_state(s, t, s.along.q, s.along.qd, asked.fixed)
+    t = real(t, "/t")
+    require_fixed(model, fixed)
+    s = Constrained(model, Start(q, qd, parameters or {}, inputs or {}), (t, t), prescribed, folder=folder)
+    state = consistent_state(s, t, s.conditions.q, s.conditions.qd, fixed)
     place = mobility(s, t, state.q)
     s.move(t, state.q, state.qd)
     nothing = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
@@ -121,6 +148,7 @@ def mobility(s: Constrained, t: float, q: Array) -> Mobility:
 
 def independent_coordinates(G: Array) -> NDArray[np.int64]:
     """Coordinates whose velocities determine all others, by QR with pivoting of the Jacobian; in order."""
+    # G P = Q R: the first columns of the permutation P are dependent coordinates, G_y y' = -G_x x'
     rank = rank_of(G)
     if not rank:
         return np.arange(G.shape[1])
@@ -132,6 +160,7 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
     """Rows that take part in a dependency: G^T lambda = 0 with a lambda that is not zero there."""
     if not G.size:
         return np.zeros(len(G), dtype=np.bool_)
+    # lambda with G^T lambda = 0 can be added to any multipliers
     free = null_space(G.T, rcond=RANK)
     return np.asarray(np.abs(free).max(axis=1, initial=0) > np.sqrt(RANK))
 
@@ -139,6 +168,7 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
 def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> bool:
     """Whether the rank is higher at a closed position nearby, in some direction along the closures."""
     _, _, rows = svd(G) if G.size else (None, None, np.eye(s.n))
+    # directions t with G t = 0
     tangent = rows[rank:]
     rng = np.random.default_rng(5)
     for _ in range(2 if rank < min(G.shape) else 0):
@@ -155,6 +185,7 @@ def least_multipliers(s: Constrained, qdd: Array) -> Array:
     """lambda of least norm with G^T lambda = g q'' + Gamma q'q' - Q."""
     if not len(s.labels):
         return np.zeros(0)
+    # G^T lambda = g q'' - f, f = Q - Gamma q'q'
     found = lstsq(s.G.T, s.g @ qdd - s.f, cond=RANK, lapack_driver="gelsd", check_finite=False)[0]
     return np.asarray(found, dtype=np.float64)
 
@@ -166,6 +197,7 @@ def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reac
     for rows in s.model.closures:
         load = np.zeros((2, 3))
         for row in rows.rows:
+            # force or moment of a row: lambda_k times its direction
             load[int(row not in ("x", "y", "z", "length"))] += multipliers[k] * direction[k]
             k += 1
         result.append(Reaction(rows.name, load[0], load[1], place.entangled.get(rows.name, ())))

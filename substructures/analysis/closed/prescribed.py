@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
-from scipy.interpolate import PPoly, make_interp_spline
+import scipy
 
-from substructures.analysis.motion.inputs import require_covered
-from substructures.analysis.motion.request_fields import Signal, Table
+from substructures.analysis.arguments import exact, require_read
+from substructures.analysis.motion.signals import Signal, Table, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
@@ -27,11 +28,11 @@ class Prescribed:
     """
 
     def __init__(self, model: Model, given: Mapping[str, Signal], span: tuple[float, float]) -> None:
-        """Raises InvalidDocument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
+        """Raises InvalidArgument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
         the span.
         """
         self.values = np.zeros((len(given), 3))
-        self._tables: list[tuple[int, PPoly]] = []
+        self._tables: list[tuple[int, Any]] = []
         scope = Scope(Graph())
         time = {"t": scope.graph.symbol("t")}
         formulas: dict[int, Expr] = {}
@@ -43,8 +44,8 @@ class Prescribed:
                 require_covered(one, span, pointer)
                 self._tables.append((k, _spline(np.array(one.times), np.array(one.values))))
             else:
-                formulas[k] = scope.read(one, pointer, time.get)
-        scope.finish()
+                formulas[k] = scope.read(exact(one, pointer), pointer, time.get)
+        require_read(scope)
         self.index = tuple(model.coordinates.index(name) for name in given)
         self._time = np.zeros(1)
         self._places = list(formulas)
@@ -54,6 +55,7 @@ class Prescribed:
     def _compiled(self, graph: Graph, formulas: Sequence[Expr]) -> Callable[[], None] | None:
         """Expressions in t as machine code; constants are put in place at once."""
         rows = []
+        # s(t), s'(t), s''(t)
         for x in formulas:
             rate = derivative(x, "t")
             rows.append((x, rate, derivative(rate, "t")))
@@ -76,11 +78,15 @@ class Prescribed:
         return self.values
 
 
-def _spline(times: Array, values: Array) -> PPoly:
-    """A spline of degree five (less for few points) and its derivatives as one piecewise polynomial."""
-    spline = PPoly.from_spline(make_interp_spline(times, values, k=min(5, len(times) - 1)))
+def _spline(times: Array, values: Array) -> Any:
+    """A spline of degree five (less for few points) and two derivatives as one piecewise polynomial.
+
+    The second derivative enters the equations of motion: of degree three, it is twice continuously differentiable.
+    """
+    of_degree = scipy.interpolate.make_interp_spline(times, values, k=min(5, len(times) - 1))
+    spline = scipy.interpolate.PPoly.from_spline(of_degree)
     terms = [spline, spline.derivative(1), spline.derivative(2)]
     stacked = np.zeros((*spline.c.shape, 3))
     for i, term in enumerate(terms):
         stacked[len(spline.c) - len(term.c) :, :, i] = term.c
-    return PPoly(stacked, spline.x)
+    return scipy.interpolate.PPoly(stacked, spline.x)

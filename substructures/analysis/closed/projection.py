@@ -52,6 +52,7 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
     residual = _largest(s.phi)
     if not residual <= CLOSED * max(1.0, _largest(q)):
         return Consistent(q, qd, residual, _largest(s.velocity_residual), iterations, _open_message(s, fixed))
+    # dq' = -W (G W)^+ (G q' + phi_t): linear, so that once is enough but for rounding
     qd = qd.copy()
     for _ in range(2):
         s.move(t, q, qd)
@@ -73,6 +74,7 @@ def _close(s: Constrained, t: float, q: Array, free: NDArray[np.int64]) -> tuple
         if _largest(s.phi) <= CLOSED / 100:
             return q, k
         step = _least(s, free, s.phi)
+        # no longer than STRIDE, then halved until |phi| falls
         step *= min(1.0, STRIDE / max(_largest(step), STRIDE))
         for _ in range(30):
             trial = q.copy()
@@ -93,6 +95,7 @@ def _least(s: Constrained, free: NDArray[np.int64], residual: Array) -> Array:
     if not len(residual) or not len(free):
         return np.zeros(len(free))
     inertia = np.diag(s.g)[free]
+    # dq = -W (G W)^+ phi, W = diag(g)^(-1/2)
     weight = 1 / np.sqrt(np.where(inertia > 0, inertia, 1.0))
     found = lstsq(s.G[:, free] * weight, -residual, cond=RANK, lapack_driver="gelsd", check_finite=False)
     return np.asarray(weight * found[0], dtype=np.float64)
@@ -144,9 +147,11 @@ def project(s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int6
         before, size = size, _largest(s.phi[rows])
         if size <= CLOSED / 100 or before / 2 < size:
             break
+        # g dq + G^T mu = 0, G dq = -phi
         q = q + factor.solve(nothing, -s.phi[rows])[0]
         s.move(t, q, qd)
         factor = s.factor(rows)
+    # g dq' + G^T mu = 0, G dq' = -(G q' + phi_t)
     qd = qd + factor.solve(nothing, -s.velocity_residual[rows])[0]
     s.move(t, q, qd)
     return q, qd, factor

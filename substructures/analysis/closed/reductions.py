@@ -75,6 +75,7 @@ class Reduction(ABC):
         """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
         s = self.s
         qdd, multipliers = s.accelerations(self.rows)
+        # W' = (Q + dV/dq) q' + sum of lambda_k s'_k, and phi_t = -s'
         power = 0.0 if s.conservative else s.lost_power
         for row, force in zip(self.rows, multipliers, strict=True):
             if row >= s.closed:
@@ -85,6 +86,7 @@ class Reduction(ABC):
         """Rows that stay independent; all other rows depend on them."""
         if not self.rank:
             return
+        # sigma_r / sigma_1 of G for its rank r along the motion
         values = svdvals(self.s.G)
         share = 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
         self.best_share = max(self.best_share, share)
@@ -99,14 +101,17 @@ class Projected(Reduction):
     """y = (q, q', work)."""
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
+        """(q, q', work)."""
         return np.concatenate((q, qd, (work,)))
 
     def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
+        """As they are, beside the closures by the error of a step."""
         q, qd = y[: self.n], y[self.n : -1]
         self.s.move(t, q, qd)
         return q, qd
 
     def rates(self, t: float, y: Array) -> Array:
+        """(q', q'', power). Raises Singular."""
         q, qd = y[: self.n], y[self.n : -1]
         self.s.move(t, q, qd)
         qdd, power = self._acceleration()
@@ -115,6 +120,7 @@ class Projected(Reduction):
         return result
 
     def choose(self, anew: bool = False) -> bool:
+        """Rows only: y means the same whatever they are."""
         self._check_rank(anew)
         return False
 
@@ -142,10 +148,12 @@ class Partitioned(Reduction):
         return float(values[-1] / values[0])
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
+        """(y, y', work) of the independent coordinates."""
         self.near = q.copy()
         return np.concatenate((q[self.independent], qd[self.independent], (work,)))
 
     def unpack(self, t: float, y: Array) -> tuple[Array, Array]:
+        """On the closures near :meth:`expect`, by Newton's method. Raises Singular."""
         s, k = self.s, len(self.independent)
         q, qd = self.near.copy(), np.zeros(self.n)
         q[self.independent], qd[self.independent] = y[:k], y[k:-1]
@@ -156,9 +164,11 @@ class Partitioned(Reduction):
             size = float(np.abs(residual).max(initial=0))
             if size <= CLOSED / 10 or before / 2 < size <= ROUNDING:
                 break
+            # Newton: G_x dx = -phi for the dependent coordinates x
             q[self.dependent] -= self._solve(residual)
         else:
             raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
+        # G_x x' = -(G_y y' + phi_t)
         qd[self.dependent] = -self._solve(s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows])
         self.near = q
         s.move(t, q, qd)
@@ -173,11 +183,13 @@ class Partitioned(Reduction):
         return np.asarray(x, dtype=np.float64)
 
     def rates(self, t: float, y: Array) -> Array:
+        """(y', y'', power) of the independent coordinates. Raises Singular."""
         _, qd = self.unpack(t, y)
         qdd, power = self._acceleration()
         return np.concatenate((qd[self.independent], qdd[self.independent], (power,)))
 
     def choose(self, anew: bool = False) -> bool:
+        """Rows and independent coordinates, when the dependent ones have become ill conditioned."""
         before = self.rows
         self._check_rank(anew)
         if not anew and self._condition() >= WORN * self.best and before is self.rows:

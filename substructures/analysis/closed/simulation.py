@@ -2,64 +2,92 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
+from substructures.analysis.arguments import one_of
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
 from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance
+from substructures.analysis.motion.problem import MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.requests import ClosedRequest
-from substructures.analysis.motion.steppers import scipy_stepper
+from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.trajectory import Check, Trajectory, crossings
 from substructures.array import Array
 from substructures.tree.model import Model
 
 #: largest residuals of positions [m, 1] and velocities [per s] along a right motion
 RESIDUAL = 1e-9
+#: one-step methods, which can begin anew on the closures after every step
+METHODS = ("DOP853", "RK45", "RK23")
 ADVICE = "look for very stiff springs, for masses or lengths near zero and for jumps in loads"
 
 
+@dataclass(frozen=True, kw_only=True)
+class ClosedProblem(MotionProblem):
+    """A motion with closures from the closed state nearest to the start; the coordinates ``fixed`` keep their values
+    while the loops are closed, ``prescribed`` ones move as given [rad, m].
+
+    ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
+    """
+
+    prescribed: Mapping[str, Signal] = field(default_factory=dict)
+    fixed: Sequence[str] = ()
+    reduction: Literal["projection", "partitioning"] = "projection"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        one_of(self.integrator.method, "method", METHODS)
+        one_of(self.reduction, "reduction", tuple(REDUCTIONS))
+
+
 def simulate_closed(
-    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
+    problem: ClosedProblem, progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """Integrate the equations of motion with closures from the closed state nearest to the given one.
 
-    ``request``: see ClosedRequest. ``progress`` is told the finished share of the span and cancels by False.
-    ``folder``: a cache of compiled kernels.
+    ``progress`` is told the finished share of the span and cancels by False. ``folder``: a cache of compiled kernels.
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
-    of the prescribed coordinates), varying inputs, and what the request asks for. Checks: both residuals are zero, and
+    of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, and
     T + V - work is constant; work is that of forces without potential and of prescribed coordinates. Loops that cannot
     be closed, a singular position at the start or on the way and a span that cannot be finished are ``failed``, with
-    advice and the motion up to there. Raises InvalidDocument and MissingValue.
+    advice and the motion up to there. Raises InvalidInput (pointers start with names of arguments of ``simulate``) and
+    MissingValue.
     """
-    asked = ClosedRequest.read(request)
-    s, start = Constrained(model, asked, folder), asked.span[0]
-    s.inputs.enter(*asked.span)
-    state = consistent_state(s, start, s.along.q, s.along.qd, asked.fixed)
+    require_fixed(problem.model, problem.fixed)
+    s, start = _constrained(problem, folder), problem.span[0]
+    s.inputs.enter(*problem.span)
+    state = consistent_state(s, start, s.conditions.q, s.conditions.qd, problem.fixed)
     place = mobility(s, start, state.q)
     message = state.message or (f"the start is singular: {SINGULAR}" if place.singular else "")
     if message:
-        return _nothing(model, state, start, message)
+        return _nothing(problem.model, state, start, message)
     s.move(start, state.q, state.qd)
+    # x = (q, q', W), W the work of forces without potential and of prescribed coordinates
     x = np.concatenate((state.q, state.qd, (0.0,)))
-    return _judged(s, asked, _moved(s, asked, x, place.rank, progress, folder))
+    return _judged(s, problem, _moved(s, problem, x, place.rank, progress, folder))
+
+
+def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:
+    notes: dict[str, Any] = {"events": problem.events, "series": problem.series}
+    return Constrained(problem.model, problem.start, problem.span, problem.prescribed, **notes, folder=folder)
 
 
 def _moved(
-    s: Constrained, asked: ClosedRequest, x: Array, rank: int, progress: ProgressReport | None, folder: Path | None
+    s: Constrained, problem: ClosedProblem, x: Array, rank: int, progress: ProgressReport | None, folder: Path | None
 ) -> IntegratedMotion:
-    reduction: Reduction = REDUCTIONS[asked.reduction](s, rank)
-    inner = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
+    reduction: Reduction = REDUCTIONS[problem.reduction](s, rank)
+    inner = problem.integrator.stepper()
 
     def stepper(_f: object, t: float, y: Array, end: float) -> ClosedStepper:
         return ClosedStepper(reduction, inner, t, y, end)
@@ -67,28 +95,28 @@ def _moved(
     motion = integrate(
         reduction.rates,
         x,
-        asked.span,
-        asked.outputs(),
-        IntegratorSettings(stepper, asked.max_steps, ADVICE),
-        s.along.watches(lambda _, y: y[:-1], folder),
-        s.along.breaks(asked.span),
-        share_of(asked.span, progress),
+        problem.span,
+        problem.times.grid(),
+        IntegratorSettings(stepper, problem.integrator.max_steps, ADVICE),
+        s.conditions.watches(lambda _, y: y[:-1], folder),
+        s.conditions.breaks(problem.span),
+        share_of(problem.span, progress),
         s.inputs.enter,
     )
     s.inputs.leave()
     return motion
 
 
-def _judged(s: Constrained, asked: ClosedRequest, motion: IntegratedMotion) -> Trajectory:
+def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion) -> Trajectory:
     """The motion with its series and checks."""
     t, x, results = motion.judged()
-    judged = _along(_judged_quantities, s, t, x) | {"work": x[:, -1]}
-    checks = (*_residual_checks(t, judged), energy_balance(t, judged, s.conservative, asked.drift_limit))
+    judged = _at_states(_judged_quantities, s, t, x) | {"work": x[:, -1]}
+    checks = (*_residual_checks(t, judged), energy_balance(t, judged, s.conservative, problem.drift_limit))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
-    series = _along(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}
-    series |= s.along.series_at(t, x[:, :-1])
-    found = crossings(asked.events, motion.found, s.n)
+    series = _at_states(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}
+    series |= s.conditions.series_at(t, x[:, :-1])
+    found = crossings(problem.events, motion.found, s.n)
     figures = {"evaluations": float(motion.evaluations)}
     return Trajectory(
         s.model.coordinates,
@@ -105,7 +133,9 @@ def _judged(s: Constrained, asked: ClosedRequest, motion: IntegratedMotion) -> T
     )
 
 
-def _along(quantities: Callable[[Constrained], dict[str, Any]], s: Constrained, t: Array, x: Array) -> dict[str, Array]:
+def _at_states(
+    quantities: Callable[[Constrained], dict[str, Any]], s: Constrained, t: Array, x: Array
+) -> dict[str, Array]:
     """Quantities of a state at all states (q, q', work)."""
     rows = []
     for at, state in zip(t.tolist(), x, strict=True):
@@ -118,6 +148,7 @@ def _along(quantities: Callable[[Constrained], dict[str, Any]], s: Constrained, 
 def _forces(s: Constrained) -> dict[str, Any]:
     """Accelerations and multipliers; not finite where they are not determined."""
     try:
+        # g q'' = f + G^T lambda, G q'' = -c; with all rows, the lambda of least norm
         qdd, _ = s.accelerations(s.independent_rows())
         multipliers = least_multipliers(s, qdd)
     except Singular:
@@ -140,6 +171,7 @@ def _residual_checks(t: Array, columns: Mapping[str, Array]) -> Iterator[Check]:
         ("position", "the closures (and prescribed motions) are met", "m, 1"),
         ("velocity", "G q' + phi_t = 0", "m/s, 1/s"),
     ):
+        # max_k |phi_k|, max_k |(G q' + phi_t)_k|
         residual = columns[f"{name}_residual"]
         yield Check.of((f"{name} residual", "zero", reason, unit), residual, t, 1.0, RESIDUAL)
 

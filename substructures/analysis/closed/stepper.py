@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.linalg import svdvals
-from scipy.optimize import minimize_scalar
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
@@ -100,6 +100,7 @@ class ClosedStepper:
         if self.reduction.choose():
             self._begin(self.inner.h_abs)
         else:
+            # the step goes on from the state on the closures: y and y' there
             self.inner.y = self.reduction.pack(*self._state(), float(self.y[-1]))
             self.inner.f = self.reduction.rates(self.t, self.inner.y)
         self.s.move(self.t, *self._state())
@@ -116,6 +117,7 @@ class ClosedStepper:
         q, qd = self.reduction.land(self.inner.t, self.inner.y)
         before, rates = self._state()
         way = (self.inner.t - self.t) * np.maximum(np.abs(qd).max(initial=0), np.abs(rates).max(initial=0))
+        # |q_1 - q_0| <= LEAP h |q'| + LENGTH along one branch
         if np.abs(q - before).max(initial=0) > LEAP * way + LENGTH:
             raise Singular(SINGULAR)
         return message
@@ -138,6 +140,7 @@ class ClosedStepper:
         rows = self.reduction.rows
         if not len(rows):
             return False
+        # det(G_new G_old^T) <= 0: a singular value of G may have passed through zero
         if np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0:
             return True
         old, new = self._state()[1], self.s.qd
@@ -151,12 +154,13 @@ class ClosedStepper:
 
         def share(part: float) -> float:
             state(start + part * h)
+            # sigma_min / sigma_max of the independent rows
             values = svdvals(self.s.G[rows])
             return float(values[-1] / values[0])
 
         k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
         bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
-        found = minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
+        found = scipy.optimize.minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
         return float(start + found.x * h) if found.fun < least else None
 
     def dense_output(self) -> Callable[[float], Array]:

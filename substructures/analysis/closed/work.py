@@ -20,12 +20,14 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
     output has no entry when the forces have a potential. Raises ZeroDivisionError where a derivative is infinite.
     """
     graph = Graph()
+    # inputs that are not given are 0
     absent = {s.name: graph.zero for s in model.program.symbols if s.kind == "input" and s.name not in inputs}
     found = replay(model.program, graph, absent, [*outputs, "forces", "potential_energy"])
     potential = graph.zero + found["potential_energy"].entries.get((), 0)
     (slopes,) = gradient([potential], model.coordinates)
     total: Expr = graph.zero
     for a, name in enumerate(model.coordinates):
+        # (Q_a + dV/dq^a) q'^a
         force = graph.zero + found["forces"].entries.get((a,), 0)
         total = total + (force + slopes[a]) * graph.symbol(f"{name}'")
     symbols = {s.name: s for s in model.program.symbols}

@@ -39,8 +39,10 @@ def judged_energy(f: ModelFormulas, vanishes: Vanishing, given: frozenset[str]) 
         return None
     power, rates = f.power, {str(v.value): v for v in f.rates}
     idle = f"; {closures_of(f.model)} do no work" if f.model.closures else ""
+    # P = Q_a q'^a + V' is the zero formula
     if vanishes(power):
         return "constant", f"all forces have a potential that does not depend on time: Q_a q'^a + V' = 0{idle}"
+    # P(q, s q') = s^2 P(q, q'), by Euler: dP/dq'^a q'^a = 2 P
     twice = directional([power], rates)[0]
     if vanishes(twice - 2 * power) and not depends_on([power], {"t"}):
         return "falling", f"forces without potential are linear in the velocities: it falls where they damp{idle}"

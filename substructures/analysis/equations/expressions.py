@@ -1,10 +1,11 @@
-"""Expressions of a request in coordinates, velocities, parameters, inputs and t, read into one program."""
+"""Expressions in coordinates, velocities, parameters, inputs and t, read into one program."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from substructures.analysis.arguments import exact, require_read
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.part.scope import Scope
@@ -17,12 +18,14 @@ Given = Iterable[tuple[Any, str]]
 def read_expressions(model: Model, groups: Mapping[str, Given], inputs: bool = False) -> Program:
     """A program with one output (k,) for every group. ``inputs``: whether inputs may be named, too.
 
-    Raises InvalidDocument with a pointer to every fault.
+    Raises InvalidArgument with a pointer to every fault.
     """
     scope = Scope(Graph())
     lookup = names(model, scope, inputs)
-    read = {name: [scope.read(x, pointer, lookup) for x, pointer in given] for name, given in groups.items()}
-    scope.finish()
+    read = {
+        name: [scope.read(exact(x, pointer), pointer, lookup) for x, pointer in given] for name, given in groups.items()
+    }
+    require_read(scope)
     outputs = {name: vector(some) for name, some in read.items()}
     return program(scope.graph, outputs, scope.symbols)
 

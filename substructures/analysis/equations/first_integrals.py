@@ -18,7 +18,7 @@ from typing import Any, Literal
 from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
 from substructures.analysis.equations.formulas import Entries, ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, program
@@ -53,6 +53,11 @@ class FirstIntegrals:
     integrals: tuple[Integral, ...]
     cyclic: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        names = listed(f"{integral.name} ({integral.rule})" for integral in self.integrals)
+        cyclic = listed(self.cyclic) or "none"
+        return f"FirstIntegrals: {names or 'none'}\ncyclic: {cyclic}; {len(self.program)} operations"
+
     def summary(self) -> dict[str, Any]:
         """Names, units and reasons as plain data; the formulas are in the program."""
         return {"integrals": [vars(i) for i in self.integrals], "cyclic": list(self.cyclic)}
@@ -63,7 +68,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
 
     ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
     What the reactions of closures could change, whatever they are, is not constant.
-    Raises InvalidDocument for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
+    Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     known = {s.name for s in model.program.symbols if s.kind == "input"}
     inputs, zero = list(inputs), list(zero)
@@ -74,7 +79,7 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
         if name not in some
     ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
     return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
 
 
@@ -114,6 +119,7 @@ class _Search:
         # d_c g_ab = Gamma_abc + Gamma_bac
         varied = {c for (a, b, c), x in gamma.items() if not self.vanishes(x + gamma.get((b, a, c), self.zero))}
         if f.model.closures:
+            # dphi_k/dq^c = G_kc
             varied |= {c for (_, c), x in f.elements("closure.jacobian").items() if not self.vanishes(x)}
         for c, name in enumerate(f.model.coordinates):
             if c not in varied and self.vanishes(forces[c]):
@@ -133,6 +139,7 @@ class _Search:
 
     def momenta(self) -> None:
         """Of the whole system along, and about, the axes of the world and the direction of a constant force."""
+        # p = sum_a p_a q'^a, L = sum_a L_a q'^a and their derivatives along the equations of motion
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self.f.rate([*linear, *angular])
         pull = [self._constant(x) or self.zero for x in rates[:3]]
@@ -147,12 +154,14 @@ class _Search:
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
+        # momentum_i = n_ai q'^a
         result = [self.zero] * 3
         for (a, i), x in self.f.elements(name).items():
             result[i] = result[i] + x * self.f.rates[a]
         return result
 
     def _momentum_found(self, kind: IntegralKind, label: str, value: Expr) -> None:
+        # what is zero in every state says nothing about a motion
         if self.vanishes(value):
             return
         word = "force along" if kind == "linear_momentum" else "moment about"
@@ -166,6 +175,7 @@ class _Search:
         states = {s.name for s in self.f.symbols.values() if s.kind != "parameter"}
         if not depends_on([expr], states):
             return expr
+        # dx = 0 for all changes of the state
         seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}
         if not self.vanishes(directional([expr], seeds)[0]):
             return None
@@ -190,6 +200,7 @@ class _Search:
 
     def _turned(self, rotation: Entries, columns: Entries, k: int, a: int, j: int) -> Expr:
         """Component j in the world of column a of frame k."""
+        # (R_k)_ji (column a of frame k)_i
         pairs = [((k, j, i), (k, a, i)) for i in range(3)]
         return self.f.graph.sum(rotation[r] * columns[c] for r, c in pairs if r in rotation and c in columns)
 
@@ -201,6 +212,7 @@ class _Search:
                 ("angular_momentum", angular),
             ]
             for kind, some in momenta:
+                # p . e, L . e
                 value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))
                 if self.vanishes(self.f.rate([value])[0]):
                     self._momentum_found(kind, f"axis-of-{name}", value)
@@ -210,6 +222,7 @@ class _Search:
         acting = [i for i in range(3) if not self.vanishes(pull[i])]
         for i in acting[1:]:
             j = acting[0]
+            # p_i' F_j - p_j' F_i = 0 where p' = F is constant
             value = linear[i] - linear[j] * (pull[i] / pull[j])
             self._momentum_found("linear_momentum", f"{AXES[i]}-normal-to-force", value)
 
@@ -217,6 +230,7 @@ class _Search:
         """The direction of a constant force that is along none of the axes."""
         acting = [i for i in range(3) if not self.vanishes(pull[i])]
         if len(acting) > 1:
+            # L . F / F_j
             value = self.f.graph.sum(angular[i] * (pull[i] / pull[acting[0]]) for i in acting)
             if self.vanishes(self.f.rate([value])[0]):
                 self._momentum_found("angular_momentum", "force", value)

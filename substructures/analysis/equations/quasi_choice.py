@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.arguments import require_read
 from substructures.analysis.equations.formulation import Formulation
-from substructures.analysis.equations.velocity_constraints import VelocityConstraints, VelocityRows, linear_row
-from substructures.errors import InvalidDocument
+from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
+from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
@@ -37,6 +38,7 @@ def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows,
     values = _numbers(f, given.rows) if given.rows else np.zeros((3, 0, f.n))
     kept: list[int] = []
     for k, label in enumerate(given.labels):
+        # rank of the rows kept and this one, at states in general position
         if _rank(values[:, [*kept, k]]) > len(kept):
             kept.append(k)
             result.add(label, given.rows[k])
@@ -46,30 +48,38 @@ def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows,
 
 
 def quasi_velocity_rows(
-    f: Formulation, spec: VelocityConstraints, rows: VelocityRows, near: Mapping[str, float] | None
+    f: Formulation,
+    rows: VelocityRows,
+    velocities: Mapping[str, str] | None,
+    independent: Sequence[str] | None,
+    near: Mapping[str, float] | None,
 ) -> tuple[list[str], MatrixRows]:
-    """Names of the quasi-velocities and their rows; declares their symbols and those of their rates."""
+    """Names of the quasi-velocities and their rows (p, n); declares their symbols and those of their rates.
+
+    Raises InvalidArgument (``/velocities``, ``/independent``).
+    """
     p, coordinates = f.n - len(rows.rows), f.model.coordinates
-    if spec.velocities is not None:
-        names = list(spec.velocities)
-        own = [linear_row(f, text, f"/velocities/{name}") for name, text in spec.velocities.items()]
+    if velocities is not None:
+        names = list(velocities)
+        own = [linear_row(f, text, f"/velocities/{name}") for name, text in velocities.items()]
         for name in names:
             if name in f.symbols:
                 f.scope.fault(f"/velocities/{name}", "duplicate-name", f"'{name}' is a symbol of the model")
         pointer = "/velocities"
     else:
-        chosen = _chosen(f, rows.rows, near) if spec.independent is None else list(spec.independent)
+        chosen = _chosen(f, rows.rows, near) if independent is None else list(independent)
         for i, name in enumerate(chosen):
             if name not in coordinates:
                 f.scope.fault(f"/independent/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
-        f.scope.finish()
+        require_read(f.scope)
         index = [coordinates.index(name) for name in chosen]
+        # v_i = q'^a: rows of the unit matrix
         own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in index]
         names, pointer = [f"{name}'" for name in chosen], "/independent"
-    f.scope.finish()
+    require_read(f.scope)
     if len(names) != p:
         message = f"{f.n} coordinates with {len(rows.rows)} constraints need {p} velocities, {len(names)} given"
-        raise InvalidDocument.at(pointer, "wrong-length", message)
+        raise InvalidArgument.at(pointer, "wrong-length", message)
     for name in names:
         f.symbols.setdefault(name, Symbol(name, "velocity"))
         f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration")
@@ -92,6 +102,7 @@ def _chosen(f: Formulation, rows: MatrixRows, near: Mapping[str, float] | None) 
             columns = [*dependent, a]
             if a in dependent or len(dependent) == len(rows):
                 continue
+            # sigma_min of the columns of the dependent coordinates, so that G_x x' = -G_y y' is well conditioned
             if _weakest(values[:, :, columns]) > share * least:
                 dependent = columns
     return [name for a, name in enumerate(f.model.coordinates) if a not in dependent]

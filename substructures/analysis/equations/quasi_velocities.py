@@ -37,8 +37,8 @@ from typing import Any
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.formulation import Elements, Formulation
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
-from substructures.analysis.equations.velocity_constraints import VelocityConstraints, velocity_rows
-from substructures.errors import InvalidDocument
+from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
+from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
@@ -60,33 +60,43 @@ class QuasiVelocities:
     gaps: tuple[str, ...]
     dependent: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return (
+            f"QuasiVelocities: {listed(self.velocities)} of {self.model.dof} coordinates; "
+            f"constraints: {listed(self.constraints) or 'none'}\n"
+            f"gaps: {listed(self.gaps) or 'none'}; dependent: {listed(self.dependent) or 'none'}; "
+            f"{len(self.program)} operations"
+        )
+
 
 def quasi_velocity_equations(
-    model: Model, document: Mapping[str, Any], near: Mapping[str, float] | None = None
+    model: Model,
+    constraints: Sequence[Constraint] = (),
+    *,
+    velocities: Mapping[str, str] | None = None,
+    independent: Sequence[str] | None = None,
+    near: Mapping[str, float] | None = None,
 ) -> QuasiVelocities:
     """The equations of a model with velocity constraints, all formulas.
 
-    ``document``: see :class:`VelocityConstraints`; ``near``: values of coordinates and parameters at which quasi-
-    velocities that are not given should describe the motion well. Raises InvalidDocument (pointers into the document):
-    constraints that are not linear, quasi-velocities that do not determine the velocities; TooLarge.
+    The quasi-velocities: ``velocities``, as many as the constraints leave free, by name, each an expression linear in
+    the velocities; or those of the coordinates ``independent``; default: chosen for short formulas that describe the
+    motion well ``near`` these values of coordinates and parameters.
+
+    Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
+    do not determine the velocities; TooLarge.
     """
-    return velocity_equations(model, VelocityConstraints.read(document), near)
-
-
-def velocity_equations(
-    model: Model, spec: VelocityConstraints, near: Mapping[str, float] | None = None
-) -> QuasiVelocities:
-    """quasi_velocity_equations for a document that was read."""
     f = Formulation(model)
-    given = velocity_rows(f, spec.constraints)
+    given = velocity_rows(f, constraints)
     rows, dependent = independent_rows(f, given)
-    names, own = quasi_velocity_rows(f, spec, rows, near)
+    names, own = quasi_velocity_rows(f, rows, velocities, independent, near)
+    # Y q' = (v, 0), Y^-1 = [T S]
     Y = [*own, *rows.rows]
     inverted = inverse(Y)
     if inverted is None:
-        pointer = "/independent" if spec.velocities is None else "/velocities"
+        pointer = "/independent" if velocities is None else "/velocities"
         message = "these velocities and the constraints do not determine the velocities of all coordinates"
-        raise InvalidDocument.at(pointer, "dependent", message)
+        raise InvalidArgument.at(pointer, "dependent", message)
     equations = _Equations(f, names, Y, inverted)
     outputs = equations.outputs()
     gaps = list(rows.gaps.values())
@@ -116,16 +126,20 @@ class _Equations:
         n, p = self.n, self.p
         g, Q = self.model["metric"], self._vector("forces")
         gT = [[self._sum(g.get((a, b), 0) * self.T[b][i] for b in range(n)) for i in range(p)] for a in range(n)]
+        # g*_ij = T^a_i g_ab T^b_j, p_a = g_ab T^b_i v^i
         reduced = [[self._sum(self.T[a][i] * gT[a][j] for a in range(n)) for j in range(p)] for i in range(p)]
         momentum = self._times(gT, self.v)
         # T' v with T'^a_i = d_b T^a_i q'^b
         turning = [self._sum(self._slope(a, i) * self.v[i] for i in range(p)) for a in range(n)]
+        # g T' v + Gamma q'q'
         carried = self._product(g, turning)
         inertial = [x + y for x, y in zip(carried, self._vector("bias"), strict=True)]
+        # g q'' + Gamma q'q' - Q with q'' = T v' + T' v
         missing = [self._sum(gT[a][i] * self.dv[i] for i in range(p)) + inertial[a] - Q[a] for a in range(n)]
         structure = self._structure()
         hamel = self._hamel(momentum, carried, structure)
         B = self.Y[p:]
+        # T* = p_a q'^a / 2
         energy = self._sum(m * x for m, x in zip(momentum, self.rates, strict=True)) / 2
         return {
             "constraints": array((n - p, n), lambda k, a: B[k][a]),
@@ -158,8 +172,10 @@ class _Equations:
         p_all += [self._column(self.S, k, momentum) for k in range(n - p)]
         result = []
         for i in range(p):
+            # (g*' v)_i = T'^a_i p_a + T^a_i (g' q' + g T' v)_a
             growing = self._sum(self._slope(a, i) * momentum[a] for a in range(n))
             growing = growing + self._column(self.T, i, [x + y for x, y in zip(changing, carried, strict=True)])
+            # X_i(T*) = T^b_i (d_b T at fixed q' + p_a d_b T^a_j v^j)
             along = self._column(self.T, i, sloping)
             along = along + self._sum(
                 self.T[b][i] * (momentum[a] * self.dT[a][j][b] * v[j])
@@ -168,6 +184,7 @@ class _Equations:
                 for j in range(p)
                 if not self.dT[a][j][b].is_zero
             )
+            # c^k_ji v^j p_k
             twist = self._sum(c * v[j] * p_all[k] for (k, j, i2), c in structure.items() if i2 == i)
             result.append(growing - along - twist)
         return result
@@ -195,6 +212,7 @@ class _Equations:
 
     def _lost_power(self, Q: Sequence[Expr]) -> Expr:
         potential = self.f.graph.zero + self.model["potential_energy"].get((), 0)
+        # (Q_a + dV/dq^a) q'^a
         (slopes,) = gradient([potential], self.f.model.coordinates)
         return self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
 

@@ -21,74 +21,62 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Literal
 
-from pydantic import Field
-
+from substructures.analysis.arguments import Scalar, exact, one_of, require_read
 from substructures.analysis.equations.formulation import Formulation
-from substructures.documents import DocumentPart, read_model
-from substructures.documents.fields import Name, Number
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
 from substructures.part.frames import axis_rotation
 
-FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
+SHAPES = ("disc", "sphere")
 
 
-class Linear(DocumentPart):
-    """An expression that is zero, linear in the velocities."""
+@dataclass(frozen=True)
+class Linear:
+    """``expression`` is zero; it is linear in the velocities."""
 
-    type: Literal["linear"]
-    name: Name
+    name: str
     expression: str
 
 
-class KnifeEdge(DocumentPart):
-    """A skate: no velocity across the edge, which lies along the first axis of the frame."""
-
-    type: Literal["knife_edge"]
-    name: Name
-    frame: FrameName
-
-
-class Rolling(DocumentPart):
-    """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
-
-    type: Literal["rolling"]
-    name: Name
-    frame: FrameName
-    radius: Number = Field(description="m")
-    shape: Literal["disc", "sphere"] = "disc"
-    normal: tuple[Number, Number, Number] = Field((0, 0, 1), description="of the plane in the world (constant)")
-
-
-class Closed(DocumentPart):
-    """A closure of the tree, by its name."""
-
-    type: Literal["closure"]
-    name: Name
-
-
-Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
-
-
-class VelocityConstraints(DocumentPart):
-    """Constraints, and the quasi-velocities in which the motion is described.
-
-    ``velocities``: as many as the constraints leave free, by name, each an expression linear in the velocities; or
-    ``independent``: the coordinates whose velocities are used; default: chosen for short formulas.
+@dataclass(frozen=True)
+class KnifeEdge:
+    """A skate: no velocity across the edge, which lies along the first axis of ``frame`` (instance.port or
+    instance.body).
     """
 
-    constraints: tuple[Constraint, ...] = Field((), max_length=100)
-    velocities: dict[Name, str] | None = Field(None, max_length=100)
-    independent: tuple[str, ...] | None = Field(None, max_length=500)
+    name: str
+    frame: str
 
-    @classmethod
-    def read(cls, data: Any) -> VelocityConstraints:
-        """From plain data. Raises InvalidDocument with a pointer to every fault."""
-        return read_model(cls, data)
+
+@dataclass(frozen=True)
+class Rolling:
+    """A disc (axis: third axis of ``frame``) or a sphere of ``radius`` [m] that rolls on a plane without slip.
+
+    ``normal``: of the plane in the world, constant. Raises InvalidArgument.
+    """
+
+    name: str
+    frame: str
+    radius: Scalar
+    shape: Literal["disc", "sphere"] = "disc"
+    normal: tuple[Scalar, Scalar, Scalar] = (0, 0, 1)
+
+    def __post_init__(self) -> None:
+        one_of(self.shape, "shape", SHAPES)
+
+
+@dataclass(frozen=True)
+class Closed:
+    """The closure of the tree with this name."""
+
+    name: str
+
+
+Constraint = Linear | KnifeEdge | Rolling | Closed
 
 
 @dataclass
@@ -109,7 +97,7 @@ class VelocityRows:
 
 
 def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
-    """The rows of all constraints. Raises InvalidDocument, also for a closure of the model that is not among them."""
+    """The rows of all constraints. Raises InvalidArgument, also for a closure of the model that is not among them."""
     _require_closed(f, constraints)
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
@@ -127,6 +115,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
+                # B_a = U_a2
                 result.add(constraint.name, [U[1] for U in frame.U])
             else:
                 _roll(f, constraint, pointer, frame, result)
@@ -134,7 +123,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
     for i, name in enumerate(names):
         if name in names[:i]:
             f.scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
-    f.scope.finish()
+    require_read(f.scope)
     return result
 
 
@@ -148,6 +137,7 @@ class _Frame:
             x, y, z = (kinematics[name].get((k, *index, i), zero) for i in range(3))
             return x, y, z
 
+        # R: to the axes of the world; c: origin; U_a, Omega_a: columns in the axes of the frame
         self.R: Matrix = (vector("rotation", 0), vector("rotation", 1), vector("rotation", 2))
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
@@ -160,7 +150,7 @@ def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
     for rows in f.model.closures:
         if rows.name not in given:
             message = f"the closure '{rows.name}' is not among them: add {{'name': '{rows.name}', 'type': 'closure'}}"
-            raise InvalidDocument.at("/constraints", "open-closure", message)
+            raise InvalidArgument.at("/constraints", "open-closure", message)
 
 
 def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:
@@ -173,30 +163,37 @@ def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> Non
     zero = f.graph.zero
     for k, (closure, row) in enumerate(names):
         residual = found["closure.residual"].get((k,), zero)
+        # phi_k = const is the integral of G_ka q'^a = 0
         if closure == name and not residual.is_zero:
             result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
             result.gaps[f"{name}.{row}"] = residual
 
 
 def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
-    radius = f.scope.read(c.radius, f"{pointer}/radius")
-    plane = axis_rotation(f.scope, c.normal, f"{pointer}/normal")
+    radius = f.scope.read(exact(c.radius, f"{pointer}/radius"), f"{pointer}/radius")
+    x, y, z = (exact(component, f"{pointer}/normal/{i}") for i, component in enumerate(c.normal))
+    plane = axis_rotation(f.scope, (x, y, z), f"{pointer}/normal")
     normal = plane[2]
+    # n = R^T N: the normal in the axes of the frame, where the axis e of a disc is (0, 0, 1)
     n = apply(transpose(frame.R), normal)
     if c.shape == "disc":
         across = n[0] * n[0] + n[1] * n[1]
         if (f.graph.zero + across).is_zero:
             f.scope.fault(f"{pointer}/frame", "flat-disc", "the axis of the disc is the normal of the plane")
             return
+        # rho = -r (n - (n.e) e) / |n - (n.e) e|
         width = f.graph.sqrt(f.graph.zero + across)
         rho: Vector = (-(radius * n[0]) / width, -(radius * n[1]) / width, f.graph.zero)
     else:
+        # rho = -r n
         rho = (-(radius * n[0]), -(radius * n[1]), -(radius * n[2]))
+    # B_a = P R (U_a + Omega_a x rho), P: rotation from the world to the axes of the plane
     columns = []
     for U, Omega in zip(frame.U, frame.Omega, strict=True):
         columns.append(apply(plane, apply(frame.R, add(U, cross(Omega, rho)))))
     for i, row in enumerate(("slip_1", "slip_2", "contact")):
         result.add(f"{c.name}.{row}", [f.graph.zero + column[i] for column in columns])
+    # N . c + n . rho
     result.gaps[c.name] = f.graph.zero + dot(normal, frame.c) + dot(n, rho)
 
 
@@ -204,6 +201,7 @@ def linear_row(f: Formulation, text: str, pointer: str) -> list[Expr]:
     """Coefficients of the velocities in an expression that is linear and homogeneous in them; else a fault is noted."""
     x = f.scope.read(text, pointer)
     rates = [f"{name}'" for name in f.model.coordinates]
+    # B_a = d x / d q'^a; x - B_a q'^a = 0 and d B_a / d q'^b = 0
     (row,) = gradient([x], rates)
     rest = x - f.graph.sum(c * f.graph.symbol(v) for c, v in zip(row, rates, strict=True))
     if not rest.is_zero or any(not d.is_zero for some in gradient(row, rates) for d in some):

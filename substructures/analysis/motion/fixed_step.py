@@ -6,14 +6,32 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import perf_counter
+from typing import Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import one_of, positive
 from substructures.analysis.motion.integration import Function, IntegratedMotion, TimeReport
-from substructures.analysis.motion.request_fields import FixedStep
 from substructures.array import Array
 
 StepMethod = Callable[[Function, float, Array, float], Array]
+EVALUATIONS = {"semi-implicit-euler": 1, "rk4": 4}
+
+
+@dataclass(frozen=True)
+class FixedStep:
+    """Real-time mode: steps of ``step`` [s] that take the same, known time each, without control of their errors.
+
+    ``method``: semi-implicit Euler (one evaluation a step), or Runge-Kutta of fourth order (four). Raises
+    InvalidArgument.
+    """
+
+    step: float
+    method: Literal["semi-implicit-euler", "rk4"] = "rk4"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "step", positive(self.step, "step"))
+        one_of(self.method, "method", tuple(EVALUATIONS))
 
 
 @dataclass(frozen=True)
@@ -26,6 +44,7 @@ class Pace:
 
 def rk4(f: Function, t: float, x: Array, h: float) -> Array:
     """The classical Runge-Kutta method of fourth order; four evaluations."""
+    # x_1 = x + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4)
     k1 = f(t, x)
     k2 = f(t + h / 2, x + h / 2 * k1)
     k3 = f(t + h / 2, x + h / 2 * k2)
@@ -37,6 +56,7 @@ def semi_implicit_euler(n: int) -> StepMethod:
     """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
 
     def step(f: Function, t: float, x: Array, h: float) -> Array:
+        # q'_1 = q' + h q''(t, q, q'), then q_1 = q + h q'_1
         new = x + h * f(t, x)
         new[:n] = x[:n] + h * new[n : 2 * n]
         return new
@@ -75,7 +95,7 @@ def march(
             t, x = end, new
             _accepted(motion, t, x, max_steps, count, progress)
     pace = Pace((t - span[0]) / max(perf_counter() - begin, 1e-9), longest)
-    motion.evaluations = motion.steps * (4 if fixed.method == "rk4" else 1)
+    motion.evaluations = motion.steps * EVALUATIONS[fixed.method]
     return motion, pace
 
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from substructures.analysis.motion.steppers import Stepper, within
 from substructures.array import Array
@@ -67,6 +67,7 @@ class IntegratedMotion:
         """
         t = np.array([*self.step_t, *self.t, *(t for _, t, _ in self.found)], dtype=np.float64)
         x = np.array([*self.step_x, *self.x, *(x for _, _, x in self.found)], dtype=np.float64)
+        # results[k] = place of the k-th result after sorting, by the inverse of the permutation
         order = np.argsort(t, kind="stable")
         results = np.argsort(order)[len(self.step_t) : len(self.step_t) + len(self.t)]
         return t[order], x[order], results
@@ -109,6 +110,7 @@ def integrate(
     run.last = span[0], x
     run.collect(span[0], lambda _: x)
     run.levels = [w.function(span[0], x) for w in watches]
+    # the method's order holds where the right-hand side is smooth: from break to break
     ends = [*breaks, span[1]]
     start = span[0]
     with np.errstate(all="ignore"):
@@ -207,6 +209,7 @@ class _Run:
         for k, watch in enumerate(self.watches):
             before, after = self.levels[k], watch.function(solver.t, solver.y)
             self.levels[k] = after
+            # g changes its sign within the step; g = 0 at its start was counted in the step before
             rising = before < 0 <= after
             falling = before > 0 >= after
             if (rising and watch.direction >= 0) or (falling and watch.direction <= 0):
@@ -218,6 +221,7 @@ class _Run:
                 self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
                 self.last = t, x
+                # the end of the step lies beyond the event: no state of this motion
                 if self.motion.step_t[-1] > t:
                     del self.motion.step_t[-1], self.motion.step_x[-1]
                 return t
@@ -230,9 +234,10 @@ class _Run:
         def g(t: float) -> float:
             return watch.function(t, np.asarray(dense(t), dtype=np.float64))
 
+        # g(t*) = 0 in [a, b], found to the resolution of times
         if g(a) * g(b) > 0:
             return b  # the zero is within rounding of an end
-        return float(brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
+        return float(scipy.optimize.brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
 
 
 class _Dense:

@@ -57,6 +57,7 @@ def judge(
         if integral.rule == "constant":
             checks.append(Check.of(_about(integral, "constant"), spread(value), states.t, scale, limit, noise))
             continue
+        # H - W with W' = Q_a q'^a + V' is constant for every model
         balanced = value - states.work
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
@@ -64,6 +65,7 @@ def judge(
         checks.append(Check.of(_about(entry, "constant"), spread(balanced), states.t, scale, limit, noise))
         power = series["power"]
         if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
+            # H(t) less the least H before t
             rise = value - np.minimum.accumulate(value)
             entry = replace(integral, reason="the power of all forces without potential is nowhere positive")
             checks.append(Check.of(_about(entry, "falling"), rise, states.t, scale, limit, noise))
@@ -99,7 +101,9 @@ class _Scales:
     def __init__(self, model: Model, states: MotionStates) -> None:
         found = interpret_in_blocks(model.program, states.symbols(model), list(SCALES), len(states.t))
         self.model, speed = model, np.abs(states.qd)
+        # max over time of |g_ab| |q'^b|
         self.momenta = np.einsum("kab,kb->ka", np.abs(found["metric"]), speed).max(axis=0, initial=0)
+        # T = g_ab q'^a q'^b / 2
         kinetic = 0.5 * np.einsum("kab,ka,kb->k", found["metric"], states.qd, states.qd)
         potential = found["potential_energy"]
         change = float(np.ptp(potential)) if len(potential) else 0.0

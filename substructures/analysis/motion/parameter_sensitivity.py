@@ -11,22 +11,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from substructures.analysis.arguments import Numbers
 from substructures.analysis.equations.formulas import ModelFormulas, require_tree
 from substructures.analysis.equations.kernels import Known, program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.motion.inputs import Along, VaryingInputs, state_names
+from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.integration import IntegratorSettings, integrate
+from substructures.analysis.motion.output_times import OutputTimes
+from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem, Start, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.requests import TAYLOR, SimulationRequest
-from substructures.analysis.motion.simulation import read_tree
-from substructures.analysis.motion.steppers import scipy_stepper
+from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidArgument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
@@ -40,42 +42,43 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
     """Partial derivatives of outputs of the model by parameters: an output ``<quantity>:<parameter>`` for every pair,
     with shape and symmetry of the quantity.
 
-    Raises InvalidDocument for unknown parameters (``/parameters/i``) and quantities, and forces without derivative.
+    Raises InvalidInput for unknown parameters (``/parameters/i``) and quantities, and forces without derivative.
     """
-    require_parameters(model, parameters)
+    _require_parameters(model, parameters, "parameters")
     faults = [
         Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity '{str(name)[:80]}'")
         for i, name in enumerate(quantities)
         if name not in model.program.outputs
     ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
     require_smooth(model)
     f = ModelFormulas(model)
     outputs = {}
     for quantity, formulas in replay(model.program, f.graph, {}, list(quantities)).items():
         roots = [x for x in formulas.entries.values() if isinstance(x, Expr)]
         for name in parameters:
+            # d(quantity)/dp: derivative along dp = 1
             slopes = directional(roots, {name: f.graph.one})
             entries = dict(zip(formulas.entries, slopes, strict=True))
             outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
     return program(f.graph, outputs, f.symbols)
 
 
-def require_parameters(model: Model, names: Sequence[str]) -> None:
-    """Raises InvalidDocument for names that are no parameters of the model."""
+def _require_parameters(model: Model, names: Sequence[str], argument: str) -> None:
+    """Raises InvalidArgument for names that are no parameters of the model."""
     faults = [
-        Fault(f"/parameters/{i}", "unknown-parameter", f"unknown parameter '{str(name)[:80]}'")
+        Fault(f"/{argument}/{i}", "unknown-parameter", f"unknown parameter '{str(name)[:80]}'")
         for i, name in enumerate(names)
         if name not in model.parameters
     ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
 
 
 def variational(model: Model, parameters: Sequence[str]) -> Program:
     """``acceleration`` (n,) and its ``variation`` (n,) along the symbols ``d.<name>`` of coordinates, velocities and
-    the given parameters. Raises InvalidDocument for closures and for a metric that is always singular.
+    the given parameters. Raises InvalidInput for closures and for a metric that is always singular.
     """
     require_tree(model)
     return _variational(Known(model.program.digest, model), tuple(parameters))
@@ -87,6 +90,7 @@ def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
     names = [*(str(x.value) for x in (*f.q, *f.rates)), *parameters]
     seeds = {name: f.graph.symbol(f"d.{name}") for name in names}
     acceleration = f.acceleration
+    # q''(q, q', p): sum over all named z of (dq''/dz) d.z
     variation = directional(acceleration, seeds)
     symbols = f.symbols | {f"d.{name}": replace(f.symbols[name], name=f"d.{name}") for name in names}
     outputs = {
@@ -98,84 +102,103 @@ def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
 
 def sensitivities(
     model: Model,
-    request: Mapping[str, Any],
-    parameters: Sequence[str],
+    q: StateVector | None,
+    span: tuple[float, float],
+    by: Sequence[str] = (),
+    *,
     of_start: bool = False,
+    qd: StateVector | None = None,
+    parameters: Mapping[str, float] | None = None,
+    inputs: Mapping[str, Signal] | None = None,
+    times: Numbers | None = None,
+    step: float | None = None,
+    count: int | None = None,
+    method: str = "DOP853",
+    relative_tolerance: float = 1e-10,
+    absolute_tolerance: float = 1e-12,
+    max_step: float | None = None,
+    max_steps: int = 1_000_000,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
 ) -> Trajectory:
-    """A trajectory and its derivatives by parameters: series ``d.<parameter>`` (K, 2n), of (q, q').
+    """The motion of a tree and its derivatives by the parameters ``by``: series ``d.<parameter>`` (K, 2n), dx/dp of
+    x = (q, q') [rad, m, rad/s, m/s; per unit of the parameter].
 
-    ``request``: as for ``simulate``, without events and fixed steps; inputs are numbers, tables or expressions in t.
-    ``of_start``: also the series ``d.start`` (K, 2n, 2n), dx/dx_0. Raises InvalidDocument and MissingValue.
+    ``of_start``: also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
+    :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, ``method``
+    is any but Taylor. Raises InvalidInput (pointers start with names of arguments) and MissingValue.
     """
-    require_parameters(model, parameters)
+    _require_parameters(model, by, "by")
     require_smooth(model)
-    asked = SimulationRequest.read(request)
-    along = read_tree(model, asked)
-    _require_plain(along, asked)
-    f = _Variation(along, parameters, of_start, folder)
-    stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
-    motion = integrate(
-        f,
-        f.start(),
-        asked.span,
-        asked.outputs(),
-        IntegratorSettings(stepper, asked.max_steps),
-        breaks=along.breaks(asked.span),
-        progress=share_of(asked.span, progress),
-        enter=f.inputs.enter,
+    problem = MotionProblem(
+        model=model,
+        start=Start(q, qd, parameters or {}, inputs or {}),
+        times=OutputTimes(span, times, step, count),
+        integrator=IntegratorChoice(method, relative_tolerance, absolute_tolerance, max_step, max_steps),
     )
-    n, k = model.dof, len(parameters)
-    x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
-    series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(parameters)}
-    if of_start:
-        series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
-    status, message = motion.status, motion.message
-    return Trajectory(
-        model.coordinates, np.array(motion.t), x[:, 0, :n], x[:, 0, n:], series, (), status, message, motion.steps
-    )
+    conditions = tree_conditions(problem)
+    _require_plain(conditions, method)
+    return _varied(problem, _Variation(conditions, by, of_start, folder), by, progress)
 
 
-def _require_plain(along: Along, request: SimulationRequest) -> None:
-    """Raises InvalidDocument for what has no place in the variational equations."""
-    faults = [
-        Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
-        for name in ("events", "fixed_step", "series")
-        if getattr(request, name)
-    ]
-    if request.method == TAYLOR:
+def _require_plain(conditions: Conditions, method: str) -> None:
+    """Raises InvalidArgument for what has no place in the variational equations."""
+    faults = []
+    if method == TAYLOR:
         faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
-    named = {s.name for s in along.source.symbols if s.kind != "time"}
+    named = {s.name for s in conditions.expressions.symbols if s.kind != "time"}
     if named:
         culprits = ", ".join(f"'{name}'" for name in sorted(named))
         faults.append(Fault("/inputs", "not-supported", f"inputs may depend on t only here, not on {culprits}"))
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
+
+
+def _varied(problem: MotionProblem, f: _Variation, by: Sequence[str], progress: ProgressReport | None) -> Trajectory:
+    motion = integrate(
+        f,
+        f.start(),
+        problem.span,
+        problem.times.grid(),
+        IntegratorSettings(problem.integrator.stepper(), problem.integrator.max_steps),
+        breaks=f.conditions.breaks(problem.span),
+        progress=share_of(problem.span, progress),
+        enter=f.inputs.enter,
+    )
+    n, k = f.n, len(by)
+    x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
+    # rows x, S_1, ..., S_k; the columns of dx/dx_0 were integrated as rows
+    series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(by)}
+    if f.of_start:
+        series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
+    t, status, message = np.array(motion.t), motion.status, motion.message
+    return Trajectory(problem.model.coordinates, t, x[:, 0, :n], x[:, 0, n:], series, (), status, message, motion.steps)
 
 
 class _Variation:
     """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel."""
 
-    def __init__(self, along: Along, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
-        model, n = along.model, along.model.dof
-        self.along, self.n, self.of_start = along, n, of_start
+    def __init__(self, conditions: Conditions, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
+        model, n = conditions.model, conditions.model.dof
+        self.conditions, self.n, self.of_start = conditions, n, of_start
         self.columns = len(parameters) + (2 * n if of_start else 0)
         batch = max(self.columns, 1)
         self.t, self.x = np.zeros(1), np.zeros((1, 2 * n))
         self.d = np.zeros((batch, 2 * n))
         self.out = {"acceleration": np.zeros((batch, n)), "variation": np.zeros((batch, n))}
         names = state_names(model)
-        self.inputs = VaryingInputs(along, self.t, self.x, folder)
+        self.inputs = VaryingInputs(conditions, self.t, self.x, folder)
         columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
+        # dp_i = 1 in the i-th direction, 0 in all others
         seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}
         kernel = program_kernel(variational(model, parameters), folder)
-        self.run = kernel.bind(self.out, along.values | {"t": self.t} | seeds, columns=columns)
+        self.run = kernel.bind(self.out, conditions.values | {"t": self.t} | seeds, columns=columns)
 
     def start(self) -> Array:
         """The start, S = 0 for parameters and S = 1 for the start itself."""
         rows = np.zeros((self.columns + 1, 2 * self.n))
-        rows[0] = self.along.start
+        # x(0) = x_0, S(0) = 0 for parameters, dx/dx_0 = 1
+        rows[0] = self.conditions.start
         if self.of_start:
             rows[-2 * self.n :] = np.eye(2 * self.n)
         return rows.ravel()
@@ -188,6 +211,7 @@ class _Variation:
         self.inputs.fill()
         self.run()
         result = np.empty_like(rows)
+        # rows x, S_1, ..., S_k: (q, q')' = (q', q''), (dq, dq')' = (dq', variation of q'')
         result[:, :n] = rows[:, n:]
         result[0, n:] = self.out["acceleration"][0]
         result[1:, n:] = self.out["variation"][: self.columns]

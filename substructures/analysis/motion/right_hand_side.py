@@ -14,7 +14,8 @@ import numpy as np
 
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
-from substructures.analysis.motion.inputs import Along, VaryingInputs, state_names
+from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
@@ -26,7 +27,7 @@ ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
 def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
     """Accelerations as formulas: outputs ``forward_dynamics`` (n,), ``pivots`` (n,): D of g = L^T D L, and ``power``.
 
-    ``zero``: symbols that are 0. Raises InvalidDocument for a coordinate without inertia and for a division by zero.
+    ``zero``: symbols that are 0. Raises InvalidInput for a coordinate without inertia and for a division by zero.
     """
     f = ModelFormulas(model, zero)
     acceleration, power = f.acceleration, f.power
@@ -51,8 +52,8 @@ def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None =
 class RightHandSide:
     """x' = f(t, x). ``values``: numbers of parameters and constant inputs; ``zero``: symbols that are 0.
 
-    ``along``: inputs that vary. Not for several threads at a time. Raises InvalidDocument as forward_dynamics, and
-    MissingValue.
+    ``conditions``: with the inputs that vary. Not for several threads at a time. Raises InvalidInput as
+    forward_dynamics, and MissingValue.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class RightHandSide:
         model: Model,
         values: Mapping[str, float],
         zero: Iterable[str] = (),
-        along: Along | None = None,
+        conditions: Conditions | None = None,
         folder: Path | None = None,
     ) -> None:
         self.n = n = model.dof
@@ -68,7 +69,7 @@ class RightHandSide:
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
-        self.inputs = None if along is None else VaryingInputs(along, self._t, self._x, folder)
+        self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, self._x, folder)
         columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
         self._run = self.kernel.bind(outputs, dict(values) | {"t": self._t}, columns=columns)
@@ -98,6 +99,7 @@ class RightHandSide:
         return self._out[0][0], self._out[1][0], float(self._out[2][0])
 
     def __call__(self, t: float, x: Array) -> Array:
+        # x' = (q', q'', power), q'' = g^-1 (Q - Gamma q' q')
         acceleration, _, power = self.evaluate(t, x)
         n = self.n
         result = np.empty(len(x))
@@ -110,5 +112,6 @@ class RightHandSide:
 
 def is_definite(pivots: Sequence[float] | Array) -> bool:
     """Whether g is positive definite, by the pivots D of g = L^T D L."""
+    # g = L^T D L > 0 if and only if D > 0
     d = np.asarray(pivots)
     return bool(np.isfinite(d).all() and (d > 1e-14 * np.abs(d).max(initial=0)).all())

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy.linalg import lapack
 
-from substructures.analysis.equations.quasi_velocities import QuasiVelocities, velocity_equations
-from substructures.analysis.motion.inputs import Along, VaryingInputs, read_along
+from substructures.analysis.arguments import one_of
+from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.equations.velocity_constraints import Constraint
+from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, spread
+from substructures.analysis.motion.problem import MotionProblem, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.requests import RollingRequest
-from substructures.analysis.motion.steppers import scipy_stepper
+from substructures.analysis.motion.steppers import METHODS
 from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory, crossings
+from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import compile_program
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.quantities.states import numeric
-from substructures.tree.model import Model
 
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
 NEEDS = ("metric", "forces", "potential_energy")
@@ -31,19 +34,39 @@ RESIDUAL = 1e-9
 ADVICE = "the quasi-velocities may not describe the motion there (take others), or a body may lie flat"
 
 
+@dataclass(frozen=True, kw_only=True)
+class RollingProblem(MotionProblem):
+    """A motion with ``constraints`` from ``start.q`` and quasi-velocities ``v`` (0 by default), or from velocities
+    ``start.qd`` that meet them.
+
+    ``velocities``, ``independent``: see :func:`quasi_velocity_equations`; ``form``: of the equations of motion.
+    """
+
+    constraints: Sequence[Constraint] = ()
+    velocities: Mapping[str, str] | None = None
+    independent: Sequence[str] | None = None
+    v: StateVector | None = None
+    form: Literal["voronets", "boltzmann-hamel"] = "voronets"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        one_of(self.integrator.method, "method", METHODS)
+        one_of(self.form, "form", tuple(FORMS))
+
+
 class _Rolling:
     """The right-hand side in compiled form. y = (q, v, work)."""
 
-    def __init__(self, equations: QuasiVelocities, along: Along, form: str, folder: Path | None) -> None:
-        model, self.along, self.form = equations.model, along, FORMS[form]
+    def __init__(self, equations: QuasiVelocities, conditions: Conditions, form: str, folder: Path | None) -> None:
+        model, self.conditions, self.form = equations.model, conditions, FORMS[form]
         self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
         self.columns = [*model.coordinates, *equations.velocities]
         self._t, self._y, self._x = np.zeros(1), np.zeros((1, self.n + self.p)), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(self.along, self._t, self._x, folder)
+        self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
         wanted = ("metric", self.form, "forces", "lost_power")
         self._rates = np.zeros((1, self.n))
         self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
-        values = self.along.values | {"t": self._t}
+        values = self.conditions.values | {"t": self._t}
         columns = [(self.columns, self._y)]
         rates = compile_program(equations.program, ["rates"], folder)
         self._move = rates.bind({"rates": self._rates}, values, columns=columns)
@@ -58,6 +81,7 @@ class _Rolling:
 
     def rates(self, t: float, y: Array) -> Array:
         """y'; not finite where the reduced metric is singular."""
+        # g* v' = forces - bias, g* = T^T g T, q' = T v  (quasi_velocities)
         self._x[0] = self.state(t, y)
         self.inputs.fill()
         self._run()
@@ -70,67 +94,72 @@ class _Rolling:
 
 
 def simulate_rolling(
-    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
+    problem: RollingProblem, progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
-    ``request``: see RollingRequest. ``progress`` is told the finished share of the span and cancels by False.
-    ``folder``: a cache of compiled kernels. Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter
-    B q'), ``gaps``, ``kinetic_energy``, ``potential_energy``, ``work``, varying inputs, and what the request asks for.
-    Checks: B q' is zero, gaps and T + V - work are constant. A span that cannot be finished is ``failed``. Raises
-    InvalidDocument (also for closures of the model that are not among the constraints), MissingValue and TooLarge.
+    ``progress`` is told the finished share of the span and cancels by False. ``folder``: a cache of compiled kernels.
+    Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``,
+    ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' is zero, gaps and
+    T + V - work are constant. A span that cannot be finished is ``failed``. Raises InvalidInput (also for closures of
+    the model that are not among the constraints; pointers start with names of arguments of ``simulate``), MissingValue
+    and TooLarge.
     """
-    asked = RollingRequest.read(request)
-    along = read_along(model, asked, asked.span, NEEDS)
-    place = dict(zip(model.coordinates, along.q.tolist(), strict=True))
-    rolling = _Rolling(velocity_equations(model, asked, place), along, asked.form, folder)
-    rolling.inputs.enter(*asked.span)
-    y = np.concatenate((*_start(rolling, asked), (0.0,)))
-    if not np.isfinite(rolling.rates(asked.span[0], y)).all():
+    model, start = problem.model, problem.span[0]
+    conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
+    place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True))
+    equations = quasi_velocity_equations(
+        model, problem.constraints, velocities=problem.velocities, independent=problem.independent, near=place
+    )
+    rolling = _Rolling(equations, conditions, problem.form, folder)
+    rolling.inputs.enter(*problem.span)
+    y = np.concatenate((*_start(rolling, problem), (0.0,)))
+    if not np.isfinite(rolling.rates(start, y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
-        motion = IntegratedMotion([asked.span[0]], [y], [asked.span[0]], [y], status="failed", message=advice)
+        motion = IntegratedMotion([start], [y], [start], [y], status="failed", message=advice)
     else:
-        motion = _moved(rolling, asked, y, progress, folder)
-    return _judged(rolling, asked, motion)
+        motion = _moved(rolling, problem, y, progress, folder)
+    return _judged(rolling, problem, motion)
 
 
 def _moved(
-    rolling: _Rolling, asked: RollingRequest, y: Array, progress: ProgressReport | None, folder: Path | None
+    rolling: _Rolling, problem: RollingProblem, y: Array, progress: ProgressReport | None, folder: Path | None
 ) -> IntegratedMotion:
-    stepper = scipy_stepper(asked.method, asked.relative_tolerance, asked.absolute_tolerance, asked.max_step)
+    integrator, conditions = problem.integrator, rolling.conditions
     motion = integrate(
         rolling.rates,
         y,
-        asked.span,
-        asked.outputs(),
-        IntegratorSettings(stepper, asked.max_steps, ADVICE),
-        rolling.along.watches(rolling.state, folder),
-        rolling.along.breaks(asked.span),
-        share_of(asked.span, progress),
+        problem.span,
+        problem.times.grid(),
+        IntegratorSettings(integrator.stepper(), integrator.max_steps, ADVICE),
+        conditions.watches(rolling.state, folder),
+        conditions.breaks(problem.span),
+        share_of(problem.span, progress),
         rolling.inputs.enter,
     )
     rolling.inputs.leave()
     return motion
 
 
-def _start(rolling: _Rolling, request: RollingRequest) -> tuple[Array, Array]:
+def _start(rolling: _Rolling, problem: RollingProblem) -> tuple[Array, Array]:
     """q and v at the start."""
     model, names = rolling.equations.model, rolling.equations.velocities
-    q, qd = rolling.along.q, rolling.along.qd
-    if request.v is not None and request.qd is not None:
-        raise InvalidDocument.at("/v", "two-velocities", "give either 'v' or 'qd'")
-    place = rolling.along.values | dict(zip(model.coordinates, q, strict=True))
+    q, qd = rolling.conditions.q, rolling.conditions.qd
+    if problem.v is not None and problem.start.qd is not None:
+        raise InvalidArgument.at("/v", "two-velocities", "give either 'v' or 'qd'")
+    place = rolling.conditions.values | dict(zip(model.coordinates, q, strict=True))
     T = interpret(rolling.equations.program, place, ["T"])["T"]
     if not np.isfinite(T).all():
         message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
-        raise InvalidDocument.at("/q", "singular-start", message)
-    if request.qd is None:
-        return q, _by_name(request.v, names)
+        raise InvalidArgument.at("/q", "singular-start", message)
+    if problem.start.qd is None:
+        return q, _by_name(problem.v, names)
+    # q' = T v, in the sense of least squares, and exact for velocities that meet B q' = 0
     v = np.asarray(np.linalg.lstsq(T, qd)[0], dtype=np.float64)
     left = np.abs(T @ v - qd).max(initial=0)
     if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
         message = f"these velocities violate the constraints by {left:.3g}; give 'v' ({', '.join(names)}) instead"
-        raise InvalidDocument.at("/qd", "violated", message)
+        raise InvalidArgument.at("/qd", "violated", message)
     return q, v
 
 
@@ -141,47 +170,48 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
         unknown = [name for name in given if name not in names]
         if unknown:
             message = f"unknown velocity '{str(unknown[0])[:80]}'; there are {', '.join(names)}"
-            raise InvalidDocument.at("/v", "unknown-velocity", message)
+            raise InvalidArgument.at("/v", "unknown-velocity", message)
         given = [given.get(name, 0) for name in names]
     v = numeric(given, "/v")
     if v.shape != (len(names),):
         message = f"shape {v.shape} found, ({len(names)},) expected: {', '.join(names)}"
-        raise InvalidDocument.at("/v", "wrong-length", message)
+        raise InvalidArgument.at("/v", "wrong-length", message)
     return v
 
 
-def _judged(rolling: _Rolling, asked: RollingRequest, motion: IntegratedMotion) -> Trajectory:
-    equations, n = rolling.equations, rolling.n
+def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion) -> Trajectory:
+    equations, conditions, n = rolling.equations, rolling.conditions, rolling.n
     t, y, results = motion.judged()
     slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
     x = np.concatenate([y[:, :n], slopes[:, :n]], axis=1)
-    values: dict[str, Any] = rolling.along.values | rolling.along.inputs_at(t, x) | {"t": t}
+    values: dict[str, Any] = conditions.values | conditions.inputs_at(t, x) | {"t": t}
     values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
     values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
     names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
     found = interpret_in_blocks(equations.program, values, names, len(t))
     series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
+    # B_ka q'^a
     series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
-    checks = _checks(t, series, asked.drift_limit)
+    checks = _checks(t, series, problem.drift_limit)
     t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
         t,
         x[:, :n],
         x[:, n:],
-        {name: column[results] for name, column in series.items()} | rolling.along.series_at(t, x),
+        {name: column[results] for name, column in series.items()} | conditions.series_at(t, x),
         checks,
         motion.status,
         motion.message,
         motion.steps,
-        _events(rolling, asked, motion),
+        _events(rolling, problem, motion),
         {"evaluations": float(motion.evaluations)},
     )
 
 
-def _events(rolling: _Rolling, asked: RollingRequest, motion: IntegratedMotion) -> tuple[Crossing, ...]:
+def _events(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion) -> tuple[Crossing, ...]:
     found = [(k, t, rolling.state(t, y)) for k, t, y in motion.found]
-    return crossings(asked.events, found, rolling.n)
+    return crossings(problem.events, found, rolling.n)
 
 
 def _checks(t: Array, series: Mapping[str, Array], limit: float) -> tuple[Check, ...]:

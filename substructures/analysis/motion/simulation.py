@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
-from substructures.analysis.motion.fixed_step import march
-from substructures.analysis.motion.inputs import Along, read_along
+from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.fixed_step import FixedStep, march
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge
+from substructures.analysis.motion.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.requests import TAYLOR, SimulationRequest
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
-from substructures.analysis.motion.steppers import Stepper, scipy_stepper
+from substructures.analysis.motion.steppers import Stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.array import Array
-from substructures.errors import InvalidDocument, InvalidInput
-from substructures.tree.model import Model
+from substructures.errors import InvalidArgument, InvalidInput
 
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
@@ -32,88 +31,103 @@ SINGULAR = (
 )
 
 
+@dataclass(frozen=True, kw_only=True)
+class TreeProblem(MotionProblem):
+    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q'); ``fixed_step``: in real-time mode."""
+
+    fixed_step: FixedStep | None = None
+
+
 def simulate_tree(
-    model: Model, request: Mapping[str, Any], progress: ProgressReport | None = None, folder: Path | None = None
+    problem: TreeProblem, progress: ProgressReport | None = None, folder: Path | None = None
 ) -> Trajectory:
     """The motion of a tree from a start over a span of time, with the drift of all its first integrals.
 
-    ``request``: see SimulationRequest; ``q`` and ``qd`` as in ``evaluate``, for one state. ``progress`` is told the
-    finished share of the span and stops the integration by False. ``folder``: where compiled kernels are kept.
-    ``series`` of the result: ``energy``, momenta and other first integrals, ``power``, ``work``, varying inputs under
-    their names, and what the request asks for. What goes wrong on the way is a trajectory with status ``failed``,
-    advice, and the motion up to there. Raises InvalidDocument (pointers into the request; ``has-closures``) and
-    MissingValue.
+    ``progress`` is told the finished share of the span and stops the integration by False. ``folder``: where compiled
+    kernels are kept. ``series`` of the result, (K,) each: ``energy`` [J], momenta and other first integrals, ``power``
+    [W], ``work`` [J], varying inputs under their names, and those of the problem. What goes wrong on the way is a
+    trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (``has-closures``;
+    pointers start with names of arguments of ``simulate``) and MissingValue.
     """
-    asked = SimulationRequest.read(request)
-    along = read_tree(model, asked)
+    conditions = tree_conditions(problem)
+    _check_method(conditions, problem)
     try:
-        f = RightHandSide(model, along.values, along.zero, along, folder)
+        f = RightHandSide(problem.model, conditions.values, conditions.zero, conditions, folder)
     except InvalidInput as error:
         if any(fault.code == "singular-metric" for fault in error.faults):
-            return _failed(along, asked, str(error))
+            return _failed(conditions, problem, str(error))
         raise
-    x = np.concatenate([along.start, np.zeros(f.size - 2 * f.n)])
-    acceleration, pivots, _ = f.evaluate(asked.span[0], x)
+    # x = (q, q', W), W only where there is any power
+    x = np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
+    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
     if not is_definite(pivots):
-        return _failed(along, asked, SINGULAR)
+        return _failed(conditions, problem, SINGULAR)
     if not np.isfinite(acceleration).all():
         message = "a force is not finite at the start: look at springs of length 0 and roots or divisions in loads"
-        return _failed(along, asked, message)
-    return _judged(along, asked, f, *_moved(along, asked, f, x, progress, folder))
+        return _failed(conditions, problem, message)
+    return _judged(conditions, problem, f, *_moved(conditions, problem, f, x, progress, folder))
 
 
-def read_tree(model: Model, request: SimulationRequest) -> Along:
-    """Check a request against a model. Raises InvalidDocument and MissingValue."""
-    require_tree(model)
-    along = read_along(model, request, request.span, DYNAMICS)
-    if request.method == TAYLOR and request.fixed_step is None:
-        require_taylor(list(along.curves), request.max_step)
-    if request.fixed_step is not None and request.events:
+def tree_conditions(problem: MotionProblem) -> Conditions:
+    """Check a problem against its model, which has no closures. Raises InvalidInput and MissingValue."""
+    require_tree(problem.model)
+    return read_conditions(problem.model, problem.start, problem.span, DYNAMICS, problem.events, problem.series)
+
+
+def _check_method(conditions: Conditions, problem: TreeProblem) -> None:
+    if problem.fixed_step is None:
+        if problem.integrator.method == TAYLOR:
+            require_taylor(list(conditions.curves), problem.integrator.max_step)
+    elif problem.events:
         message = "steps of a fixed size do not stop for events: leave 'events' or 'fixed_step' out"
-        raise InvalidDocument.at("/events", "not-supported", message)
-    return along
+        raise InvalidArgument.at("/events", "not-supported", message)
 
 
 def _moved(
-    along: Along,
-    request: SimulationRequest,
+    conditions: Conditions,
+    problem: TreeProblem,
     f: RightHandSide,
     x: Array,
     progress: ProgressReport | None,
     folder: Path | None,
 ) -> tuple[IntegratedMotion, dict[str, float]]:
     begin = perf_counter()
-    told = share_of(request.span, progress)
+    span, most, outputs = problem.span, problem.integrator.max_steps, problem.times.grid()
+    told = share_of(span, progress)
     figures: dict[str, float] = {}
-    outputs = request.outputs()
-    if request.fixed_step is not None:
-        motion, pace = march(f, f.n, x, request.span, outputs, request.fixed_step, request.max_steps, told)
+    if problem.fixed_step is not None:
+        motion, pace = march(f, f.n, x, span, outputs, problem.fixed_step, most, told)
         figures |= {"real_time_factor": pace.factor, "longest_step": pace.longest}
     else:
-        settings = IntegratorSettings(_stepper(along, request, f), request.max_steps)
-        watches = along.watches(lambda _, y: y[: 2 * f.n], folder)
-        breaks = along.breaks(request.span)
-        motion = integrate(f, x, request.span, outputs, settings, watches, breaks, told, f.enter)
+        settings = IntegratorSettings(_stepper(conditions, problem, f), most)
+        watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)
+        motion = integrate(f, x, span, outputs, settings, watches, conditions.breaks(span), told, f.enter)
         f.leave()
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
 
 
-def _stepper(along: Along, request: SimulationRequest, f: RightHandSide) -> Stepper:
-    if request.method == TAYLOR:
-        return taylor_stepper(along, request.relative_tolerance, f.has_power)
-    return scipy_stepper(request.method, request.relative_tolerance, request.absolute_tolerance, request.max_step)
+def _stepper(conditions: Conditions, problem: TreeProblem, f: RightHandSide) -> Stepper:
+    if problem.integrator.method == TAYLOR:
+        return taylor_stepper(conditions, problem.integrator.relative_tolerance, f.has_power)
+    return problem.integrator.stepper()
 
 
 def _judged(
-    along: Along, request: SimulationRequest, f: RightHandSide, motion: IntegratedMotion, figures: Mapping[str, float]
+    conditions: Conditions,
+    problem: TreeProblem,
+    f: RightHandSide,
+    motion: IntegratedMotion,
+    figures: Mapping[str, float],
 ) -> Trajectory:
-    model = along.model
-    given = [n for n in request.inputs if n not in along.zero]
-    integrals = first_integrals(model, given, along.zero & set(model.parameters))
+    model = problem.model
+    # inputs that are 0 all the time leave more constant
+    acting = [name for name in problem.start.inputs if name not in conditions.zero]
+    integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
-    states = _states(along, f, t, x)
+    # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
+    states = _states(conditions, f, t, x)
     series = integral_series(model, integrals, states)
-    checks = judge(model, integrals, states, series, request.drift_limit)
+    checks = judge(model, integrals, states, series, problem.drift_limit)
     if f.has_power and "energy" in series:
         series["work"] = states.work
     x = x[results, : 2 * f.n]
@@ -123,25 +137,24 @@ def _judged(
         t,
         x[:, : f.n],
         x[:, f.n :],
-        {name: values[results] for name, values in series.items()} | along.series_at(t, x),
+        {name: values[results] for name, values in series.items()} | conditions.series_at(t, x),
         checks,
         motion.status,
         motion.message,
         motion.steps,
-        crossings(request.events, motion.found, model.dof),
+        crossings(problem.events, motion.found, model.dof),
         figures,
     )
 
 
-def _states(along: Along, f: RightHandSide, t: Array, x: Array) -> MotionStates:
+def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:
     n = f.n
-    values: dict[str, float | Array] = {**along.values, **along.inputs_at(t, x[:, : 2 * n])}
+    values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x[:, : 2 * n])}
     work = x[:, 2 * n] if f.has_power else np.zeros(len(t))
     return MotionStates(t, x[:, :n], x[:, n : 2 * n], values, work)
 
 
-def _failed(along: Along, request: SimulationRequest, message: str) -> Trajectory:
+def _failed(conditions: Conditions, problem: TreeProblem, message: str) -> Trajectory:
     """Only the start."""
-    n = along.model.dof
-    q, qd = along.start[None, :n], along.start[None, n:]
-    return Trajectory(along.model.coordinates, np.array([request.span[0]]), q, qd, status="failed", message=message)
+    t, q, qd = np.array([problem.span[0]]), conditions.q[None], conditions.qd[None]
+    return Trajectory(problem.model.coordinates, t, q, qd, status="failed", message=message)

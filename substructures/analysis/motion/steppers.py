@@ -3,24 +3,26 @@
 The interpolating polynomials of one-step methods are of lower order than their steps (7 beside 8 for DOP853, 4 beside 5
 for RK45, 3 beside 5 for Radau), and nothing controls their errors: first integrals drift ten times as far between the
 steps as at their ends. The polynomials of multistep methods are those that the method itself goes on with.
+
+SciPy loads its parts when one of their names is first used: scipy.integrate, with 0.3 s of a start, by a motion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
+import scipy
 
 from substructures.array import Array
 
 #: of (f, t, x, end) makes an object with the interface of scipy.integrate.OdeSolver
 Stepper = Callable[..., Any]
 
-METHODS = {"DOP853": DOP853, "RK45": RK45, "RK23": RK23, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
-ONE_STEP = (DOP853, RK45, RK23, Radau)
+METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
+ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 #: so many states of a step are found one by one, further ones by a polynomial
 FEW = 8
 #: Chebyshev's points of the second kind in [0, 1] and their barycentric weights
@@ -31,7 +33,7 @@ WEIGHTS = np.where(np.arange(10) % 9, 1.0, 0.5) * (-1.0) ** np.arange(10)
 def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
     """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
     most = np.inf if max_step is None else max_step
-    return partial(METHODS[method], rtol=max(rtol, 1e-13), atol=atol, max_step=most)
+    return partial(getattr(scipy.integrate, method), rtol=max(rtol, 1e-13), atol=atol, max_step=most)
 
 
 def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[float], Array]:
@@ -39,10 +41,15 @@ def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[fl
 
     What is returned raises ArithmeticError where the method fails.
     """
-    if isinstance(solver, ONE_STEP):
+    if isinstance(solver, _one_step()):
         return _Within(solver, make, solver.t if end is None else end)
     found: Callable[[float], Array] = solver.dense_output()
     return found
+
+
+@cache
+def _one_step() -> tuple[Any, ...]:
+    return tuple(getattr(scipy.integrate, name) for name in ONE_STEP)
 
 
 class _Within:
@@ -65,6 +72,7 @@ class _Within:
             return self.first.copy()
         if t == self.solver.t:
             return np.array(self.solver.y)
+        # one step of the method itself from the same start, as accurate as those that it accepts
         solver = self.make(self.solver.fun, self.start, self.first, t, first_step=t - self.start)
         message = None
         while solver.status == "running":
@@ -80,5 +88,6 @@ class _Within:
         way = t - self.times
         if not way.all():
             return np.array(self.states[np.flatnonzero(way == 0)[0]])
+        # x(t) = sum w_k x_k / (t - t_k) over sum w_k / (t - t_k)
         shares = WEIGHTS / way
         return np.asarray(shares @ self.states / shares.sum())

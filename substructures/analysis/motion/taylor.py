@@ -7,39 +7,48 @@ takes seconds for large models and is done once for a model and a tolerance; par
 from __future__ import annotations
 
 import copy
+import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, Literal
 
-from substructures.analysis.motion.inputs import Along
+from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_dynamics
 from substructures.array import Array
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
 from substructures.tree.model import Model
-
-try:
-    import heyoka
-except ImportError:  # not installed: the method is refused
-    heyoka = None
 
 BINARY = {"add": "__add__", "sub": "__sub__", "mul": "__mul__", "div": "__truediv__"}
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")
 
 
+@cache
+def _heyoka() -> Any:
+    """The package heyoka, None where it is not installed.
+
+    The first motion that needs it imports it: with SymPy, which it loads, it would take a quarter of the start of a
+    server and 86 MB of every process.
+    """
+    try:
+        return importlib.import_module("heyoka")
+    except ImportError:
+        return None
+
+
 def require_taylor(tables: Sequence[str], max_step: float | None) -> None:
-    """Raises InvalidDocument where heyoka is missing, an input is a table, or steps are limited."""
-    if heyoka is None:
+    """Raises InvalidArgument where heyoka is missing, an input is a table, or steps are limited."""
+    if _heyoka() is None:
         message = "the method 'Taylor' needs the package 'heyoka': install it, or leave 'method' out"
-        raise InvalidDocument.at("/method", "not-installed", message)
+        raise InvalidArgument.at("/method", "not-installed", message)
     if max_step is not None:
         message = "the method 'Taylor' chooses its steps: leave 'max_step' out, or take another method"
-        raise InvalidDocument.at("/max_step", "not-supported", message)
+        raise InvalidArgument.at("/max_step", "not-supported", message)
     if tables:
         message = f"the method 'Taylor' takes no tables ('{tables[0]}'): use an expression in t, or another method"
-        raise InvalidDocument.at("/method", "not-supported", message)
+        raise InvalidArgument.at("/method", "not-supported", message)
 
 
 @dataclass(frozen=True)
@@ -55,19 +64,19 @@ class _System:
     source: Program = field(compare=False)
 
 
-def taylor_stepper(along: Along, tolerance: float, has_power: bool) -> _Factory:
-    """Makes steppers with the interface of SciPy's for a request that was read."""
-    model, source = along.model, along.source
+def taylor_stepper(conditions: Conditions, tolerance: float, has_power: bool) -> _Factory:
+    """Makes steppers with the interface of SciPy's for these conditions."""
+    model, source = conditions.model, conditions.expressions
     key = (model.program.digest, source.digest)
-    system = _System(key, along.zero, along.formulas, max(tolerance, 1e-15), has_power, model, source)
+    system = _System(key, conditions.zero, conditions.formulas, max(tolerance, 1e-15), has_power, model, source)
     integrator, names = _compiled(system)
-    return _Factory(integrator, [along.values[name] for name in names])
+    return _Factory(integrator, [conditions.values[name] for name in names])
 
 
 @lru_cache(maxsize=16)
 def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     """The integrator, and the names of its parameters in order."""
-    model = system.model
+    heyoka, model = _heyoka(), system.model
     dynamics = forward_dynamics(model, system.zero)
     states = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
     *variables, work = heyoka.make_vars(*(f"x{i}" for i in range(len(states) + 1)))
@@ -84,6 +93,7 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
     found = dynamics.outputs[ACCELERATION]
     for (a,), entry in zip(found.index, found.entries, strict=True):
         rows[a] = nodes[entry]
+    # (q)' = q', (q')' = q''(q, q', t), W' = power
     equations = [(x[c], x[f"{c}'"]) for c in model.coordinates]
     equations += [(x[f"{c}'"], row) for c, row in zip(model.coordinates, rows, strict=True)]
     if system.has_power:
@@ -95,6 +105,8 @@ def _compiled(system: _System) -> tuple[Any, tuple[str, ...]]:
 
 def _expressions(program: Program, known: Mapping[str, Any], names: Sequence[str]) -> dict[int, Any]:
     """The program's operations that the outputs need, as expressions of heyoka."""
+    heyoka = _heyoka()
+    # operations refer to earlier ones only, so that one pass in their order makes them all
     nodes: dict[int, Any] = {}
     for i in program.reachable(names):
         op, *rest = program.operations[i]
@@ -115,11 +127,11 @@ def _operation(op: str, args: Sequence[Any]) -> Any:
     if op == "neg":
         return -args[0]
     if op == "atan2":
-        return heyoka.atan2(*args)
+        return _heyoka().atan2(*args)
     if op in FUNCTIONS:
-        return getattr(heyoka, op)(args[0])
+        return getattr(_heyoka(), op)(args[0])
     message = f"the method 'Taylor' cannot take '{op}', which has no Taylor series everywhere: choose another method"
-    raise InvalidDocument.at("/method", "not-smooth", message)
+    raise InvalidArgument.at("/method", "not-smooth", message)
 
 
 class _Factory:
@@ -129,6 +141,7 @@ class _Factory:
         self.integrator, self.parameters = integrator, list(parameters)
 
     def __call__(self, _f: Any, start: float, x: Array, end: float) -> TaylorStepper:
+        # what was compiled is shared; time, state and parameters are this motion's
         integrator = copy.copy(self.integrator)
         integrator.time = start
         integrator.state[:] = x
@@ -149,14 +162,16 @@ class TaylorStepper:
 
     def step(self) -> str | None:
         """Advance by one step, at most to the end; a message when that failed."""
+        outcomes = _heyoka().taylor_outcome
         self.t_old = self.t
         outcome, _ = self.integrator.step(max_delta_t=self.end - self.t, write_tc=True)
         self.nfev += 1
-        if outcome not in (heyoka.taylor_outcome.success, heyoka.taylor_outcome.time_limit):
+        if outcome not in (outcomes.success, outcomes.time_limit):
             self.status = "failed"
             return "the series does not converge"
         self.t, self.y = self.integrator.time, self.integrator.state.copy()
-        if outcome == heyoka.taylor_outcome.time_limit:
+        # t + (end - t) may miss the end by rounding
+        if outcome == outcomes.time_limit:
             self.t, self.status = self.end, "finished"
         return None
 

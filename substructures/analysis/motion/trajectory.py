@@ -8,8 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.motion.request_fields import Event
+from substructures.analysis.motion.events import Event
 from substructures.array import Array
+from substructures.errors import listed
 
 Rule = Literal["constant", "falling", "zero"]
 
@@ -38,6 +39,7 @@ class Check:
         cls, about: tuple[str, Rule, str, str], violation: Array, t: Array, scale: float, limit: float, noise: float = 0
     ) -> Check:
         """``about``: name, rule, reason, unit; ``violation`` (K,): allowed up to limit * scale + noise."""
+        # |violation| <= limit * scale + noise; not a number is a violation, too
         size = np.abs(violation)
         bad = np.flatnonzero(~(size <= limit * scale + noise))
         first = float(t[bad[0]]) if len(bad) else None
@@ -90,6 +92,17 @@ class Trajectory:
     steps: int = 0
     events: tuple[Crossing, ...] = ()
     figures: Mapping[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        when = f"t = {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else "at no time"
+        kept = sum(check.holds for check in self.checks)
+        names = ", ".join(f"{check.name} {check.rule}" for check in self.checks)
+        states = f"{len(self.t)} states of {listed(self.coordinates)}"
+        return (
+            f"Trajectory: {states}, {when}, {self.steps} steps, {self.status}\n"
+            f"is_right={self.is_right}: {kept} of {len(self.checks)} checks hold ({names or 'none'}); "
+            f"series: {listed(self.series) or 'none'}"
+        )
 
     @property
     def is_right(self) -> bool:

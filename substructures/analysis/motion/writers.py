@@ -31,5 +31,6 @@ def to_csv(trajectory: Trajectory) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(name for name, _ in columns)
+    # repr of a double: the shortest text that is read back as the same number
     writer.writerows(np.stack([values for _, values in columns], axis=1).tolist())
     return text.getvalue()

@@ -20,7 +20,7 @@ from substructures.analysis.equations.formulas import multipliers_of
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import numbers
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.states import numeric, read_states, symbol_values
@@ -183,7 +183,8 @@ class ClosedSearch(RestSearch):
 
     def __init__(self, model: Model, within: SearchRange, conditions: Conditions) -> None:
         super().__init__(model, within, conditions)
-        self.s = Constrained(model, LoopRequest.read({"q": [0.0] * model.dof, **vars(conditions)}))
+        start = Start([0.0] * model.dof, parameters=conditions.parameters, inputs=conditions.inputs)
+        self.s = Constrained(model, start, (conditions.t, conditions.t))
         self.open = ""
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:

@@ -26,7 +26,7 @@ from substructures.analysis.closed.loops import independent_coordinates, least_m
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.motion.requests import LoopRequest
+from substructures.analysis.motion.problem import Start
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, normed, stability
@@ -49,7 +49,7 @@ def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     model, values = point.model, _values(point)
     chosen = point.chosen_inputs()
     s = _constrained(point, values)
-    state = consistent_state(s, values["t"], s.along.q, s.along.qd)
+    state = consistent_state(s, values["t"], s.conditions.q, s.conditions.qd)
     place = mobility(s, values["t"], state.q)
     message = state.message or ("the position is singular: " + SINGULAR if place.singular else "")
     s.move(values["t"], state.q, state.qd)
@@ -85,13 +85,9 @@ def _values(point: OperatingPoint) -> dict[str, float]:
 
 
 def _constrained(point: OperatingPoint, values: Mapping[str, float]) -> Constrained:
-    coordinates = point.model.coordinates
-    given: dict[str, Any] = {
-        "parameters": {name: values[name] for name in point.parameters},
-        "inputs": {name: values[name] for name in point.inputs},
-    }
-    q, qd = ([values[f"{name}{prime}"] for name in coordinates] for prime in ("", "'"))
-    return Constrained(point.model, LoopRequest.read({"q": q, "qd": qd, "t": values["t"], **given}))
+    q, qd = ([values[f"{name}{prime}"] for name in point.model.coordinates] for prime in ("", "'"))
+    parameters, inputs = ({name: values[name] for name in given} for given in (point.parameters, point.inputs))
+    return Constrained(point.model, Start(q, qd, parameters, inputs), (values["t"], values["t"]))
 
 
 def _put(s: Constrained, values: dict[str, float], qdd: Array, multipliers: Array) -> None:

@@ -1,0 +1,182 @@
+"""Motions as they are asked for: bodies of requests, items of jobs, documents on the command line; SI units, rad.
+
+What a value must be beside its type (a span that ends after it begins, times that increase) the science says; here its
+complaint becomes one of the document.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from service.schemas.parts import Part
+from service.schemas.velocity_constraints import VelocityConstraints
+from substructures.analysis import simulate as science
+from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
+from substructures.documents import DocumentPart
+from substructures.documents.fields import Name, Number, Positive, Real
+from substructures.errors import InvalidArgument
+
+MAX_EVENTS = 100
+
+
+def _listed(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def _checked(make: Callable[[], object]) -> None:
+    """What the science says against a value, as a fault of the part of the document that has it."""
+    try:
+        make()
+    except InvalidArgument as error:
+        (fault,) = error.faults
+        raise PydanticCustomError(fault.code, "{text}", {"text": fault.message}) from None
+
+
+#: numbers in a tuple, a list or a numpy array
+Reals = Annotated[tuple[Real, ...], BeforeValidator(_listed)]
+Span = Annotated[tuple[Real, Real], BeforeValidator(_listed)]
+_Column = Annotated[Reals, Field(min_length=2, max_length=100_000)]
+
+
+class Table(Part):
+    """Values over time [s]. Inputs: piecewise constant, linear, or a cubic spline; prescribed motions: a spline of
+    degree five.
+    """
+
+    times: _Column
+    values: _Column
+    interpolation: Literal["hold", "linear", "cubic"] = "linear"
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Table:
+        _checked(self.value)
+        return self
+
+    def value(self) -> science.Table:
+        """As the science takes it."""
+        return science.Table(self.times, self.values, self.interpolation)
+
+
+def _kind(value: Any) -> str:
+    return "table" if isinstance(value, (Mapping, Table)) else "number"
+
+
+#: a number, an expression, or a table
+Signal = Annotated[Annotated[Number, Tag("number")] | Annotated[Table, Tag("table")], Discriminator(_kind)]
+
+
+class Event(Part):
+    """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
+
+    name: Name
+    quantity: Number
+    level: Real = 0.0
+    direction: Literal["rising", "falling", "both"] = "both"
+    action: Literal["stop", "record"] = "stop"
+
+    def value(self) -> science.Event:
+        """As the science takes it."""
+        return science.Event(self.name, self.quantity, self.level, self.direction, self.action)
+
+
+class FixedStep(Part):
+    """Real-time mode: every step takes the same, known time. Semi-implicit Euler, or Runge-Kutta of fourth order."""
+
+    step: Positive = Field(description="s")
+    method: Literal["semi-implicit-euler", "rk4"] = "rk4"
+
+    def value(self) -> science.FixedStep:
+        """As the science takes it."""
+        return science.FixedStep(self.step, self.method)
+
+
+class StateRequest(DocumentPart):
+    """A state, parameters and inputs."""
+
+    q: Any = Field(None, description="coordinates: a list, or an object by name; rad, m")
+    qd: Any = Field(None, description="velocities, 0 by default; rad/s, m/s")
+    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    inputs: dict[str, Signal] = Field({}, description="number, expression in q, q' and t, or table; N m or N")
+
+
+class SpanRequest(StateRequest):
+    """A motion from a start over a span of time.
+
+    At most one of ``times``, ``step`` and ``count`` says where results are wanted (default: 101 of equal distance).
+    """
+
+    span: Span = Field(description="s")
+    times: Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None = Field(None, description="s")
+    step: Positive | None = Field(None, description="s")
+    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
+    events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = ()
+    series: dict[Name, Number] = Field({}, max_length=MAX_EVENTS, description="expressions to be followed")
+    relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-10
+    absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
+    max_step: Positive | None = Field(None, description="s")
+    max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
+    drift_limit: Positive = Field(1e-7, description="largest relative drift of first integrals of a right result")
+
+    @model_validator(mode="after")
+    def _inside(self) -> SpanRequest:
+        _checked(self.output_times)
+        return self
+
+    def output_times(self) -> OutputTimes:
+        """The times where results are wanted."""
+        return OutputTimes(self.span, self.times, self.step, self.count)
+
+
+class SimulationRequest(SpanRequest):
+    """q'' = g^-1 (Q - Gamma q' q') of a tree without closures."""
+
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
+    fixed_step: FixedStep | None = None
+
+
+class LoopRequest(StateRequest):
+    """Loops at a state. ``fixed`` coordinates keep their values while the loops are closed; ``prescribed`` coordinates
+    move as given: a number, an expression in t, or a table.
+    """
+
+    t: Real = 0.0
+    fixed: tuple[str, ...] = Field((), max_length=500)
+    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+
+
+class ClosedRequest(SpanRequest):
+    """A motion with closures from the closed state nearest to ``q``, ``qd``; see LoopRequest.
+
+    ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
+    """
+
+    fixed: tuple[str, ...] = Field((), max_length=500)
+    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+    method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
+    reduction: Literal["projection", "partitioning"] = "projection"
+
+
+class RollingRequest(SpanRequest, VelocityConstraints):
+    """A motion with velocity constraints from ``q`` and quasi-velocities ``v``, or velocities ``qd`` that meet them."""
+
+    v: Any = Field(None, description="quasi-velocities: a list, or an object by name; 0 by default")
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"] = "DOP853"
+    form: Literal["voronets", "boltzmann-hamel"] = "voronets"
+
+
+class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | RollingRequest]):
+    """With ``constraints``: velocity constraints; else of a tree with closures, or with ``prescribed`` coordinates;
+    else of an open tree.
+    """
+
+
+class SensitivityRequest(SimulationRequest):
+    """A simulation, and the parameters by which its motion is differentiated."""
+
+    by: tuple[str, ...] = Field((), description="parameters")
+    of_start: bool = Field(False, description="also by coordinates and velocities at the start")

@@ -1,0 +1,79 @@
+"""Constraints on velocities as they are sent; what they mean: substructures.analysis.equations.velocity_constraints."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from service.schemas.parts import Part
+from substructures.analysis.equations import velocity_constraints as science
+from substructures.documents import DocumentPart
+from substructures.documents.fields import Name, Number
+
+FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
+
+
+class Linear(Part):
+    """An expression that is zero, linear in the velocities."""
+
+    type: Literal["linear"]
+    name: Name
+    expression: str
+
+    def value(self) -> science.Linear:
+        """As the science takes it."""
+        return science.Linear(self.name, self.expression)
+
+
+class KnifeEdge(Part):
+    """A skate: no velocity across the edge, which lies along the first axis of the frame."""
+
+    type: Literal["knife_edge"]
+    name: Name
+    frame: FrameName
+
+    def value(self) -> science.KnifeEdge:
+        """As the science takes it."""
+        return science.KnifeEdge(self.name, self.frame)
+
+
+class Rolling(Part):
+    """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
+
+    type: Literal["rolling"]
+    name: Name
+    frame: FrameName
+    radius: Number = Field(description="m")
+    shape: Literal["disc", "sphere"] = "disc"
+    normal: tuple[Number, Number, Number] = Field((0, 0, 1), description="of the plane in the world (constant)")
+
+    def value(self) -> science.Rolling:
+        """As the science takes it."""
+        return science.Rolling(self.name, self.frame, self.radius, self.shape, self.normal)
+
+
+class Closed(Part):
+    """A closure of the tree, by its name."""
+
+    type: Literal["closure"]
+    name: Name
+
+    def value(self) -> science.Closed:
+        """As the science takes it."""
+        return science.Closed(self.name)
+
+
+Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
+
+
+class VelocityConstraints(DocumentPart):
+    """Constraints, and the quasi-velocities in which the motion is described.
+
+    ``velocities``: as many as the constraints leave free, by name, each an expression linear in the velocities; or
+    ``independent``: the coordinates whose velocities are used; default: chosen for short formulas.
+    """
+
+    constraints: tuple[Constraint, ...] = Field((), max_length=100)
+    velocities: dict[Name, str] | None = Field(None, max_length=100)
+    independent: tuple[str, ...] | None = Field(None, max_length=500)

@@ -1,0 +1,171 @@
+"""What is given along a motion in numbers and compiled formulas: its start, inputs, events, series."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from substructures.analysis.arguments import Scalar
+from substructures.analysis.equations.expressions import Given, read_expressions
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.motion.events import DIRECTIONS, Event
+from substructures.analysis.motion.integration import Watch
+from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
+from substructures.array import Array
+from substructures.documents import escape
+from substructures.errors import Fault, InvalidArgument
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.program import Program
+from substructures.quantities.states import read_states, symbol_values
+from substructures.tree.model import Model
+
+#: names of series and arrays that trajectories have by themselves
+RESERVED = frozenset(
+    ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
+) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps"}
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """``start`` (2n,): x = (q, q') [rad, m; per s]; ``values``: numbers of all symbols but state, time and varying
+    inputs; ``zero``: names of inputs and parameters that are 0.
+
+    Inputs that vary are ``formulas`` (in state and time, by name) and ``curves`` (of the time); ``expressions`` has the
+    outputs ``inputs`` (those formulas), ``events`` and ``series``, (k,) each, in the order of their names.
+    """
+
+    model: Model
+    start: Array
+    values: dict[str, float]
+    zero: frozenset[str]
+    formulas: tuple[str, ...]
+    curves: Mapping[str, Curve]
+    events: tuple[Event, ...]
+    series: tuple[str, ...]
+    expressions: Program
+
+    @property
+    def q(self) -> Array:
+        """Coordinates at the start (n,)."""
+        return self.start[: self.model.dof]
+
+    @property
+    def qd(self) -> Array:
+        """Velocities at the start (n,)."""
+        return self.start[self.model.dof :]
+
+    def breaks(self, span: tuple[float, float]) -> list[float]:
+        """Inner times where an input or its slope jumps [s]: the integrator begins anew there."""
+        return sorted({t for curve in self.curves.values() for t in curve.breaks if span[0] < t < span[1]})
+
+    def followed(self, t: Array, x: Array, names: Sequence[str]) -> dict[str, Array]:
+        """Outputs of the expressions at times (K,) and states (K, 2n)."""
+        n = self.model.dof
+        values = self.values | {"t": t} | {name: x[:, a] for a, name in enumerate(self.model.coordinates)}
+        values |= {f"{name}'": x[:, n + a] for a, name in enumerate(self.model.coordinates)}
+        return interpret_in_blocks(self.expressions, values, list(names), len(t))
+
+    def inputs_at(self, t: Array, x: Array) -> dict[str, Array]:
+        """The varying inputs at times (K,) and states (K, 2n), (K,) each."""
+        found = self.followed(t, x, ["inputs"])["inputs"] if self.formulas else np.zeros((len(t), 0))
+        values = {name: found[:, k] for k, name in enumerate(self.formulas)}
+        return values | {name: np.array([curve(at) for at in t.tolist()]) for name, curve in self.curves.items()}
+
+    def series_at(self, t: Array, x: Array) -> dict[str, Array]:
+        """The series that are asked for, and the varying inputs, at times (K,) and states (K, 2n), (K,) each."""
+        found = self.followed(t, x, ["series"])["series"] if self.series else np.zeros((len(t), 0))
+        return self.inputs_at(t, x) | {name: found[:, k] for k, name in enumerate(self.series)}
+
+    def watches(self, state: Callable[[float, Array], Array], folder: Path | None) -> list[Watch]:
+        """The events as functions of (t, y); ``state``: (q, q') of y. ``folder``: a cache of compiled kernels."""
+        if not self.events:
+            return []
+        names = state_names(self.model)
+        t, x, found = np.zeros(1), np.zeros((1, len(names))), np.zeros((1, len(self.events)))
+        kernel = program_kernel(self.expressions, folder)
+        run = kernel.bind({"events": found}, self.values | {"t": t}, columns=[(names, x)])
+
+        def level(k: int) -> Callable[[float, Array], float]:
+            def g(at: float, y: Array) -> float:
+                # g(t, y) = quantity(q, q', t) - level
+                t[0], x[0] = at, state(at, y)
+                run()
+                return float(found[0, k]) - self.events[k].level
+
+            return g
+
+        return [Watch(e.name, level(k), DIRECTIONS[e.direction], e.action == "stop") for k, e in enumerate(self.events)]
+
+
+def state_names(model: Model) -> list[str]:
+    """Coordinates, then velocities."""
+    return [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+
+
+def read_conditions(
+    model: Model,
+    start: Start,
+    span: tuple[float, float],
+    needs: Sequence[str],
+    events: Sequence[Event] = (),
+    series: Mapping[str, Scalar] | None = None,
+) -> Conditions:
+    """Check what is given against a model; ``needs``: outputs of the model whose symbols must have values.
+
+    Raises InvalidInput (pointers ``/q``, ``/inputs/name``, ``/events/i/quantity``, ...) and MissingValue.
+    """
+    followed = series or {}
+    states = read_states(model, {"q": start.q, "qd": start.qd}, 1)
+    curves = _curves(model, start.inputs, span)
+    formulas = tuple(name for name, x in start.inputs.items() if isinstance(x, str))
+    groups: dict[str, Given] = {
+        "inputs": [(start.inputs[name], f"/inputs/{escape(name)}") for name in formulas],
+        "events": [(e.quantity, f"/events/{i}/quantity") for i, e in enumerate(events)],
+        "series": [(x, f"/series/{escape(name)}") for name, x in followed.items()],
+    }
+    # u = u(q, q', t), quantities of events and series: one program for all
+    expressions = read_expressions(model, groups)
+    _check_names(model, start.parameters, followed)
+    constant = {name: x for name, x in start.inputs.items() if not isinstance(x, (Table, str))}
+    found = symbol_values(model, {"parameters": start.parameters, "inputs": constant}, states, needs)
+    values = {n: float(np.ravel(v)[0]) for n, v in found.items()}
+    # what moves is no constant of the kernels
+    for name in (*state_names(model), "t", *formulas, *curves):
+        values.pop(name, None)
+    inputs = {s.name for s in model.program.symbols if s.kind == "input"} | set(model.parameters)
+    zero = frozenset(name for name, x in values.items() if x == 0 and name in inputs)
+    x = np.concatenate([states.q[0], states.qd[0]])
+    return Conditions(model, x, values, zero, formulas, curves, tuple(events), tuple(followed), expressions)
+
+
+def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]) -> dict[str, Curve]:
+    known = {s.name for s in model.program.symbols if s.kind == "input"}
+    known |= {f"tau.{name}" for name in model.coordinates}
+    curves = {}
+    for name, one in given.items():
+        pointer = f"/inputs/{escape(name)}"
+        if name not in known:
+            raise InvalidArgument.at(pointer, "unknown-input", f"unknown input '{name[:80]}'")
+        if isinstance(one, Table):
+            require_covered(one, span, pointer)
+            curves[name] = Curve(one)
+    return curves
+
+
+def _check_names(model: Model, parameters: Mapping[str, float], series: Mapping[str, object]) -> None:
+    faults = [
+        Fault(f"/parameters/{escape(name)}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        for name in parameters
+        if name not in model.parameters
+    ]
+    faults += [
+        Fault(f"/series/{name}", "reserved-name", f"'{name}' is a series of every trajectory: take another name")
+        for name in series
+        if name in RESERVED
+    ]
+    if faults:
+        raise InvalidArgument(faults)

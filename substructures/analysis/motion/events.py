@@ -1,0 +1,31 @@
+"""Events: quantities whose zeros along a motion are looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from substructures.analysis.arguments import Scalar, one_of, real
+
+#: sign of the slope at the zeros that count; 0: any
+DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
+ACTIONS = ("stop", "record")
+
+
+@dataclass(frozen=True)
+class Event:
+    """``quantity`` (an expression in coordinates, velocities, parameters and t, its unit) crosses ``level``.
+
+    ``direction``: which crossings count; ``action``: whether the motion stops there. Raises InvalidArgument.
+    """
+
+    name: str
+    quantity: Scalar
+    level: float = 0.0
+    direction: Literal["rising", "falling", "both"] = "both"
+    action: Literal["stop", "record"] = "stop"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "level", real(self.level, "/level"))
+        one_of(self.direction, "direction", tuple(DIRECTIONS))
+        one_of(self.action, "action", ACTIONS)

@@ -1,0 +1,82 @@
+"""What a motion is computed from: the start, what acts, the span, what is noted on the way, and how accurately."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.analysis.arguments import Numbers, Scalar, in_range, one_of, positive, whole
+from substructures.analysis.motion.events import Event
+from substructures.analysis.motion.output_times import OutputTimes
+from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.steppers import METHODS, Stepper, scipy_stepper
+from substructures.tree.model import Model
+
+TAYLOR = "Taylor"
+#: a number for each coordinate: (n,) in their order, or by name
+StateVector = Numbers | Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Start:
+    """A state and what acts there: ``q`` [rad, m], ``qd`` [rad/s, m/s] (0 by default), ``parameters`` in place of their
+    defaults, ``inputs`` [N m, N] by name (0 by default).
+    """
+
+    q: StateVector | None
+    qd: StateVector | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    inputs: Mapping[str, Signal] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class IntegratorChoice:
+    """``method``: one of ``METHODS`` or ``Taylor``; tolerances of a step, |error| <= absolute + relative |x|;
+    ``max_step`` [s]; ``max_steps``: so many accepted steps at most. Raises InvalidArgument.
+    """
+
+    method: str = "DOP853"
+    relative_tolerance: float = 1e-10
+    absolute_tolerance: float = 1e-12
+    max_step: float | None = None
+    max_steps: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        one_of(self.method, "method", (*METHODS, TAYLOR))
+        object.__setattr__(
+            self, "relative_tolerance", in_range(self.relative_tolerance, "relative_tolerance", 1e-14, 0.1)
+        )
+        object.__setattr__(self, "absolute_tolerance", in_range(self.absolute_tolerance, "absolute_tolerance", 0, 0.1))
+        if self.max_step is not None:
+            object.__setattr__(self, "max_step", positive(self.max_step, "max_step"))
+        whole(self.max_steps, "max_steps", 1, 100_000_000)
+
+    def stepper(self) -> Stepper:
+        """SciPy's, for all methods but Taylor's."""
+        return scipy_stepper(self.method, self.relative_tolerance, self.absolute_tolerance, self.max_step)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionProblem:
+    """An initial value problem: a model from a start over a span; see :func:`substructures.analysis.simulate.simulate`.
+
+    ``series``: expressions to be followed, by name; ``drift_limit``: of first integrals, relative, in a right result.
+    Raises InvalidArgument.
+    """
+
+    model: Model
+    start: Start
+    times: OutputTimes
+    integrator: IntegratorChoice = field(default_factory=IntegratorChoice)
+    events: Sequence[Event] = ()
+    series: Mapping[str, Scalar] = field(default_factory=dict)
+    drift_limit: float = 1e-7
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "drift_limit", positive(self.drift_limit, "drift_limit"))
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """When the motion starts and when it ends [s]."""
+        return self.times.span
