@@ -27,7 +27,7 @@ from substructures.tree.model import Model
 MAX_VARIABLES = 2_000
 #: the cost of a motion that is not finite
 BEYOND = 1e30
-#: segments that are taken where the request does not say
+#: segments that are taken where nothing says how many
 SEGMENTS = 10
 MAX_ITERATIONS = 100_000
 
@@ -94,7 +94,7 @@ class ShootingProgram:
         self._at: tuple[bytes, Rollout, Slope] | None = None
 
     def guess(self) -> Array:
-        """Controls of the request; starts of segments on a line from the first state to the demanded one."""
+        """Controls that were given; starts of segments on a line from the first state to the demanded one."""
         controls = np.clip(per_node(self.problem, self.wanted.guess, "guess"), *self.bounds)
         end = self.first.copy()
         for i, value in self.demands:

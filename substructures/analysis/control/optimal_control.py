@@ -154,22 +154,9 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
 
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) -> Optimum:
     """The necessary conditions at z."""
-    cost, gradient = search.cost(z)
-    residual, A = search.residual(z), search.jacobian(z)
-    low, high = search.limits()
-    margin = 1e-9 * (1 + np.abs(z))
-    below, above = z <= low + margin, z >= high - margin
-    free = ~(below | above)
-    # A^T nu = -dJ/dz in the free variables, and dJ/dz + A^T nu is what is left (Karush, Kuhn and Tucker)
-    nu = np.zeros(search.rows)
-    if search.rows:
-        nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
-    slope = gradient + A.T @ nu
-    # at a lower bound the cost may only rise upwards, at an upper one downwards
-    slope[below] = np.minimum(slope[below], 0)
-    slope[above] = np.maximum(slope[above], 0)
-    # |dL/dz| relative to |dJ/dz|
-    stationarity = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
+    cost, _ = search.cost(z)
+    nu, stationarity = _multipliers(search, z)
+    residual = search.residual(z)
     violation = float(np.abs(residual).max(initial=0))
     limit = max(1e-6, 10 * search.wanted.tolerance)
     status: Literal["optimal", "feasible", "failed"] = "failed"
@@ -192,6 +179,27 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
         history,
         iterations,
     )
+
+
+def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
+    """Multipliers nu of the conditions, and |d(J + nu . residual)/dz| in the free variables relative to |dJ/dz|."""
+    _, gradient = search.cost(z)
+    A = search.jacobian(z)
+    low, high = search.limits()
+    margin = 1e-9 * (1 + np.abs(z))
+    below, above = z <= low + margin, z >= high - margin
+    free = ~(below | above)
+    # A^T nu = -dJ/dz in the free variables, and dJ/dz + A^T nu is what is left (Karush, Kuhn and Tucker)
+    nu = np.zeros(search.rows)
+    if search.rows:
+        nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
+    slope = gradient + A.T @ nu
+    # at a lower bound the cost may only rise upwards, at an upper one downwards
+    slope[below] = np.minimum(slope[below], 0)
+    slope[above] = np.maximum(slope[above], 0)
+    # |dL/dz| relative to |dJ/dz|
+    largest = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
+    return nu, largest
 
 
 def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:

@@ -236,8 +236,8 @@ class Shooting:
 def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
     inputs = problem.inputs or {}
-    request = {"q": [0.0] * model.dof, "parameters": problem.parameters}
-    known = symbol_values(model, request, read_states(model, request, None), ())
+    given = {"q": [0.0] * model.dof, "parameters": problem.parameters}
+    known = symbol_values(model, given, read_states(model, given, None), ())
     values = {name: float(known[name]) for name in model.parameters if name in known}
     values |= {name: float(inputs.get(name, 0.0)) for name in inputs_of(model)}
     for symbol in equations.program.symbols:

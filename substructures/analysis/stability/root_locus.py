@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -78,15 +78,15 @@ def root_locus(
             break
         near, roots, verdict = found
         rows.append((near, _followed(rows[-1][1], roots) if rows else roots, verdict))
-    n, count = model.dof, len(rows)
-    return RootLocus(
-        np.array(at[:count]),
-        np.array([row[0] for row in rows]).reshape(count, n),
-        np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, len(rows[0][1]) if rows else 2 * n),
-        tuple(row[2] for row in rows),
-        status,
-        message,
-    )
+    return RootLocus(np.array(at[: len(rows)]), *_branches(rows, model.dof), status, message)
+
+
+def _branches(rows: Sequence[tuple[Array, ComplexArray, str]], n: int) -> tuple[Array, ComplexArray, tuple[str, ...]]:
+    """q (N, n), eigenvalues (N, 2r) and verdicts."""
+    count, width = len(rows), len(rows[0][1]) if rows else 2 * n
+    q = np.array([row[0] for row in rows]).reshape(count, n)
+    roots = np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, width)
+    return q, roots, tuple(row[2] for row in rows)
 
 
 def _start(model: Model, q: Any) -> Array:
