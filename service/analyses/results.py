@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import orjson
 
+from substructures.analysis.closed.loops import LoopState
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
@@ -58,6 +59,8 @@ def plain(value: Any) -> Any:
     """Dataclasses as objects by field, complex numbers as pairs; arrays stay. In JSON what is not finite is null."""
     if isinstance(value, Trajectory):
         return {**value.summary(), "t": value.t, "q": value.q, "qd": value.qd, "series": dict(value.series)}
+    if isinstance(value, LoopState):
+        return plain(_loop_state(value))
     for name in ("summary", "plain"):
         if callable(method := getattr(value, name, None)):
             return plain(method())
@@ -79,6 +82,14 @@ def _members(value: Any) -> list[str]:
         for name, before in properties.items() if isinstance(value, kind) else ():
             names.insert(names.index(before), name)
     return names
+
+
+def _loop_state(found: LoopState) -> dict[str, Any]:
+    """The members of its parts beside each other, but for the mobility."""
+    state = {k: getattr(found.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
+    mobility = {**vars(found.mobility), "redundant": found.mobility.redundant}
+    forces = {"qdd": found.qdd, "multipliers": found.multipliers, "actuation": found.actuation}
+    return state | forces | {"mobility": mobility, "reactions": found.reactions, "message": found.message}
 
 
 def _pairs(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

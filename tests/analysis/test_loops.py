@@ -102,14 +102,6 @@ def test_a_weld_must_not_close_upside_down() -> None:
     assert "'seam' is closed with axes in opposite directions" in turned.message
 
 
-def test_plain_answer() -> None:
-    """What a service sends: names, lists and numbers."""
-    answer = loop_state(SLIDER, at(SLIDER, crank=0.4, piston=0.17)).plain()
-    assert {"q", "qd", "qdd", "multipliers", "actuation", "mobility", "reactions", "message"} <= answer.keys()
-    assert answer["mobility"]["degrees_of_freedom"] == 1
-    assert [r["closure"] for r in answer["reactions"]] == ["wrist"]
-
-
 def test_a_dead_centre_is_singular() -> None:
     """A parallelogram stretched out may go on as parallelogram or antiparallelogram."""
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}

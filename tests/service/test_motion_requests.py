@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
-from closed_trees import slider_crank
+from closed_trees import at, slider_crank
 from random_trees import Plain
 from rolling_bodies import sleigh
 
 from service.analyses.formulas import velocity_equations_of
 from service.analyses.numbers import ANALYSES
 from service.analyses.requests import arguments, read_request
+from service.analyses.results import plain
 from service.analyses.source import Source
 from service.schemas.motions import (
     AnySimulationRequest,
@@ -128,6 +129,13 @@ def test_parts_become_values_of_the_science() -> None:
     }
     given = arguments(read_request(VelocityConstraints, {"constraints": [BLADE]}))
     assert given == {"constraints": (KnifeEdge("blade", "s.b"),)}
+
+
+def test_a_loop_state_as_plain_data() -> None:
+    answer = plain(loop_state(CRANK, at(CRANK, crank=0.4, piston=0.17)))
+    assert {"q", "qd", "qdd", "multipliers", "actuation", "mobility", "reactions", "message"} <= answer.keys()
+    assert answer["mobility"]["degrees_of_freedom"] == 1
+    assert [r["closure"] for r in answer["reactions"]] == ["wrist"]
 
 
 @pytest.mark.parametrize(

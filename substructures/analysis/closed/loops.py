@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,14 +80,6 @@ class LoopState:
             f"redundant: {', '.join(place.dependent) or 'none'}\n"
             f"residual {state.residual:.2g}; reactions: {names or 'none'}; {self.message or 'closed'}"
         )
-
-    def plain(self) -> dict[str, Any]:
-        """As plain data with arrays, for an answer in JSON."""
-        state = {k: getattr(self.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
-        reactions = [asdict(reaction) for reaction in self.reactions]
-        mobility = asdict(self.mobility) | {"redundant": self.mobility.redundant}
-        forces = {"qdd": self.qdd, "multipliers": self.multipliers, "actuation": dict(self.actuation)}
-        return state | forces | {"mobility": mobility, "reactions": reactions, "message": self.message}
 
 
 def loop_state(
