@@ -5,7 +5,7 @@ Options are texts by name, as in a query: ``{"controls": ("tau.arm.q1",), "runni
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,7 +26,7 @@ from substructures.analysis.equations.routh import routh
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
-from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
+from substructures.errors import InvalidDocument, InvalidInput, TooLarge
 from substructures.expr.program import Program
 
 Options = Mapping[str, tuple[str, ...]]
@@ -180,22 +180,9 @@ def _curvature(source: Source, _: Options) -> Made:
 def _adjoint(source: Source, options: Options) -> Made:
     cost = Cost(**{name: ",".join(options[name]) for name in ("running", "terminal") if name in options})
     controls, varied = options.get("controls", tuple(inputs_of(source.model))), options.get("parameters", ())
-    _check_names("controls", "input", controls, inputs_of(source.model))
-    _check_names("parameters", "parameter", varied, source.model.parameters)
     found = adjoint_equations(source.model, controls, cost, varied)
     names = {"coordinates": found.coordinates, "controls": found.controls, "parameters": found.varied}
     return Made(found.program, {name: list(value) for name, value in names.items()})
-
-
-def _check_names(field: str, kind: str, names: Iterable[str], known: Iterable[str]) -> None:
-    known = set(known)
-    faults = [
-        Fault(f"/{field}/{i}", f"unknown-{kind}", f"unknown {kind} '{name[:80]}'")
-        for i, name in enumerate(names)
-        if name not in known
-    ]
-    if faults:
-        raise InvalidDocument(faults)
 
 
 def _base_parameters(source: Source, options: Options) -> Made:
@@ -224,7 +211,7 @@ _QUANTITIES = {
     "riemann": _Quantity(_curvature, (), ("riemann",)),
     "ricci": _Quantity(_curvature, (), ("ricci",)),
     "scalar_curvature": _Quantity(_curvature, (), ("scalar_curvature",)),
-    "adjoint": _Quantity(_adjoint, ("controls", "running", "terminal", "parameters")),
+    "adjoint": _Quantity(_adjoint, ("controls", "running", "terminal", "parameters"), (), {"parameters": "varied"}),
     "base_parameters": _Quantity(_base_parameters, ("drives",), ("grouping", "base_parameters"), needs_parts=True),
     "base_regressor": _Quantity(_base_parameters, ("drives",), ("base_regressor",), needs_parts=True),
 }

@@ -12,11 +12,12 @@ from service.analyses.formulas import base_of, curvature_of
 from service.analyses.requests import arguments, read_request
 from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
 from service.analyses.source import Source
+from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
 from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest
+from service.schemas.stability import EquilibriaRequest, LinearisationRequest, RootLocusRequest
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
-from substructures.analysis.control.nonlinear_program import OptimalControlRequest
+from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.identification.fit import excitation, identify
@@ -24,10 +25,8 @@ from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
-from substructures.analysis.stability.equilibrium_search import EquilibriaRequest
-from substructures.analysis.stability.linearisation import LinearisationRequest
 from substructures.analysis.stability.linearise import linearise
-from substructures.analysis.stability.root_locus import RootLocusRequest, root_locus
+from substructures.analysis.stability.root_locus import root_locus
 from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.quantities.states import read_states
 
@@ -93,33 +92,39 @@ def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
 def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
     n = source.model.dof
     inputs = sum(s.kind == "input" for s in source.model.program.symbols)
-    states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
+    given = {"q": read.q, "qd": read.qd, "qdd": read.qdd}
+    states = read_states(source.model, given, source.limits.states).count
     _check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))
-    return linearise(source.model, arguments(read))
+    return linearise(source.model, **arguments(read))
 
 
 def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any:
     n = source.model.dof
-    states = len(read_states(source.model, {"q": read.q}, source.limits.states).q)
+    states = read_states(source.model, {"q": read.q, "parameters": read.parameters}, source.limits.states).count
     _check_size(source, states, n**4 + n**3 + 2 * n * n + 1)
-    return curvature_values(source.model, arguments(read), source.limits.states, source.engine, curvature_of(source))
+    tools: dict[str, Any] = {"engine": source.engine, "formulas": curvature_of(source)}
+    return curvature_values(source.model, **arguments(read), limit=source.limits.states, **tools)
 
 
 def _optimal_control(source: Source, read: OptimalControlRequest, report: ProgressReport) -> Any:
     def told(iteration: int, _cost: float, _violation: float) -> None:
         report(min(1.0, iteration / read.iterations))
 
-    return optimal_control(source.model, arguments(read), told)
+    return optimal_control(source.model, **arguments(read), progress=told)
 
 
 def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> Any:
-    found = excitation(base_of(source, read.drives), _without(arguments(read), "drives"))
+    found = excitation(base_of(source, read.drives), **_motion(read))
     return {**vars(found), "is_good": found.is_good, "advice": found.advice}
 
 
 def _identification(source: Source, read: IdentificationRequest, _: ProgressReport) -> Any:
-    data = _without(arguments(read), "drives", "known")
-    return identify(base_of(source, read.drives), data, source.model if read.known else None)
+    model = source.model if read.known else None
+    return identify(base_of(source, read.drives), **_motion(read), tau=read.tau, model=model)
+
+
+def _motion(read: ExcitationRequest) -> dict[str, Any]:
+    return {name: getattr(read, name) for name in ("q", "qd", "qdd", "parameters")}
 
 
 ANALYSES: dict[str, Analysis] = {
@@ -140,19 +145,19 @@ ANALYSES: dict[str, Analysis] = {
     ),
     "equilibria": Analysis(
         EquilibriaRequest,
-        lambda source, read, _: equilibria(source.model, arguments(read)),
+        lambda source, read, _: equilibria(source.model, **arguments(read)),
         "All equilibria that are found, each with its vibrations and stability; also of closed loops",
     ),
     "root-loci": Analysis(
         RootLocusRequest,
-        lambda source, read, _: root_locus(source.model, arguments(read)),
+        lambda source, read, _: root_locus(source.model, **arguments(read)),
         "Eigenvalues of an equilibrium over a parameter",
         DRAWN,
     ),
     "curvatures": Analysis(CurvatureRequest, _curvature, "Riemann's tensor of the configuration space, Ricci, scalar"),
     "cost-gradients": Analysis(
         GradientRequest,
-        lambda source, read, _: cost_gradient(source.model, arguments(read)),
+        lambda source, read, _: cost_gradient(source.model, **arguments(read)),
         "The cost of a motion under given controls and its gradient by the adjoint",
         TRAJECTORY,
     ),

@@ -13,7 +13,9 @@ from substructures.analysis.closed.loops import LoopState
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
+from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.root_locus import RootLocus
+from substructures.analysis.stability.vibrations import Mode
 from substructures.formats import arrays, arrow
 from substructures.tree.model import Model
 
@@ -24,6 +26,11 @@ MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "
 PLAIN = (JSON, arrays.MEDIA_TYPE)
 TRAJECTORY = (*PLAIN, CSV, SVG, arrow.MEDIA_TYPE)
 DRAWN = (*PLAIN, SVG)
+#: properties that are written beside the fields, each with the field that it is written before
+PROPERTIES: dict[type, dict[str, str]] = {
+    Linearisation: {"is_equilibrium": "modes"},
+    Mode: {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
+}
 
 
 def written(result: Any, media: str, model: Model) -> bytes:
@@ -58,7 +65,7 @@ def plain(value: Any) -> Any:
         if callable(method := getattr(value, name, None)):
             return plain(method())
     if is_dataclass(value):
-        return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+        return {name: plain(getattr(value, name)) for name in _members(value)}
     if isinstance(value, Mapping):
         return {str(name): plain(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
@@ -66,6 +73,15 @@ def plain(value: Any) -> Any:
     if isinstance(value, complex):
         return [value.real, value.imag]
     return _pairs(value) if isinstance(value, np.ndarray) else value
+
+
+def _members(value: Any) -> list[str]:
+    """The fields of a dataclass, and its properties that are written, too."""
+    names = [f.name for f in fields(value)]
+    for kind, properties in PROPERTIES.items():
+        for name, before in properties.items() if isinstance(value, kind) else ():
+            names.insert(names.index(before), name)
+    return names
 
 
 def _loop_state(found: LoopState) -> dict[str, Any]:

@@ -10,10 +10,10 @@ from analysis_models import seeds, shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 from scipy.integrate import solve_ivp
 
-from substructures import InvalidDocument, MissingValue, Model
+from substructures import InvalidInput, MissingValue, Model
 from substructures.analysis.control.adjoint import adjoint_equations
-from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
-from substructures.analysis.control.problem import Cost, initial_state, inputs_of, read_problem
+from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.problem import ControlProblem, Cost, initial_state, inputs_of
 from substructures.analysis.control.shooting import Shooting
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
@@ -43,7 +43,7 @@ def random_problem(seed: int) -> tuple[Model, Plain]:
     terminal = f"{v}^2 + cos({q})" + (f"*{some[-1]}" if some else "")
     request = {
         "controls": controls,
-        "cost": {"running": running, "terminal": terminal},
+        "cost": Cost(running, terminal),
         "horizon": 0.4,
         "intervals": 3,
         "steps": 2,
@@ -63,8 +63,9 @@ def test_gradient_against_finite_differences(seed: int) -> None:
     """By the controls, the states at the starts, and parameters, of the cost and of the state at an end: 1e-6."""
     model, request = random_problem(seed)
     segments = (1, 3)[seed // 3]
-    problem = read_problem(GradientRequest, model, request)
-    shooting = Shooting(model, problem, problem.vary, segments)
+    vary = request["vary"]
+    problem = ControlProblem(**{name: x for name, x in request.items() if name not in ("values", "vary")})
+    shooting = Shooting(model, problem, vary, segments)
     rng, nominal = np.random.default_rng(seed), dict(shooting.values)
     controls = rng.uniform(-1, 1, (problem.nodes, 2))
     start = initial_state(model, problem) + rng.uniform(-0.1, 0.1, (segments, 2 * model.dof))
@@ -84,7 +85,7 @@ def test_gradient_against_finite_differences(seed: int) -> None:
         dx, du = rng.uniform(-1, 1, start.shape), rng.uniform(-1, 1, controls.shape)
         exact = np.einsum("wsx,sx->w", slope.start, dx) + np.einsum("wkm,km->w", slope.controls, du)
         np.testing.assert_allclose(exact, along(dx, du, {}), rtol=1e-6, atol=1e-7 * np.abs(exact).max())
-    for i, name in enumerate(problem.vary):
+    for i, name in enumerate(vary):
         exact = slope.parameters[:, i]
         np.testing.assert_allclose(exact, along(0, 0, {name: 1}), rtol=1e-6, atol=1e-7 * np.abs(slope.parameters).max())
 
@@ -94,7 +95,7 @@ def test_gradient_of_a_request() -> None:
     model = shipped("cart-pendulum")
     request: Plain = {
         "controls": ["tau.x.q0"],
-        "cost": {"running": "tau.x.q0^2 + x.m1*x.q1'^2", "terminal": "(x.q0 - 1)^2"},
+        "cost": Cost("tau.x.q0^2 + x.m1*x.q1'^2", "(x.q0 - 1)^2"),
         "horizon": 0.5,
         "intervals": 3,
         "q": {"x.q0": 0.1, "x.q1": 2},
@@ -102,11 +103,11 @@ def test_gradient_of_a_request() -> None:
         "values": {"tau.x.q0": [1, -1, 2, 0]},
         "vary": ["x.m1"],
     }
-    found, h = cost_gradient(model, request), 1e-3
+    found, h = cost_gradient(model, **request), 1e-3
 
     def slope(changed: Any) -> Any:
         return pytest.approx(
-            central([cost_gradient(model, request | changed(h * k)).cost for k in STENCIL], h), rel=1e-8
+            central([cost_gradient(model, **request | changed(h * k)).cost for k in STENCIL], h), rel=1e-8
         )
 
     assert found.status == "finished"
@@ -157,14 +158,14 @@ def test_multipliers_converge_to_the_costates() -> None:
     answer = evaluate(model, {"quantities": ["metric", "gravity"], "q": [0.5]})
     request: Plain = {
         "controls": [u],
-        "cost": {"running": f"{q}^2 + {u}^2", "terminal": f"3*{q}'"},
+        "cost": Cost(f"{q}^2 + {u}^2", f"3*{q}'"),
         "horizon": 1.0,
         "intervals": 40,
         "steps": 10,
         "q": [0.5],
         "values": {u: 0.2},
     }
-    found = cost_gradient(model, request)
+    found = cost_gradient(model, **request)
     g = float(answer["metric"][0, 0])
     a, b = -float(answer["gravity"][0]) / g / np.sin(0.5), 1 / g
 
@@ -199,9 +200,9 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
     [
         ({"controls": ["tau.x.q9"]}, "/controls/0", "unknown-input"),
         ({"controls": ["tau.x.q1", "tau.x.q1"]}, "/controls/1", "repeated"),
-        ({"cost": {"running": "tau.x.q1^"}}, "/cost/running", "bad-expression"),
-        ({"cost": {"terminal": "tau.x.q1"}}, "/cost/terminal", "unknown-name"),
-        ({"cost": {"running": "x.q1''"}}, "/cost/running", "unknown-name"),
+        ({"cost": Cost("tau.x.q1^")}, "/cost/running", "bad-expression"),
+        ({"cost": Cost(terminal="tau.x.q1")}, "/cost/terminal", "unknown-name"),
+        ({"cost": Cost("x.q1''")}, "/cost/running", "unknown-name"),
         ({"horizon": 0}, "/horizon", "greater-than"),
         ({"intervals": 9000, "steps": 9000}, "/steps", "too-many-steps"),
         ({"values": {"tau.x.q1": [1, 2]}}, "/values/tau.x.q1", "wrong-length"),
@@ -210,13 +211,15 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
         ({"inputs": {"tau.x.q1": 1}}, "/inputs/tau.x.q1", "unknown-input"),
         ({"parameters": {"x.z": 1}}, "/parameters/x.z", "unknown-parameter"),
         ({"q": [1, 2]}, "/q", "wrong-length"),
-        ({"speed": 1}, "/speed", "extra-forbidden"),
+        ({"controls": []}, "/controls", "too-short"),
+        ({"hold": "cubic"}, "/hold", "literal-error"),
+        ({"steps": 0}, "/steps", "greater-than-equal"),
     ],
 )
 def test_refusals(change: Plain, pointer: str, code: str) -> None:
-    request = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 4, "q": [0], "cost": {"running": "tau.x.q1^2"}}
-    with pytest.raises(InvalidDocument) as error:
-        cost_gradient(shipped("simple-pendulum"), request | change)
+    request = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 4, "q": [0], "cost": Cost("tau.x.q1^2")}
+    with pytest.raises(InvalidInput) as error:
+        cost_gradient(shipped("simple-pendulum"), **request | change)
     assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
 
 
@@ -224,17 +227,17 @@ def test_failures_are_values() -> None:
     """Too large a step for a stiff motion; a parameter without a value."""
     model = shipped("simple-pendulum")
     request: Plain = {"controls": ["tau.x.q1"], "horizon": 1e9, "intervals": 60, "q": [1e200]}
-    found = cost_gradient(model, request | {"values": {"tau.x.q1": 1e300}})
+    found = cost_gradient(model, **request | {"values": {"tau.x.q1": 1e300}})
     assert found.status == "failed"
     assert "steps" in found.message
     assert np.isfinite(found.trajectory.q).all()
     assert len(found.trajectory.t) < 61
-    cusp = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 2, "q": [0], "cost": {"running": "sqrt(x.q1^2)"}}
-    found = cost_gradient(model, cusp)
+    cusp = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 2, "q": [0], "cost": Cost("sqrt(x.q1^2)")}
+    found = cost_gradient(model, **cusp)
     assert found.status == "failed"
     assert "smooth" in found.message
     joint = {"type": "revolute", "coordinate": "q1"}
     body = {"name": "b", "parent": "base", "joint": joint, "mass": "m", "com": [1, 0, 0]}
     bare = model_of({"name": "x", "parameters": {"m": {}}, "bodies": [body]})
     with pytest.raises(MissingValue):
-        cost_gradient(bare, {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 2, "q": [0]})
+        cost_gradient(bare, controls=["tau.x.q1"], horizon=1, intervals=2, q=[0])

@@ -21,7 +21,7 @@ STEP = 1e-4
 
 
 def closed(model: Model, request: Plain) -> ClosedLinearisation:
-    found = linearise(model, request)
+    found = linearise(model, **request)
     assert isinstance(found, ClosedLinearisation)
     assert found.status == "finished", found.message
     return found

@@ -11,7 +11,7 @@ import sympy
 from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank, tree_model
 from random_trees import Plain
 
-from substructures import InvalidDocument, Model
+from substructures import InvalidInput, Model
 from substructures.analysis.drawings import draw_root_locus
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import perturbation
@@ -50,7 +50,7 @@ def ring(cut: int) -> Model:
 
 
 def frequencies(model: Model) -> list[tuple[str, float]]:
-    found = equilibria(model, {"count": 24}).found
+    found = equilibria(model, count=24).found
     modes = [(e.at.stability.verdict, e.at.modes[-1].frequency) for e in found if e.at.stability]
     return sorted(modes)
 
@@ -95,7 +95,7 @@ def test_a_governor_that_runs_steadily() -> None:
     spin = float(sympy.sqrt(square) / inertia.subs(at))
     state = {"x.turn": 0.2, "x.right": 0.6, "x.left": 0.6, "x.lift": float(lift.subs(at))}
     rates = dict.fromkeys(model.coordinates, 0.0) | {"x.turn": spin}
-    found = linearise(model, {"q": state, "qd": rates})
+    found = linearise(model, state, qd=rates)
     assert np.abs(found.qdd).max() < 1e-10
     assert not found.is_equilibrium
     values = np.linalg.eigvals(found.A)
@@ -128,37 +128,37 @@ def damped(**more: Any) -> Model:
 def test_root_locus_over_a_damper() -> None:
     """4 s^2 + c s + 4 g = 0: 2r = 2 branches on a circle, then on the axis."""
     c, down = np.linspace(0, 30, 31), np.pi / 2
-    found = root_locus(damped(), {"parameter": "x.c", "values": c.tolist(), "q": [-down, -down, down]})
+    found = root_locus(damped(), parameter="x.c", values=c.tolist(), q=[-down, -down, down])
     assert found.status == "finished", found.message
     root = np.sqrt(c.astype(complex) ** 2 - 64 * G)
     exact = np.stack([(-c + root) / 8, (-c - root) / 8], axis=1)
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(exact), atol=1e-7)
     assert found.stability[0] == "stable"
     assert set(found.stability[1:]) == {"asymptotically stable"}
-    lost = root_locus(damped(), {"parameter": "x.c", "values": [1], "q": [9, 9, 9], "inputs": {"tau.x.c0": 1e4}})
+    lost = root_locus(damped(), parameter="x.c", values=[1], q=[9, 9, 9], inputs={"tau.x.c0": 1e4})
     assert (lost.status, lost.eigenvalues.shape[0]) == ("failed", 0)
 
 
 def test_free_and_held_directions() -> None:
     """Without gravity every position of a four-bar is an equilibrium along its motion; the spindle is held."""
-    (found, *_) = equilibria(four_bar(), {"starts": [[0.7, 0.2, 1.2]], "count": 0}).found
+    (found, *_) = equilibria(four_bar(), starts=[[0.7, 0.2, 1.2]], count=0).found
     at = found.at
     assert isinstance(at, ClosedLinearisation)
     assert found.free.shape == (1, 3)
     np.testing.assert_allclose(np.abs(np.cross(found.free[0], at.tangent[:, 0])), 0, atol=1e-12)
-    assert equilibria(governor(), {"count": 2}).held == ("x.turn",)
+    assert equilibria(governor(), count=2).held == ("x.turn",)
 
 
 def test_inputs_hold_a_closed_loop() -> None:
     """tau = (m0 + m1 + m2) g l cos(angle) of the parallelogram: half of it at 60 degrees."""
-    found = equilibria(damped(), {"starts": [[1, 1, -1]], "inputs": {"tau.x.c0": 2 * G}, "count": 0}).found
+    found = equilibria(damped(), starts=[[1, 1, -1]], inputs={"tau.x.c0": 2 * G}, count=0).found
     near = min(found, key=lambda e: float(np.abs(e.q - 1).min()))
     np.testing.assert_allclose(near.q, np.pi / 3 * np.array([1, 1, -1]), atol=1e-10)
 
 
 def test_a_torque_that_nothing_balances() -> None:
     """On a slider-crank without gravity; its rod is longer than the crank, so that no position holds it."""
-    assert equilibria(slider_crank(), {"inputs": {"tau.x.crank": 1}, "count": 3}).found == ()
+    assert equilibria(slider_crank(), inputs={"tau.x.crank": 1}, count=3).found == ()
 
 
 def test_formulas_of_the_perturbation() -> None:
@@ -177,16 +177,16 @@ def test_formulas_of_the_perturbation() -> None:
 def test_failures_have_advice() -> None:
     model = four_bar(DOWN)
     lengths = {"x.l0": 0.4, "x.l2": 0.4, "x.l1": 0.1, "x.l3": 0.1}
-    folded = linearise(model, {"q": [0, 0, 0], "parameters": lengths})
+    folded = linearise(model, [0, 0, 0], parameters=lengths)
     assert folded.status == "failed"
     assert "singular" in folded.message
     assert np.isnan(folded.A).all()
     far = {"parameters": {"x.l0": 5}, "q": [0, 0, 0]}
-    assert "pin" in linearise(model, far).message
-    nothing = equilibria(model, {"parameters": {"x.l0": 5}, "count": 2})
+    assert "pin" in linearise(model, **far).message
+    nothing = equilibria(model, parameters={"x.l0": 5}, count=2)
     assert nothing.found == ()
     assert "closures cannot be met" in nothing.message
-    massless = linearise(model, {"q": [0.7, 0.2, 1.2], "parameters": dict.fromkeys(("x.m1", "x.m2", "x.m3"), 0)})
+    massless = linearise(model, [0.7, 0.2, 1.2], parameters=dict.fromkeys(("x.m1", "x.m2", "x.m3"), 0))
     assert massless.status == "failed"
     assert "masses" in massless.message
 
@@ -196,29 +196,29 @@ def test_a_structure_does_not_move() -> None:
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
     rod = {"name": "rod", "type": "rod", "from": "x.coupler_end", "to": "world", "length": 0.3}
     model = closed_entry("four-bar", [pin, rod], DOWN)
-    found = linearise(model, {"q": [0.7, 0.2, 1.2]})
+    found = linearise(model, [0.7, 0.2, 1.2])
     assert (found.status, found.A.shape, found.modes) == ("finished", (0, 0), ())
     assert found.stability is not None
     assert found.stability.verdict == "stable"
-    locus = root_locus(model, {"parameter": "x.m1", "values": [1, 2], "q": [0.7, 0.2, 1.2]})
+    locus = root_locus(model, parameter="x.m1", values=[1, 2], q=[0.7, 0.2, 1.2])
     assert locus.eigenvalues.shape == (2, 0)
     assert draw_root_locus(locus).startswith("<svg")
 
 
 def test_a_root_at_zero_is_named() -> None:
     loads: list[Plain] = [{"type": "joint", "coordinate": "table", "force": "-sqrt(table'^2)*table'"}]
-    found = linearise(damped(loads=loads), {"q": [-np.pi / 2, -np.pi / 2, np.pi / 2]})
+    found = linearise(damped(loads=loads), [-np.pi / 2, -np.pi / 2, np.pi / 2])
     assert found.status == "failed"
     assert "'x.table'" in found.message
 
 
 def test_bodies_without_mass_between_others() -> None:
     """A massless coupler: the metric is singular, but not along the motion that is left."""
-    found = linearise(damped(), {"q": [-np.pi / 2, -np.pi / 2, np.pi / 2], "qd": [0, 0, 0]})
+    found = linearise(damped(), [-np.pi / 2, -np.pi / 2, np.pi / 2], qd=[0, 0, 0])
     model = closed_entry(
         "slider-crank", [{"name": "w", "type": "pin", "from": "x.rod_end", "to": "x.pin"}], DOWN, mr=0, Jr=0
     )
-    bare = linearise(model, {"q": [-np.pi / 2, -1.86, -0.134]})
+    bare = linearise(model, [-np.pi / 2, -1.86, -0.134])
     assert found.is_equilibrium
     assert bare.status == "finished", bare.message
 
@@ -235,6 +235,6 @@ def test_bodies_without_mass_between_others() -> None:
     ],
 )
 def test_faults_have_pointers(change: Plain, pointer: str, code: str) -> None:
-    with pytest.raises(InvalidDocument) as caught:
-        linearise(four_bar(), {"q": [0.7, 0.2, 1.2]} | change)
+    with pytest.raises(InvalidInput) as caught:
+        linearise(four_bar(), **{"q": [0.7, 0.2, 1.2]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]

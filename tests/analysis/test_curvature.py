@@ -13,7 +13,7 @@ import pytest
 from analysis_models import seeds, shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
-from substructures import InvalidDocument, Model, TooLarge
+from substructures import InvalidInput, Model, TooLarge
 from substructures.analysis.equations.curvature import curvature, curvature_values, independent_elements
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
@@ -109,15 +109,15 @@ def test_random_trees(seed: int) -> None:
     R_abcd = 1/2 (d_b d_c g_ad + d_a d_d g_bc - d_a d_c g_bd - d_b d_d g_ac) + g^ef (Gamma_ead Gamma_fbc - ...)."""
     model = random_model(seed, 0.3 * (seed % 2))
     q = np.random.default_rng(seed).uniform(-1, 1, model.dof)
-    found = curvature_values(model, {"q": q})
-    R, scale = found["riemann"], max(float(np.abs(found["riemann"]).max()), 1e-3)
-    assert not found["failures"]
+    found = curvature_values(model, q)
+    R, scale = found.riemann, max(float(np.abs(found.riemann).max()), 1e-3)
+    assert not found.failures
     for image in (-R.transpose(1, 0, 2, 3), -R.transpose(0, 1, 3, 2), R.transpose(2, 3, 0, 1)):
         assert np.array_equal(R, image)
     np.testing.assert_allclose(R + R.transpose(0, 3, 1, 2) + R.transpose(0, 2, 3, 1), 0, atol=1e-12 * scale)
     g, dg, ddg = metric_derivatives(model, q)
     inverse = np.linalg.inv(g)
-    np.testing.assert_allclose(found["inverse_metric"], inverse, rtol=1e-9, atol=1e-12 * np.abs(inverse).max())
+    np.testing.assert_allclose(found.inverse_metric, inverse, rtol=1e-9, atol=1e-12 * np.abs(inverse).max())
     gamma = (dg.transpose(0, 2, 1) + dg - dg.transpose(2, 0, 1)) / 2
     first = np.einsum("adbc->abcd", ddg) + np.einsum("bcad->abcd", ddg)
     first = first - np.einsum("bdac->abcd", ddg) - np.einsum("acbd->abcd", ddg)
@@ -125,8 +125,8 @@ def test_random_trees(seed: int) -> None:
         "ef,eac,fbd->abcd", inverse, gamma, gamma
     )
     np.testing.assert_allclose(R, first / 2 + squares, rtol=0, atol=2e-5 * scale)
-    np.testing.assert_allclose(found["ricci"], np.einsum("ac,abcd->bd", inverse, R), atol=1e-9 * np.abs(R).max() * 50)
-    assert found["scalar_curvature"] == pytest.approx(np.einsum("bd,bd", inverse, found["ricci"]), rel=1e-8, abs=1e-9)
+    np.testing.assert_allclose(found.ricci, np.einsum("ac,abcd->bd", inverse, R), atol=1e-9 * np.abs(R).max() * 50)
+    assert found.scalar_curvature == pytest.approx(np.einsum("bd,bd", inverse, found.ricci), rel=1e-8, abs=1e-9)
 
 
 def test_number_of_independent_elements() -> None:
@@ -149,11 +149,11 @@ def test_refusals_and_failures() -> None:
     model = shipped("double-pendulum")
     with pytest.raises(TooLarge):
         curvature(model, max_nodes=20)
-    with pytest.raises(InvalidDocument) as error:
-        curvature_values(model, {"q": [0, 0], "speed": 1})
-    assert error.value.faults[0].pointer == "/speed"
+    with pytest.raises(InvalidInput) as error:
+        curvature_values(model, [0, 0], parameters={"x.nothing": 1})
+    assert error.value.faults[0].pointer == "/parameters/x.nothing"
     joint = {"type": "revolute", "coordinate": "q1"}
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         curvature(model_of({"name": "x", "bodies": [{"name": "a", "parent": "base", "joint": joint}]}))
     assert error.value.faults[0].code == "singular-metric"
     sphere = model_of(
@@ -171,5 +171,15 @@ def test_refusals_and_failures() -> None:
             ],
         }
     )
-    failures = curvature_values(sphere, {"q": [[0, 1], [0, 0]]})["failures"]
-    assert [f["state"] for f in failures] == [1]
+    failures = curvature_values(sphere, [[0, 1], [0, 0]]).failures
+    assert [f.state for f in failures] == [1]
+
+
+def test_one_position_for_all_parameters() -> None:
+    model = shipped("double-pendulum")
+    name = next(iter(model.parameters))
+    found = curvature_values(model, [0.3, 0.7], parameters={name: [1, 2]})
+    assert found.riemann.shape == (2, 2, 2, 2, 2)
+    one = curvature_values(model, [0.3, 0.7], parameters={name: 2})
+    assert np.array_equal(found.riemann[1], one.riemann)
+    assert repr(one).startswith("CurvatureValues(n=2, states=1, failures=0)\nscalar curvature from ")

@@ -7,7 +7,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds
 from random_trees import Plain, model_of
 
-from substructures import InvalidDocument
+from substructures import InvalidInput
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.quantities.evaluation import evaluate
@@ -35,7 +35,7 @@ def test_forces_vanish_on_random_trees(number: int) -> None:
     """What is found is an equilibrium by the independent way over evaluate."""
     # the odd ones have springs: there are equilibria
     model = random_model(2 * number + 1, loads=0)
-    found = equilibria(model, {"count": 4}).found
+    found = equilibria(model, count=4).found
     assert found
     for e in found:
         forces = evaluate(model, {"quantities": ["forces"], "q": e.q})["forces"]
@@ -59,17 +59,25 @@ def test_a_force_that_nothing_balances_is_named() -> None:
 
 def test_inputs_move_the_equilibrium() -> None:
     """sin q = tau/(m g l)."""
-    request = {"inputs": {"tau.x.q1": 9.81 / 2}}
-    found = equilibria(catalogue_model("simple-pendulum"), request)
+    found = equilibria(catalogue_model("simple-pendulum"), inputs={"tau.x.q1": 9.81 / 2})
     np.testing.assert_allclose([e.q[0] for e in found.found], [np.pi / 6, 5 * np.pi / 6], atol=1e-12)
-    assert [e["at"]["stability"]["verdict"] for e in found.summary()["found"]] == ["stable", "unstable"]
+    assert [e.verdict for e in found.found] == ["stable", "unstable"]
 
 
 def test_faults_have_pointers() -> None:
     model = catalogue_model("double-pendulum")
-    for request, pointer in (({"starts": [[1]]}, "/starts"), ({"count": -1}, "/count")):
-        with pytest.raises(InvalidDocument) as error:
-            equilibria(model, request)
+    cases: list[tuple[Plain, str]] = [
+        ({"starts": [[1]]}, "/starts"),
+        ({"count": -1}, "/count"),
+        ({"reach": 0}, "/reach"),
+        ({"seed": -1}, "/seed"),
+        ({"t": "now"}, "/t"),
+        ({"inputs": {"tau.x.q1": "x.q1"}}, "/inputs/tau.x.q1"),
+        ({"parameters": {"nothing": 1}}, "/parameters/nothing"),
+    ]
+    for request, pointer in cases:
+        with pytest.raises(InvalidInput) as error:
+            equilibria(model, **request)
         assert error.value.faults[0].pointer == pointer
 
 
@@ -81,7 +89,7 @@ def oscillator() -> Plain:
 def test_root_locus_of_a_damped_oscillator() -> None:
     """2 s'' + c s' + 8 s = 0: (-c +- sqrt(c^2 - 64))/4, on a circle of radius 2 up to c = 8, then on the axis."""
     values = np.linspace(0, 12, 49)
-    found = root_locus(model_of(oscillator(), (0, 0, 0)), {"parameter": "c", "values": values.tolist(), "q": [0]})
+    found = root_locus(model_of(oscillator(), (0, 0, 0)), parameter="c", values=values.tolist(), q=[0])
     assert found.status == "finished"
     root = np.sqrt(values.astype(complex) ** 2 - 64)
     exact = np.stack([(-values + root) / 4, (-values - root) / 4], axis=1)
@@ -95,7 +103,7 @@ def test_root_locus_of_a_damped_oscillator() -> None:
 def test_a_locus_begins_at_the_equilibrium_near_its_start() -> None:
     """Upright, with sqrt(g/l) and -sqrt(g/l) for any mass."""
     model = catalogue_model("simple-pendulum")
-    found = root_locus(model, {"parameter": "x.m", "values": [1, 2], "q": [3.0]})
+    found = root_locus(model, "x.m", [1, 2], [3.0])
     np.testing.assert_allclose(found.q[:, 0], np.pi)
     assert found.stability == ("unstable", "unstable")
 
@@ -103,9 +111,7 @@ def test_a_locus_begins_at_the_equilibrium_near_its_start() -> None:
 def test_an_equilibrium_without_linearisation_ends_the_locus() -> None:
     """Friction sqrt(s'^2) s' has no derivative at rest."""
     loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
-    found = root_locus(
-        model_of(oscillator() | {"loads": loads}, (0, 0, 0)), {"parameter": "c", "values": [1, 2], "q": [0]}
-    )
+    found = root_locus(model_of(oscillator() | {"loads": loads}, (0, 0, 0)), "c", [1, 2], [0])
     assert (found.status, len(found.values), found.stability) == ("failed", 0, ())
     assert "c = 1" in found.message
 
@@ -115,9 +121,35 @@ def test_a_lost_equilibrium_ends_the_locus() -> None:
     definition["parameters"]["k"] = {"value": 8}
     definition["bodies"][0]["joint"] = definition["bodies"][0]["joint"] | {"stiffness": "k"}
     model = model_of(definition, (0, 0, -1))
-    found = root_locus(model, {"parameter": "k", "values": [8, 4, 0], "q": [0]})
+    found = root_locus(model, parameter="k", values=[8, 4, 0], q=[0])
     assert found.status == "failed"
     assert len(found.values) == 2
     assert "k = 0" in found.message
-    with pytest.raises(InvalidDocument, match="unknown parameter 'nothing'"):
-        root_locus(model, {"parameter": "nothing", "values": [1], "q": [0]})
+    with pytest.raises(InvalidInput, match="unknown parameter 'nothing'"):
+        root_locus(model, parameter="nothing", values=[1], q=[0])
+
+
+def test_faults_of_a_root_locus_have_pointers() -> None:
+    model = model_of(oscillator(), (0, 0, 0))
+    given: Plain = {"parameter": "c", "values": [1], "q": [0]}
+    cases: list[tuple[Plain, str]] = [
+        ({"parameter": "nothing"}, "/parameter"),
+        ({"values": []}, "/values"),
+        ({"values": [1, "x"]}, "/values/1"),
+        ({"q": [0, 0]}, "/q"),
+        ({"q": {"x.z": 0}}, "/q/x.z"),
+        ({"inputs": {"tau.nobody": 1}}, "/inputs/tau.nobody"),
+    ]
+    for change, pointer in cases:
+        with pytest.raises(InvalidInput) as error:
+            root_locus(model, **given | change)
+        assert error.value.faults[0].pointer == pointer
+    assert all(root_locus(model, "c", [1], q).status == "finished" for q in ({"x.s": 0}, [0], 0))
+
+
+def test_shown_in_two_lines() -> None:
+    found = equilibria(catalogue_model("double-pendulum"))
+    assert repr(found) == "Equilibria(found=4, held=[])\n3 unstable, 1 stable"
+    assert all(repr(e).count("\n") == 1 for e in found.found)
+    locus = root_locus(model_of(oscillator(), (0, 0, 0)), "c", [0, 1], [0])
+    assert repr(locus) == "RootLocus(values=2, branches=2)\nstable, then asymptotically stable"

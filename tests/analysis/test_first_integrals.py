@@ -9,7 +9,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
-from substructures import InvalidArgument, InvalidDocument, Model
+from substructures import InvalidArgument, InvalidInput, Model
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.equations.routh import routh
 from substructures.expr.interpret import interpret
@@ -212,10 +212,10 @@ def test_everything_cyclic_leaves_no_coordinate() -> None:
 
 def test_a_coordinate_that_is_not_cyclic_is_refused() -> None:
     model = catalogue_model("puma560")
-    with pytest.raises(InvalidDocument, match="not a cyclic coordinate") as error:
+    with pytest.raises(InvalidInput, match="not a cyclic coordinate") as error:
         routh(model, ["x.q2"])
     assert error.value.faults[0].pointer == "/coordinates/0"
-    with pytest.raises(InvalidDocument, match="no cyclic coordinate"):
+    with pytest.raises(InvalidInput, match="no cyclic coordinate"):
         routh(catalogue_model("simple-pendulum"))
 
 
@@ -239,5 +239,5 @@ def test_parameters_that_are_zero_give_more() -> None:
 
 def test_a_coordinate_without_inertia_is_named() -> None:
     bodies = [{"name": "b", "parent": "base", "joint": {"type": "revolute", "coordinate": "q1"}}]
-    with pytest.raises(InvalidDocument, match=r"'x\.q1' has no inertia"):
+    with pytest.raises(InvalidInput, match=r"'x\.q1' has no inertia"):
         first_integrals(model_of({"name": "empty", "bodies": bodies}))

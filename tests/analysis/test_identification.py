@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
-from substructures import Definition, InvalidDocument, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, catalogue, couple, derive
 from substructures.analysis.identification import dependencies
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
@@ -185,10 +185,10 @@ def test_recovery_of_the_puma() -> None:
     data = motion(6, 500)
     clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
     beta = own_values(base)
-    exact = identify(base, data | {"tau": clean}, model)
+    exact = identify(base, **data, tau=clean, model=model)
     np.testing.assert_allclose(exact.values, beta, rtol=0, atol=1e-7)
     noise = np.random.default_rng(4).normal(0, 0.05, clean.shape)
-    found = identify(base, data | {"tau": clean + noise}, model)
+    found = identify(base, **data, tau=clean + noise, model=model)
     assert found.status == "identified"
     assert found.excitation.is_good
     assert np.abs(found.values - beta).max() > 1e-6
@@ -204,7 +204,7 @@ def test_recovery_with_friction() -> None:
     data = motion(3, 200)
     tau = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
     tau = tau + 0.3 * data["qd"] + 0.2 * np.sign(data["qd"])
-    found = identify(base, data | {"tau": tau})
+    found = identify(base, **data, tau=tau)
     expected = own_values(base)
     expected[9:] = np.repeat([0.3, 0.2], 3)
     np.testing.assert_allclose(found.values, expected, rtol=1e-8, atol=1e-12)
@@ -216,7 +216,7 @@ def test_joints_are_weighted_by_what_they_leave_unexplained() -> None:
     data = motion(3, 100)
     clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
     tau = clean + np.random.default_rng(2).normal(0, 1, clean.shape) * [1e-3, 1, 0.03]
-    found = identify(base, data | {"tau": tau})
+    found = identify(base, **data, tau=tau)
     values: Plain = {name: default_number(p["value"]) for name, p in base.parameters.items()}
     for primes, x in (("", data["q"]), ("'", data["qd"]), ("''", data["qdd"])):
         values |= {f"{name}{primes}": x[:, a] for a, name in enumerate(base.coordinates)}
@@ -240,14 +240,14 @@ def test_joints_are_weighted_by_what_they_leave_unexplained() -> None:
 def test_excitation() -> None:
     """One joint alone excites little, and the advice names what is missing."""
     base, n = base_of("puma560"), 6
-    assert excitation(base, motion(n, 300)).is_good
+    assert excitation(base, **motion(n, 300)).is_good
     lazy = motion(n, 300)
     lazy = {name: x * (np.arange(n) == 1) for name, x in lazy.items()}
-    judged = excitation(base, lazy)
+    judged = excitation(base, **lazy)
     assert judged.rank < 36
     assert judged.condition == np.inf
     assert "x.link6.Jxz" in judged.advice
-    failed = identify(base, lazy | {"tau": np.zeros((300, n))})
+    failed = identify(base, **lazy, tau=np.zeros((300, n)))
     assert failed.status == "failed"
     assert failed.message == judged.advice
     assert np.isinf(failed.deviations).all()
@@ -260,7 +260,7 @@ def test_weak_are_those_of_a_dependency_and_the_worst_come_first() -> None:
     base, data = base_of("planar-2r", IN_PLANE, ("viscous", "coulomb", "offset")), motion(2, 60)
     s = np.tile([1, -1], 30)
     data["qd"][:, 0] = (1 + 3 * s) / 2
-    judged = excitation(base, data)
+    judged = excitation(base, **data)
     assert judged.weak == ("x.q1.viscous", "x.q1.coulomb")
     assert (judged.rank, judged.condition) == (base.count - 1, np.inf)
 
@@ -268,17 +268,17 @@ def test_weak_are_those_of_a_dependency_and_the_worst_come_first() -> None:
 def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     base, data = base_of("planar-3r", IN_PLANE), motion(3, 20)
     cases: list[tuple[Plain, str, str]] = [
-        (data, "/tau", "missing"),
+        (data | {"tau": None}, "/tau", "missing"),
         (data | {"tau": np.zeros((4, 3))}, "/tau", "wrong-length"),
-        ({"q": data["q"]}, "/qdd", "missing"),
-        (data | {"speed": 1}, "/speed", "unknown-field"),
-        ({"q": [0] * 3, "qdd": [0] * 3, "tau": [0] * 3}, "/q", "too-few"),
+        (data | {"qdd": None, "tau": [0] * 3}, "/qdd", "missing"),
+        (data | {"tau": data["q"], "parameters": {"x.nothing": 1}}, "/parameters/x.nothing", "unknown-parameter"),
+        ({"q": [0] * 3, "qd": None, "qdd": [0] * 3, "tau": [0] * 3}, "/q", "too-few"),
     ]
     for request, pointer, code in cases:
-        with pytest.raises(InvalidDocument) as error:
-            identify(base, request)
+        with pytest.raises(InvalidInput) as error:
+            identify(base, **request)
         assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         base_parameters(regressor(*tree("planar-2r")), ("stiction",))
     assert error.value.faults[0].pointer == "/drives/0"
     monkeypatch.setattr(dependencies, "MAX_SAMPLES", 1)

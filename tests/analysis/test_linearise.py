@@ -10,7 +10,7 @@ import pytest
 from analysis_models import catalogue_model, random_model, seeds, values_at
 from random_trees import Plain, model_of, random_states
 
-from substructures import InvalidDocument, InvalidInput, Model, Program
+from substructures import InvalidInput, Model, Program
 from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.linearise import linearise
@@ -47,7 +47,7 @@ def test_state_space_against_differences(number: int) -> None:
     x = random_states(rng, 1, model.dof)
     inputs = {name: float(rng.uniform(-1, 1)) for name in inputs_of(model)}
     state = {"q": x["q"][0], "qd": x["qd"][0], "inputs": inputs, "t": 0.3}
-    found = linearise(model, state)
+    found = linearise(model, **state)
     n = model.dof
     lower = [[slope(model, state, key, a) for a in range(n)] for key in ("q", "qd")]
     expected = np.hstack([np.array(columns).T for columns in lower])
@@ -80,8 +80,8 @@ def test_along_a_trajectory() -> None:
     """Arrays with a leading axis, equal to the single states; the formulas survive storage."""
     model = catalogue_model("planar-3r")
     x = random_states(np.random.default_rng(1), 4, 3)
-    many = linearise(model, {"q": x["q"], "qd": x["qd"], "outputs": {"y": "x.q1 + x.q2'"}})
-    one = linearise(model, {"q": x["q"][2], "qd": x["qd"][2], "outputs": {"y": "x.q1 + x.q2'"}})
+    many = linearise(model, x["q"], qd=x["qd"], outputs={"y": "x.q1 + x.q2'"})
+    one = linearise(model, x["q"][2], qd=x["qd"][2], outputs={"y": "x.q1 + x.q2'"})
     for name in ("M", "D", "K", "F", "A", "B", "C", "Dy"):
         np.testing.assert_allclose(getattr(many, name)[2], getattr(one, name), atol=1e-12)
     assert one.C.tolist() == [[1, 0, 0, 0, 1, 0]]
@@ -96,24 +96,35 @@ def test_along_a_driven_trajectory() -> None:
     name = f"tau.{model.coordinates[0]}"
     motion = simulate(model, [0, 0.3], (0, 1), count=5, inputs={name: "sin(5*t)/50"})
     request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
-    found = linearise(model, request)
+    found = linearise(model, **request)
     assert found.A.shape == (5, 4, 4)
-    one = linearise(model, {"q": motion.q[3], "qd": motion.qd[3], "inputs": {name: motion.series[name][3]}})
+    one = linearise(model, motion.q[3], qd=motion.qd[3], inputs={name: motion.series[name][3]})
     np.testing.assert_allclose(found.A[3], one.A, atol=1e-12)
     np.testing.assert_allclose(found.residual, 0, atol=1e-12)
+
+
+def test_one_position_for_all_velocities() -> None:
+    """What is given once holds for all states: q for all q', q'' for all q."""
+    model = catalogue_model("double-pendulum")
+    q, qd = np.array([0.3, -0.2]), np.array([[0, 0], [1, 2], [3, 1]])
+    for found in (linearise(model, q, qd=qd), linearise(model, q[None], qd=qd)):
+        np.testing.assert_array_equal(found.A, linearise(model, np.tile(q, (3, 1)), qd=qd).A)
+    found = linearise(model, np.stack([q, 2 * q]), qdd=[1, 2])
+    assert found.qdd.tolist() == [[1, 2], [1, 2]]
+    np.testing.assert_array_equal(found.K[1], linearise(model, 2 * q, qdd=[1, 2]).K)
 
 
 def test_damping_is_twice_coriolis_less_dampers() -> None:
     model = catalogue_model("ur5")
     x = random_states(np.random.default_rng(2), 1, 6)
-    found = linearise(model, {"q": x["q"][0], "qd": x["qd"][0]})
+    found = linearise(model, x["q"][0], qd=x["qd"][0])
     coriolis = evaluate(model, {"quantities": ["coriolis"], "q": x["q"][0], "qd": x["qd"][0]})["coriolis"]
     np.testing.assert_allclose(found.D, 2 * coriolis, atol=1e-12)
 
 
 def test_double_pendulum() -> None:
     """w^2 = g/l (2 -+ sqrt 2) for equal masses and rods (Landau and Lifshitz, section 23, problem 2)."""
-    found = linearise(catalogue_model("double-pendulum"), {"q": [0, 0]})
+    found = linearise(catalogue_model("double-pendulum"), [0, 0])
     assert found.stability is not None
     assert found.stability.verdict == "stable"
     squares = [mode.frequency**2 for mode in found.modes]
@@ -126,7 +137,7 @@ def test_double_pendulum() -> None:
 @pytest.mark.parametrize("damping", [0, 0.5])
 def test_chain_of_five_masses(damping: float) -> None:
     """w_j = 2 sqrt(k/m) sin((2 j - 1) pi/22), damping ratio w_j b/(2 k) (one end fixed, one free)."""
-    found = linearise(catalogue_model("mass-spring-chain", (0, 0, 0), b=damping), {"q": [0] * 5})
+    found = linearise(catalogue_model("mass-spring-chain", (0, 0, 0), b=damping), [0] * 5)
     exact = 2 * np.sqrt(100) * np.sin((2 * np.arange(1, 6) - 1) * np.pi / 22)
     np.testing.assert_allclose([mode.frequency for mode in found.modes], exact, rtol=1e-11)
     np.testing.assert_allclose([mode.damping_ratio for mode in found.modes], exact * damping / 200, atol=1e-12)
@@ -136,7 +147,7 @@ def test_chain_of_five_masses(damping: float) -> None:
 
 def test_upright_is_unstable() -> None:
     """Exponent sqrt(g/l)."""
-    found = linearise(catalogue_model("simple-pendulum"), {"q": [np.pi]})
+    found = linearise(catalogue_model("simple-pendulum"), [np.pi])
     assert found.stability is not None
     assert found.stability.verdict == "unstable"
     assert sorted(mode.eigenvalue.real for mode in found.modes) == pytest.approx([-np.sqrt(G), np.sqrt(G)])
@@ -146,7 +157,7 @@ def test_upright_is_unstable() -> None:
 @pytest.mark.parametrize("more", [{}, {"qdd": [0, 0]}])
 def test_a_state_at_rest_is_no_equilibrium_unless_forces_balance(more: Plain) -> None:
     """Released, it accelerates; held by given accelerations, a residual is left. Both have no modes."""
-    found = linearise(catalogue_model("double-pendulum"), {"q": [0.3, 0], **more})
+    found = linearise(catalogue_model("double-pendulum"), [0.3, 0], **more)
     assert (found.status, found.is_equilibrium, found.modes) == ("finished", False, ())
     assert max(np.abs(found.qdd).max(), np.abs(found.residual).max()) > 1
 
@@ -156,7 +167,7 @@ def test_where_the_linearisation_does_not_decide() -> None:
     slide = {"name": "a", "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic"}}]}
     slide["bodies"][0]["joint"]["coordinate"] = "s"
     for loads in ([], [{"type": "joint", "coordinate": "s", "force": "-s^3"}]):
-        found = linearise(model_of(slide | {"loads": loads}, (0, 0, 0)), {"q": [0]})
+        found = linearise(model_of(slide | {"loads": loads}, (0, 0, 0)), [0])
         assert found.stability is not None
         assert found.stability.verdict == "undecided"
 
@@ -172,7 +183,7 @@ def test_dampers_that_vanish_at_rest_do_not_make_it_stable(sign: str) -> None:
     model = model_of({"name": "a", "bodies": [body, damped], "loads": loads, "parameters": parameters}, (0, 0, 0))
     verdicts = []
     for c in (0, 2):
-        found = linearise(model, {"q": [0, 0], "parameters": dict.fromkeys(model.parameters, c)})
+        found = linearise(model, [0, 0], parameters=dict.fromkeys(model.parameters, c))
         assert found.stability is not None
         verdicts.append(found.stability.verdict)
     assert verdicts == ["stable", "undecided"]
@@ -201,8 +212,8 @@ def test_a_load_that_jumps_is_refused() -> None:
         "forces": dataclasses.replace(forces, entries=(forces.entries[0], len(operations) - 1))
     }
     rough = dataclasses.replace(model, program=Program(program.symbols, operations, outputs))
-    with pytest.raises(InvalidDocument, match=r"the force on 'x\.q2' has no derivative.*sqrt") as error:
-        linearise(rough, {"q": [0, 0]})
+    with pytest.raises(InvalidInput, match=r"the force on 'x\.q2' has no derivative.*sqrt") as error:
+        linearise(rough, [0, 0])
     assert error.value.faults[0].code == "not-smooth"
 
 
@@ -210,10 +221,10 @@ def test_a_root_at_zero_is_a_failure_with_advice() -> None:
     body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "s"}}
     loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
     model = model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
-    found = linearise(model, {"q": [0], "qd": [0]})
+    found = linearise(model, [0], qd=[0])
     assert found.status == "failed"
     assert "root" in found.message
-    moving = linearise(model, {"q": [0], "qd": [2]})
+    moving = linearise(model, [0], qd=[2])
     assert moving.status == "finished"
     np.testing.assert_allclose(moving.D, [[4]])
 
@@ -225,17 +236,19 @@ def test_a_root_at_zero_is_a_failure_with_advice() -> None:
         ({"outputs": {"y": "x.q9"}}, "/outputs/y"),
         ({"of_inputs": ["tau.x.q1", "nothing"]}, "/of_inputs/1"),
         ({"parameters": {"x.nothing": 1}}, "/parameters/x.nothing"),
-        ({"unknown": 1}, "/unknown"),
+        ({"outputs": {"y": float("nan")}}, "/outputs/y"),
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
     with pytest.raises(InvalidInput) as error:
-        linearise(catalogue_model("double-pendulum"), {"q": [0, 0]} | changes)
+        linearise(catalogue_model("double-pendulum"), **{"q": [0, 0]} | changes)
     assert error.value.faults[0].pointer == pointer
 
 
-def test_summary_is_plain() -> None:
-    summary = linearise(catalogue_model("double-pendulum"), {"q": [0, 0]}).summary()
-    assert summary["stability"]["verdict"] == "stable"
-    assert len(summary["modes"]) == 2
-    assert set(summary["modes"][0]) == {"eigenvalue", "frequency", "hertz", "damping_ratio", "shape"}
+def test_shown_in_two_lines() -> None:
+    """Sizes, then the finding."""
+    model = catalogue_model("double-pendulum")
+    shown = repr(linearise(model, [0, 0])).splitlines()
+    assert shown[0] == "Linearisation(n=2, inputs=2, outputs=0, states=1)"
+    assert shown[1].startswith("about an equilibrium, stable: ")
+    assert repr(linearise(model, [[0, 0], [1, 0]])).endswith("states=2)\nabout states along a motion")

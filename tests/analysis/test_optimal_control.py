@@ -11,10 +11,10 @@ from analysis_models import shipped
 from random_trees import Plain, model_of
 from scipy.integrate import solve_ivp
 
-from substructures import InvalidDocument, Model
-from substructures.analysis.control.nonlinear_program import OptimalControlRequest, ShootingProgram
+from substructures import InvalidInput, Model
+from substructures.analysis.control.nonlinear_program import Demands, End, ShootingProgram
 from substructures.analysis.control.optimal_control import Optimum, optimal_control
-from substructures.analysis.control.problem import read_problem
+from substructures.analysis.control.problem import ControlProblem, Cost
 from substructures.quantities.evaluation import evaluate
 
 
@@ -28,18 +28,18 @@ def slider(damping: float = 0) -> Model:
 
 REST: Plain = {
     "controls": ["tau.x.s"],
-    "cost": {"running": "tau.x.s^2"},
+    "cost": Cost("tau.x.s^2"),
     "horizon": 1.5,
     "intervals": 6,
     "q": [0],
-    "end": {"q": [1], "qd": [0]},
+    "end": End([1], [0]),
 }
 
 
 @pytest.mark.parametrize("segments", [1, 3])
 def test_from_rest_to_rest(segments: int) -> None:
     """u = 6 m (T - 2 t) / T^3 and J = 12 m^2 / T^3, to rounding, since u is linear and l of degree two."""
-    found = optimal_control(slider(), REST | {"segments": segments, "tolerance": 1e-14})
+    found = optimal_control(slider(), **REST | {"segments": segments, "tolerance": 1e-14})
     t = np.linspace(0, 1.5, 7)
     assert found.status == "optimal"
     np.testing.assert_allclose(found.controls[:, 0], 12 * (1.5 - 2 * t) / 1.5**3, atol=1e-6)
@@ -54,12 +54,12 @@ def test_from_rest_to_rest(segments: int) -> None:
 
 def test_bounds_and_free_ends() -> None:
     """As far as possible in one second with |u| <= 3: u = 3 throughout, q = u T^2 / (2 m); without demands L-BFGS-B."""
-    free = REST | {"cost": {"terminal": "-x.s"}, "end": {}, "bounds": {"tau.x.s": [None, 3]}, "horizon": 1}
-    found = optimal_control(slider(), free | {"segments": 1, "hold": "constant"})
+    free = REST | {"cost": Cost(terminal="-x.s"), "end": End(), "bounds": {"tau.x.s": [None, 3]}, "horizon": 1}
+    found = optimal_control(slider(), **free | {"segments": 1, "hold": "constant"})
     assert found.status == "optimal"
     assert found.cost == pytest.approx(-0.75)
     np.testing.assert_allclose(found.controls, 3)
-    kept = optimal_control(slider(), free | {"end": {"qd": {"x.s": 0}}, "bounds": {"tau.x.s": [-3, 3]}})
+    kept = optimal_control(slider(), **free | {"end": End(qd={"x.s": 0}), "bounds": {"tau.x.s": [-3, 3]}})
     assert kept.status == "optimal"
     assert kept.cost == pytest.approx(-0.75 / 2 * (1 - 1 / 27), rel=1e-2)
     assert np.abs(kept.controls).max() <= 3 + 1e-12
@@ -67,19 +67,19 @@ def test_bounds_and_free_ends() -> None:
 
 SWING_UP: Plain = {
     "controls": ["tau.x.q0"],
-    "cost": {"running": "tau.x.q0^2"},
+    "cost": Cost("tau.x.q0^2"),
     "horizon": 2,
     "intervals": 40,
     "steps": 2,
     "q": {"x.q0": 0, "x.q1": np.pi},
-    "end": {"q": [0, 0], "qd": [0, 0]},
+    "end": End([0, 0], [0, 0]),
     "bounds": {"tau.x.q0": [-20, 20]},
 }
 
 
 @cache
 def swing_up(intervals: int = 40) -> Optimum:
-    return optimal_control(shipped("cart-pendulum"), SWING_UP | {"intervals": intervals})
+    return optimal_control(shipped("cart-pendulum"), **SWING_UP | {"intervals": intervals})
 
 
 def test_swing_up() -> None:
@@ -122,26 +122,27 @@ def test_acrobot() -> None:
     """Shoulder free, elbow driven, from hanging to standing."""
     request: Plain = {
         "controls": ["tau.x.q2"],
-        "cost": {"running": "tau.x.q2^2"},
+        "cost": Cost("tau.x.q2^2"),
         "horizon": 3,
         "intervals": 60,
         "steps": 2,
         "q": [-np.pi / 2, 0],
         "iterations": 1000,
-        "end": {"q": [np.pi / 2, 0], "qd": [0, 0]},
+        "end": End([np.pi / 2, 0], [0, 0]),
         "bounds": {"tau.x.q2": [-40, 40]},
         "segments": 12,
     }
-    found = optimal_control(shipped("acrobot"), request)
+    found = optimal_control(shipped("acrobot"), **request)
     assert found.status == "optimal"
     assert found.violation < 1e-6
 
 
 def test_jacobian_against_finite_differences() -> None:
     model = shipped("cart-pendulum")
-    request = SWING_UP | {"intervals": 6, "segments": 3, "horizon": 0.6}
+    given = {name: SWING_UP[name] for name in ("controls", "cost", "steps", "q")}
+    wanted = Demands(SWING_UP["end"], SWING_UP["bounds"], {}, segments=3, iterations=500, tolerance=1e-8)
     for hold in ("linear", "constant"):
-        search = ShootingProgram(model, read_problem(OptimalControlRequest, model, request | {"hold": hold}))
+        search = ShootingProgram(model, ControlProblem(**given, intervals=6, horizon=0.6, hold=hold), wanted)
         rng = np.random.default_rng(1)
         z = search.guess() + rng.uniform(-0.2, 0.2, len(search.guess()))
         slopes, gradient = search.jacobian(z).copy(), search.cost(z)[1].copy()
@@ -158,29 +159,34 @@ def test_jacobian_against_finite_differences() -> None:
     ("change", "pointer", "code"),
     [
         ({"segments": 4}, "/segments", "not-a-divisor"),
-        ({"end": {"q": [1, 2]}}, "/end/q", "wrong-length"),
-        ({"end": {"q": {"x.z": 1}}}, "/end/q/x.z", "unknown-coordinate"),
+        ({"end": End([1, 2])}, "/end/q", "wrong-length"),
+        ({"end": End({"x.z": 1})}, "/end/q/x.z", "unknown-coordinate"),
         ({"bounds": {"tau.x.s": [1, -1]}}, "/bounds/tau.x.s", "empty"),
         ({"bounds": {"u": [1, -1]}}, "/bounds/u", "unknown-input"),
         ({"guess": {"tau.x.s": [1]}}, "/guess/tau.x.s", "wrong-length"),
         ({"intervals": 9000}, "/intervals", "too-large"),
+        ({"guess": {"u": [1]}}, "/guess/u", "unknown-guess"),
+        ({"segments": 0}, "/segments", "greater-than-equal"),
+        ({"iterations": 0}, "/iterations", "greater-than-equal"),
         ({"tolerance": 2}, "/tolerance", "less-than"),
     ],
 )
 def test_refusals(change: Plain, pointer: str, code: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
-        optimal_control(slider(), REST | change)
+    with pytest.raises(InvalidInput) as error:
+        optimal_control(slider(), **REST | change)
     assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
 
 
 def test_failures_are_values() -> None:
     """Too weak to arrive; too few iterations."""
-    weak = optimal_control(slider(), REST | {"bounds": {"tau.x.s": [-0.1, 0.1]}, "iterations": 50})
+    weak = optimal_control(slider(), **REST | {"bounds": {"tau.x.s": [-0.1, 0.1]}, "iterations": 50})
     assert weak.status == "failed"
     assert "bounds" in weak.message
     assert not weak.trajectory.is_right
     seen: list[int] = []
-    few = optimal_control(shipped("cart-pendulum"), SWING_UP | {"iterations": 2}, lambda k, *_: seen.append(k))
+    few = optimal_control(
+        shipped("cart-pendulum"), **SWING_UP | {"iterations": 2}, progress=lambda k, *_: seen.append(k)
+    )
     assert seen == [1, 2]
     assert few.status == "failed"
     assert len(few.history) >= 2

@@ -147,7 +147,7 @@ def test_numbers_of_all_kinds_are_the_same() -> None:
 def test_nothing_that_moves() -> None:
     """A camera on the wall can neither be simulated nor linearised."""
     model = catalogue_model("camera")
-    for call in (lambda m: simulate(m, [], (0, 1)), lambda m: linearise(m, {"q": []}), equilibria):
+    for call in (lambda m: simulate(m, [], (0, 1)), lambda m: linearise(m, []), equilibria):
         with pytest.raises(InvalidInput, match="nothing that moves"):
             call(model)
 

@@ -1,1 +1,13 @@
-"""Optimal control: the problem, the adjoint gradient, shooting as a nonlinear program."""
+"""Optimal control: gradients by the adjoint, and controls of least cost.
+
+=================  ===================================================================================================
+module             what is there
+=================  ===================================================================================================
+problem            ``ControlProblem`` and ``Cost``: what is controlled, what it costs, and for how long
+adjoint            ``adjoint_equations``: the costates' equations as formulas
+shooting           motions under controls and derivatives of their cost, exact for the computed motion
+cost_gradient      ``cost_gradient``: J of given controls and dJ
+nonlinear_program  variables, conditions and their derivatives of direct multiple shooting; ``End``
+optimal_control    ``optimal_control``: solves it, and judges the result by the necessary conditions
+=================  ===================================================================================================
+"""

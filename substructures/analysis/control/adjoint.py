@@ -39,6 +39,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.analysis.control.problem import LINEAR, Cost, declared, read_costs
+from substructures.analysis.equations.formulas import inputs_of
+from substructures.analysis.given import require_known
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
@@ -54,7 +56,7 @@ ADJOINT = ("adjoint_q", "adjoint_qd", "control_gradient", "parameter_gradient")
 TERMINAL = ("terminal_cost", "terminal_q", "terminal_qd", "terminal_parameters")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AdjointEquations:
     """The program of the table above, and the names of what it is written in."""
 
@@ -62,6 +64,10 @@ class AdjointEquations:
     coordinates: tuple[str, ...]
     controls: tuple[str, ...]
     varied: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        sizes = f"n={len(self.coordinates)}, controls={len(self.controls)}, varied={len(self.varied)}"
+        return f"AdjointEquations({sizes})\n{len(self.program)} operations, outputs {', '.join(self.program.outputs)}"
 
     def names(self, prefix: str = "", primes: str = "") -> list[str]:
         """The symbols of coordinates (velocities: primes ', accelerations: ''), or of costates by their prefix."""
@@ -73,8 +79,11 @@ def adjoint_equations(
 ) -> AdjointEquations:
     """The adjoint equations of a model for controls (names of inputs), a cost, and ``varied`` parameters.
 
-    Raises InvalidDocument with pointers into the document of the cost (``/cost/running``), and for closures.
+    Raises InvalidInput for names that are not known (``/controls/i``, ``/varied/i``), for faults in the cost
+    (``/cost/running``), and for closures.
     """
+    require_known("controls", "input", controls, inputs_of(model))
+    require_known("varied", "parameter", varied, model.parameters)
     require_open(model.closures, LINEAR)
     scope = Scope(Graph())
     source = derived(model, ID)
@@ -88,16 +97,20 @@ def adjoint_equations(
     n, rates = model.dof, [f"{name}'" for name in model.coordinates]
     names = [*model.coordinates, *rates, *controls, *varied]
     moving = [*model.coordinates, *rates, *varied]
+    # d(lambda_0 l - mu . ID)/dz for every z of q, q', u, p in one walk
     slope = pullback([running, *rows], [weight, *(-x for x in mu)], names)
+    # dphi/d(q, q', p)
     end = pullback([terminal], [scope.graph.one], moving)
     accelerations = (scope.names[f"{name}''"] for name in model.coordinates)
     rate = [scope.names[name] for name in rates]
+    # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
     pairs = zip([*costates, *speeds], [*rate, *accelerations], strict=True)
     outputs = {
         "metric": metric,
         "force": force,
         "running_cost": Formulas((), {(): running}),
         "hamiltonian": Formulas((), {(): weight * running + scope.graph.sum(x * y for x, y in pairs)}),
+        # -dH/dq, and -dH/dq' = -(lambda_q + slope)
         "adjoint_q": array((n,), lambda a: -slope[a]),
         "adjoint_qd": array((n,), lambda a: -(costates[a] + slope[n + a])),
         "control_gradient": array((len(controls),), lambda i: slope[2 * n + i]),

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field
 
-from substructures.analysis.control.problem import ControlProblem, initial_state, per_node, read_problem
+from substructures.analysis.control.problem import (
+    NO_COST,
+    ControlProblem,
+    Cost,
+    Hold,
+    initial_state,
+    per_node,
+    require_solvable,
+)
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.given import StateArray, require_known
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
-from substructures.errors import Fault, InvalidDocument
 from substructures.tree.model import Model
 
 FAILED = (
@@ -26,17 +33,11 @@ ROUGH = (
 )
 
 
-class GradientRequest(ControlProblem):
-    """A problem with controls."""
-
-    values: dict[str, Any] = Field({}, description="by control: one number, or one for each node; default: zero")
-    vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class CostGradient:
-    """J and its derivatives: ``controls`` (nodes, m) in the order of ``names``, ``q`` and ``qd`` (n,) by the state at
-    the start, ``parameters`` by name. ``trajectory``: the motion with ``controls``, ``costates`` and ``hamiltonian``.
+    """J and its derivatives: dJ/du ``controls`` (nodes, m) in the order of ``names``; by the state at the start dJ/dq
+    ``q`` and dJ/dq' ``qd`` (n,); dJ/dp ``parameters`` by name. ``trajectory``: the motion with the series ``controls``,
+    ``costates`` and ``hamiltonian``.
 
     ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change.
     """
@@ -51,30 +52,73 @@ class CostGradient:
     status: Literal["finished", "failed"] = "finished"
     message: str = ""
 
+    def __repr__(self) -> str:
+        sizes = f"controls={len(self.names)}, nodes={len(self.controls)}, parameters={len(self.parameters)}"
+        largest = float(np.abs(self.controls).max(initial=0))
+        finding = f"cost {self.cost:.6g}, its largest derivative by a control {largest:.6g}"
+        return f"CostGradient({sizes})\n{f'failed: {self.message}' if self.status == 'failed' else finding}"
 
-def cost_gradient(model: Model, request: Mapping[str, Any]) -> CostGradient:
-    """The gradient of the cost by the discrete adjoint of the Runge-Kutta scheme, for about three times the run.
 
-    ``request``: the fields of GradientRequest. Raises InvalidDocument with pointers, and MissingValue.
+def cost_gradient(
+    model: Model,
+    *,
+    controls: Sequence[str],
+    horizon: float,
+    intervals: int,
+    q: StateArray,
+    cost: Cost = NO_COST,
+    steps: int = 1,
+    hold: Hold = "linear",
+    qd: StateArray | None = None,
+    t: float = 0.0,
+    inputs: Mapping[str, float] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    values: Mapping[str, Any] | None = None,
+    vary: Sequence[str] = (),
+) -> CostGradient:
+    """J of a motion under given controls, and dJ by them, by the start and by parameters.
+
+        J = integral of l(q, q', u, t, p) dt + phi(q, q', t, p) at the end,        g q'' + Gamma q' q' = Q
+
+    ``controls`` to ``parameters``: see :class:`substructures.analysis.control.problem.ControlProblem`. ``values``: by
+    control one number, or one for each node [N m, N], default 0: nodes are the ends of the ``intervals`` (``hold``:
+    linear, intervals + 1 of them) or the intervals (constant). ``vary``: parameters by which the cost is
+    differentiated. The gradient is that of the discrete adjoint of the Runge-Kutta scheme, exact to rounding, for about
+    three times the run. A motion that leaves the range of numbers is a result with status ``failed``. Raises
+    InvalidInput (``/controls/i``, ``/cost/running``, ``/values/name``, ``/vary/i``, ...) and MissingValue.
+    Source: W. W. Hager, Numerische Mathematik 87, 2000; notation.md, section 7.
     """
-    problem = read_problem(GradientRequest, model, request)
-    faults = [
-        Fault(f"/vary/{i}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
-        for i, name in enumerate(problem.vary)
-        if name not in model.parameters
-    ]
-    if faults:
-        raise InvalidDocument(faults)
-    controls = per_node(problem, problem.values, "values")
+    problem = ControlProblem(
+        controls=controls,
+        horizon=horizon,
+        intervals=intervals,
+        q=q,
+        cost=cost,
+        steps=steps,
+        hold=hold,
+        qd=qd,
+        t=t,
+        inputs=inputs,
+        parameters=parameters,
+    )
+    require_solvable(model, problem)
+    require_known("vary", "parameter", vary, model.parameters)
+    return _gradient(model, problem, values or {}, tuple(vary))
+
+
+def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], vary: tuple[str, ...]) -> CostGradient:
+    controls = per_node(problem, values, "values")
+    # x_0 = (q, q') and dJ/dx_0 = lambda_0
     start = initial_state(model, problem)
-    shooting = Shooting(model, problem, problem.vary)
+    shooting = Shooting(model, problem, vary)
     run = shooting.run(start[None], controls)
+    # W = 1: of the cost alone, no end state
     slope = shooting.pullback(run, np.zeros((1, 1, 2 * model.dof)), np.ones(1))
     motion = trajectory(shooting, run, slope)
-    n, by_parameter = model.dof, dict(zip(problem.vary, slope.parameters[0].tolist(), strict=True))
+    n, by_parameter = model.dof, dict(zip(vary, slope.parameters[0].tolist(), strict=True))
     result = CostGradient(
         run.cost,
-        problem.controls,
+        tuple(problem.controls),
         slope.controls[0],
         slope.start[0, 0, :n],
         slope.start[0, 0, n:],
@@ -94,12 +138,14 @@ def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:
     """
     n, states, lam = shooting.model.dof, run.states, slope.costates[0]
     costates = np.concatenate([lam[:-1].swapaxes(0, 1).reshape(-1, 2 * n), lam[-1:, -1]])
+    # H(x_j, u_j, lambda_j) before every step; there is no stage after the last one
     H = shooting.hamiltonians(run, lam)
     series = {
         "controls": shooting.controls_at_steps(run.controls),
         "costates": costates,
         "hamiltonian": np.append(H, H[-1:]),
     }
+    # t_j = t_0 + j h
     t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(states)), dtype=np.float64)
     finite = np.isfinite(states).all(axis=1)
     if finite.all() and np.isfinite(run.cost):

@@ -7,16 +7,19 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from pydantic import Field
 
+from substructures.analysis.arguments import real, whole
 from substructures.analysis.control.problem import ControlProblem, initial_state, per_node
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.array import Array
-from substructures.documents import DocumentPart, escape
-from substructures.errors import InvalidDocument
+from substructures.documents import escape
+from substructures.errors import InvalidArgument
 from substructures.quantities.states import numeric
 from substructures.tree.model import Model
 
@@ -24,40 +27,60 @@ from substructures.tree.model import Model
 MAX_VARIABLES = 2_000
 #: the cost of a motion that is not finite
 BEYOND = 1e30
-#: segments that are taken where the request does not say
+#: segments that are taken where nothing says how many
 SEGMENTS = 10
+MAX_ITERATIONS = 100_000
 
 
-class End(DocumentPart):
-    """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
-
-    q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")
-    qd: list[float | None] | dict[str, float | None] = Field({}, description="rad/s, m/s")
+#: numbers of the last state, None where nothing is demanded: all in the order of the coordinates, or some by name
+Demanded = Sequence[float | None] | Mapping[str, float | None]
 
 
-class OptimalControlRequest(ControlProblem):
-    """A problem with demands, bounds and a guess."""
+@dataclass(frozen=True)
+class End:
+    """Demands on the last state: ``q`` [rad, m] and ``qd`` [rad/s, m/s]."""
 
-    end: End = End()
-    bounds: dict[str, tuple[float | None, float | None]] = Field({}, description="least and largest value by control")
-    guess: dict[str, Any] = Field({}, description="controls to begin with: one number, or one for each node")
-    segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
-    iterations: int = Field(500, ge=1, le=100_000)
-    tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")
+    q: Demanded = field(default_factory=dict)
+    qd: Demanded = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Demands:
+    """Demands, bounds and a guess; see :func:`substructures.analysis.control.optimal_control.optimal_control`.
+
+    Raises InvalidArgument.
+    """
+
+    end: End
+    bounds: Mapping[str, tuple[float | None, float | None]]
+    guess: Mapping[str, Any]
+    segments: int | None
+    iterations: int
+    tolerance: float
+
+    def __post_init__(self) -> None:
+        if self.segments is not None:
+            whole(self.segments, "segments", 1, sys.maxsize)
+        whole(self.iterations, "iterations", 1, MAX_ITERATIONS)
+        object.__setattr__(self, "tolerance", real(self.tolerance, "/tolerance"))
+        if not 0 < self.tolerance < 1:
+            code = "greater-than" if self.tolerance <= 0 else "less-than"
+            message = f"'tolerance' must lie between 0 and 1, found {self.tolerance:g}"
+            raise InvalidArgument.at("/tolerance", code, message)
 
 
 class ShootingProgram:
     """The nonlinear program. Variables: controls (nodes, m), then the starts of all segments but the first."""
 
-    def __init__(self, model: Model, problem: OptimalControlRequest) -> None:
-        self.model, self.problem, self.size = model, problem, 2 * model.dof
-        self.S = problem.segments or max(k for k in range(1, SEGMENTS + 1) if problem.intervals % k == 0)
+    def __init__(self, model: Model, problem: ControlProblem, wanted: Demands) -> None:
+        self.model, self.problem, self.wanted, self.size = model, problem, wanted, 2 * model.dof
+        self.S = wanted.segments or max(k for k in range(1, SEGMENTS + 1) if problem.intervals % k == 0)
         if problem.intervals % self.S:
             message = f"{self.S} segments do not divide {problem.intervals} intervals"
-            raise InvalidDocument.at("/segments", "not-a-divisor", message)
-        self.demands = [*_demanded(model, problem.end.q, "q", 0), *_demanded(model, problem.end.qd, "qd", model.dof)]
+            raise InvalidArgument.at("/segments", "not-a-divisor", message)
+        self.demands = [*_demanded(model, wanted.end.q, "q", 0), *_demanded(model, wanted.end.qd, "qd", model.dof)]
         self.first = initial_state(model, problem)
-        self.bounds = _bounds(problem)
+        self.bounds = _bounds(problem.controls, wanted)
         self.m = len(problem.controls)
         self.split = problem.nodes * self.m
         self.rows = (self.S - 1) * self.size + len(self.demands)
@@ -66,16 +89,17 @@ class ShootingProgram:
             message = (
                 f"{size:,} variables and conditions; the limit is {MAX_VARIABLES:,}: take fewer intervals or segments"
             )
-            raise InvalidDocument.at("/intervals", "too-large", message)
+            raise InvalidArgument.at("/intervals", "too-large", message)
         self.shooting = Shooting(model, problem, (), self.S)
         self._at: tuple[bytes, Rollout, Slope] | None = None
 
     def guess(self) -> Array:
-        """Controls of the request; starts of segments on a line from the first state to the demanded one."""
-        controls = np.clip(per_node(self.problem, self.problem.guess, "guess"), *self.bounds)
+        """Controls that were given; starts of segments on a line from the first state to the demanded one."""
+        controls = np.clip(per_node(self.problem, self.wanted.guess, "guess"), *self.bounds)
         end = self.first.copy()
         for i, value in self.demands:
             end[i] = value
+        # s_k = x_0 + k/S (x_end - x_0)
         share = np.arange(1, self.S)[:, None] / self.S
         return np.concatenate([controls.ravel(), (self.first + share * (end - self.first)).ravel()])
 
@@ -109,6 +133,7 @@ class ShootingProgram:
         """What must vanish: gaps between segments, and the demands."""
         run, _ = self.evaluated(z)
         starts, _ = self.parts(z)
+        # end_k - s_(k+1), and end_last less what is demanded
         demanded = [run.end[-1, i] - value for i, value in self.demands]
         gaps = (run.end[:-1] - starts[1:]).ravel()
         return np.nan_to_num(np.concatenate([gaps, demanded]), nan=BEYOND, posinf=BEYOND, neginf=-BEYOND)
@@ -121,10 +146,12 @@ class ShootingProgram:
         at, per = 0, slope.parts.shape[2] - 1
         for s, indices in enumerate(kept):
             for i in indices:
+                # d end_(s,i)/du: the nodes of segment s alone
                 own = slope.parts[1 + i, s].ravel()
                 first = s * per * self.m
                 own = own[: self.split - first]
                 result[at, first : first + len(own)] = own
+                # d end_(s,i)/ds_s, and -1 for s_(s+1)
                 if s:
                     before = self.split + (s - 1) * self.size
                     result[at, before : before + self.size] = slope.start[1 + i, s]
@@ -145,30 +172,30 @@ class ShootingProgram:
 
 
 def _demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[int, float]]:
-    """(index in (q, q'), value) of every demand. Raises InvalidDocument."""
+    """(index in (q, q'), value) of every demand. Raises InvalidArgument."""
     pointer = f"/end/{field}"
-    if isinstance(given, list):
+    if not isinstance(given, Mapping):
         if len(given) != model.dof:
-            raise InvalidDocument.at(pointer, "wrong-length", f"{len(given)} values for {model.dof} coordinates")
+            raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {model.dof} coordinates")
         given = dict(zip(model.coordinates, given, strict=True))
     for name in given:
         if name not in model.coordinates:
-            raise InvalidDocument.at(
+            raise InvalidArgument.at(
                 f"{pointer}/{escape(name)}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'"
             )
     pairs = ((a, given.get(name)) for a, name in enumerate(model.coordinates))
     return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
 
 
-def _bounds(problem: OptimalControlRequest) -> tuple[Array, Array]:
-    """Least and largest values of the controls, (m,). Raises InvalidDocument."""
-    low, high = np.full(len(problem.controls), -np.inf), np.full(len(problem.controls), np.inf)
-    for name, (least, most) in problem.bounds.items():
+def _bounds(controls: Sequence[str], wanted: Demands) -> tuple[Array, Array]:
+    """Least and largest values of the controls, (m,). Raises InvalidArgument."""
+    low, high = np.full(len(controls), -np.inf), np.full(len(controls), np.inf)
+    for name, (least, most) in wanted.bounds.items():
         pointer = f"/bounds/{escape(name)}"
-        if name not in problem.controls:
-            raise InvalidDocument.at(pointer, "unknown-input", f"'{name[:80]}' is not one of the controls")
-        i = problem.controls.index(name)
+        if name not in controls:
+            raise InvalidArgument.at(pointer, "unknown-input", f"'{name[:80]}' is not one of the controls")
+        i = controls.index(name)
         low[i], high[i] = -np.inf if least is None else least, np.inf if most is None else most
         if not low[i] <= high[i]:
-            raise InvalidDocument.at(pointer, "empty", f"no number lies between {least} and {most}")
+            raise InvalidArgument.at(pointer, "empty", f"no number lies between {least} and {most}")
     return low, high

@@ -11,16 +11,15 @@ Hamiltonian is constant along the motion up to the discretisation of the control
 
 Example, a cart pendulum swung up in two seconds by a force of at most 20 N::
 
-    optimal_control(model, {
-        "controls": ["tau.x.q0"], "cost": {"running": "tau.x.q0^2"}, "horizon": 2, "intervals": 40, "steps": 2,
-        "q": {"x.q0": 0, "x.q1": math.pi}, "end": {"q": [0, 0], "qd": [0, 0]},
-        "bounds": {"tau.x.q0": [-20, 20]},
-    })
+    optimal_control(
+        model, controls=["tau.x.q0"], cost=Cost("tau.x.q0^2"), horizon=2, intervals=40, steps=2,
+        q={"x.q0": 0, "x.q1": math.pi}, end=End([0, 0], [0, 0]), bounds={"tau.x.q0": (-20, 20)},
+    )
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -28,9 +27,10 @@ import numpy as np
 from scipy.optimize import Bounds, minimize
 
 from substructures.analysis.control.cost_gradient import trajectory
-from substructures.analysis.control.nonlinear_program import BEYOND, OptimalControlRequest, ShootingProgram
-from substructures.analysis.control.problem import read_problem
+from substructures.analysis.control.nonlinear_program import BEYOND, Demands, End, ShootingProgram
+from substructures.analysis.control.problem import NO_COST, ControlProblem, Cost, Hold, require_solvable
 from substructures.analysis.control.shooting import Rollout
+from substructures.analysis.given import StateArray
 from substructures.analysis.motion.trajectory import Check, Trajectory
 from substructures.array import Array
 from substructures.tree.model import Model
@@ -47,9 +47,9 @@ ADVICE = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Optimum:
-    """The best controls found (nodes, m), in the order of ``names``, with their cost and motion.
+    """The best ``controls`` found (nodes, m) [N m, N], in the order of ``names``, with their cost and motion.
 
     ``status``: optimal; feasible (demands hold, not stationary yet); failed; ``message`` says what to change.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost;
@@ -70,15 +70,64 @@ class Optimum:
     history: Array
     iterations: int
 
+    def __repr__(self) -> str:
+        sizes = f"controls={len(self.names)}, nodes={len(self.controls)}, iterations={self.iterations}"
+        judged = f"cost {self.cost:.6g}, violation {self.violation:.2g}, stationarity {self.stationarity:.2g}"
+        return f"Optimum({sizes})\n{self.status}: {judged}"
 
-def optimal_control(model: Model, request: Mapping[str, Any], progress: IterationReport | None = None) -> Optimum:
-    """Solve a problem of optimal control; ``request``: the fields of OptimalControlRequest.
 
+def optimal_control(
+    model: Model,
+    *,
+    controls: Sequence[str],
+    horizon: float,
+    intervals: int,
+    q: StateArray,
+    cost: Cost = NO_COST,
+    steps: int = 1,
+    hold: Hold = "linear",
+    qd: StateArray | None = None,
+    t: float = 0.0,
+    inputs: Mapping[str, float] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    end: End | None = None,
+    bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
+    guess: Mapping[str, Any] | None = None,
+    segments: int | None = None,
+    iterations: int = 500,
+    tolerance: float = 1e-8,
+    progress: IterationReport | None = None,
+) -> Optimum:
+    """Controls of least cost J (see above) under demands on the end and bounds, by multiple shooting.
+
+    ``controls`` to ``parameters``: see :class:`substructures.analysis.control.problem.ControlProblem`. ``end``: demands
+    on the last state; ``bounds``: least and largest value by control [N m, N], None for none; ``guess``: controls to
+    begin with, by name one number or one for each node; ``segments``: divides ``intervals`` (default: the largest such
+    up to 10); ``tolerance``: change of the cost at which the search ends, after ``iterations`` at the latest.
     ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
-    search. Raises InvalidDocument with pointers, and MissingValue.
+    search. Demands that are not met are a result with status ``failed`` and advice. Raises InvalidInput
+    (``/controls/i``, ``/end/q``, ``/bounds/name``, ``/segments``, ...) and MissingValue. Source: see above.
     """
-    problem = read_problem(OptimalControlRequest, model, request)
-    search = ShootingProgram(model, problem)
+    problem = ControlProblem(
+        controls=controls,
+        horizon=horizon,
+        intervals=intervals,
+        q=q,
+        cost=cost,
+        steps=steps,
+        hold=hold,
+        qd=qd,
+        t=t,
+        inputs=inputs,
+        parameters=parameters,
+    )
+    wanted = Demands(end or End(), bounds or {}, guess or {}, segments, iterations, tolerance)
+    require_solvable(model, problem)
+    return _searched(ShootingProgram(model, problem, wanted), progress)
+
+
+def _searched(search: ShootingProgram, progress: IterationReport | None) -> Optimum:
+    """The result of the search from the guess."""
     z = search.guess()
     history = [search.progress(z)]
 
@@ -93,33 +142,23 @@ def optimal_control(model: Model, request: Mapping[str, Any], progress: Iteratio
 
 def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
     """SLSQP; L-BFGS-B without conditions."""
-    problem, bounds = search.problem, Bounds(*search.limits())
+    wanted, bounds = search.wanted, Bounds(*search.limits())
     common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": note}
     if not search.rows:
-        options = {"maxiter": problem.iterations, "ftol": problem.tolerance, "gtol": 1e-10}
+        options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance, "gtol": 1e-10}
         return minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
     conditions = {"type": "eq", "fun": search.residual, "jac": search.jacobian}
-    options = {"maxiter": problem.iterations, "ftol": problem.tolerance}
+    options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}
     return minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
 
 
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) -> Optimum:
     """The necessary conditions at z."""
-    cost, gradient = search.cost(z)
-    residual, A = search.residual(z), search.jacobian(z)
-    low, high = search.limits()
-    margin = 1e-9 * (1 + np.abs(z))
-    below, above = z <= low + margin, z >= high - margin
-    free = ~(below | above)
-    nu = np.zeros(search.rows)
-    if search.rows:
-        nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
-    slope = gradient + A.T @ nu
-    slope[below] = np.minimum(slope[below], 0)
-    slope[above] = np.maximum(slope[above], 0)
-    stationarity = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
+    cost, _ = search.cost(z)
+    nu, stationarity = _multipliers(search, z)
+    residual = search.residual(z)
     violation = float(np.abs(residual).max(initial=0))
-    limit = max(1e-6, 10 * search.problem.tolerance)
+    limit = max(1e-6, 10 * search.wanted.tolerance)
     status: Literal["optimal", "feasible", "failed"] = "failed"
     if violation <= limit and cost < BEYOND:
         status = "optimal" if stationarity <= STATIONARY else "feasible"
@@ -131,7 +170,7 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
         status,
         ADVICE[status],
         cost,
-        search.problem.controls,
+        tuple(search.problem.controls),
         run.controls,
         replace(motion, checks=(late,)),
         stationarity,
@@ -142,8 +181,30 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
     )
 
 
+def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
+    """Multipliers nu of the conditions, and |d(J + nu . residual)/dz| in the free variables relative to |dJ/dz|."""
+    _, gradient = search.cost(z)
+    A = search.jacobian(z)
+    low, high = search.limits()
+    margin = 1e-9 * (1 + np.abs(z))
+    below, above = z <= low + margin, z >= high - margin
+    free = ~(below | above)
+    # A^T nu = -dJ/dz in the free variables, and dJ/dz + A^T nu is what is left (Karush, Kuhn and Tucker)
+    nu = np.zeros(search.rows)
+    if search.rows:
+        nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
+    slope = gradient + A.T @ nu
+    # at a lower bound the cost may only rise upwards, at an upper one downwards
+    slope[below] = np.minimum(slope[below], 0)
+    slope[above] = np.maximum(slope[above], 0)
+    # |dL/dz| relative to |dJ/dz|
+    largest = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
+    return nu, largest
+
+
 def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:
     """The trajectory with the costates of the Lagrangian, and the drift of the Hamiltonian."""
+    # L = J + nu . (end - demand): nu are the costates at the ends of segments
     ends = np.zeros((search.S, search.size))
     gaps = (search.S - 1) * search.size
     ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
@@ -153,5 +214,6 @@ def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajector
     program = search.shooting.equations.program
     if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
         return motion, None
+    # dH/dt = 0 along an optimal motion where neither l nor the forces depend on t
     H = motion.series["hamiltonian"]
     return motion, float(np.ptp(H) / max(float(np.abs(H).max()), 1e-12))

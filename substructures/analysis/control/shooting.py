@@ -78,7 +78,7 @@ class Slope:
 class Shooting:
     """The equations of a problem as compiled code. ``segments`` must divide ``problem.intervals``.
 
-    Raises InvalidDocument (see adjoint_equations) and MissingValue for a parameter without a value.
+    Raises InvalidInput (see adjoint_equations) and MissingValue for a parameter without a value.
     """
 
     def __init__(self, model: Model, problem: ControlProblem, varied: Sequence[str] = (), segments: int = 1) -> None:
@@ -108,6 +108,7 @@ class Shooting:
             for j in range(J):
                 rate, total = np.zeros_like(x), np.zeros_like(x)
                 for i in range(4):
+                    # X_i = x + h c_i x'_(i-1),  x'_i = (q', g^-1 (Q - Gamma q' q')),  x <- x + h sum b_i x'_i
                     stages[j, i] = X = x + (self.h * NODES[i]) * rate
                     found = self._motion(X, controls, j, i)
                     metrics[j, i], accelerations[j, i] = (
@@ -118,6 +119,7 @@ class Shooting:
                     total += WEIGHTS[i] * rate
                     cost += self.h * WEIGHTS[i] * float(found["running_cost"].sum())
                 x = x + self.h * total
+            # + phi(x(T))
             cost += float(self._terminal(x[-1:], controls)["terminal_cost"][0])
         return Rollout(controls, stages, accelerations, metrics, x, cost)
 
@@ -135,6 +137,7 @@ class Shooting:
             for j in reversed(range(self.count)):
                 before, total = np.zeros_like(lam), np.zeros_like(lam)
                 for i in (3, 2, 1, 0):
+                    # bar_i = h b_i lambda + h c_(i+1) before_(i+1),  before_i = (dx'/dx)^T bar_i + h b_i dl/dx
                     above = self.h * NODES[i + 1] * before if i < 3 else 0.0
                     bar = self.h * WEIGHTS[i] * lam + above
                     found = self._adjoint(run, j, i, bar, self.h * WEIGHTS[i] * costs)
@@ -142,6 +145,7 @@ class Shooting:
                     total += before
                     self._to_nodes(parts, found["control_gradient"], j, i)
                     parameters = parameters + found["parameter_gradient"].sum(axis=1)
+                # lambda_j = lambda_(j+1) + sum_i before_i
                 lam = lam + total
                 costates[:, j] = lam
         return Slope(lam, self._joined(parts), parts, parameters, costates)
@@ -174,9 +178,11 @@ class Shooting:
     def _controls(self, controls: Array, j: int, i: int) -> tuple[Array, Array]:
         """u (S, m) and t (S,) of a stage."""
         interval, inside = self._place(j, i)
+        # t = t_0 + (k + s) T/K for the place s in the interval k of K
         t = self.problem.t + (interval + inside) * (self.problem.horizon / self.problem.intervals)
         if self.problem.hold == "constant":
             return controls[interval], t
+        # u = (1 - s) u_k + s u_(k+1)
         return (1 - inside) * controls[interval] + inside * controls[interval + 1], t
 
     def _to_nodes(self, parts: Array, bar: Array, j: int, i: int) -> None:
@@ -212,6 +218,7 @@ class Shooting:
         n, (W, S, _) = self.model.dof, bar.shape
         u, t = self._controls(run.controls, j, i)
         flat = bar.reshape(W * S, 2 * n)
+        # g mu = lambda_qd
         mu = cholesky_solve(np.tile(run.metrics[j, i], (W, 1, 1)), flat[:, n:])
         e = self.equations
         columns = [
@@ -228,10 +235,11 @@ class Shooting:
 
 def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
-    request = {"q": [0.0] * model.dof, "parameters": problem.parameters}
-    known = symbol_values(model, request, read_states(model, request, None), ())
+    inputs = problem.inputs or {}
+    given = {"q": [0.0] * model.dof, "parameters": problem.parameters}
+    known = symbol_values(model, given, read_states(model, given, None), ())
     values = {name: float(known[name]) for name in model.parameters if name in known}
-    values |= {name: float(problem.inputs.get(name, 0.0)) for name in inputs_of(model)}
+    values |= {name: float(inputs.get(name, 0.0)) for name in inputs_of(model)}
     for symbol in equations.program.symbols:
         if symbol.kind == "parameter" and symbol.name not in values:
             raise MissingValue(symbol.name)

@@ -12,7 +12,7 @@ MAX_MINORS = 200_000
 
 
 def inverse(rows: Sequence[Sequence[Expr]]) -> list[list[Expr]] | None:
-    """adj(Y) / det(Y); None when the determinant is zero as a formula. Raises TooLarge.
+    """Y^-1 = adj(Y) / det(Y) (n, n); None when the determinant is zero as a formula. Raises TooLarge.
 
     Minors are expanded row by row over sets of columns; zeros are skipped, so sparse matrices cost little.
     """
@@ -22,6 +22,7 @@ def inverse(rows: Sequence[Sequence[Expr]]) -> list[list[Expr]] | None:
     graph = rows[0][0].graph
     budget = [MAX_MINORS]
     cofactors = [_row_cofactors(rows, j, budget) for j in range(n)]
+    # det Y = sum_i Y_0i C_0i, and (Y^-1)_ij = C_ji / det Y
     determinant = graph.sum(rows[0][i] * cofactors[0][i] for i in range(n))
     if determinant.is_zero:
         return None
@@ -36,6 +37,7 @@ def _row_cofactors(rows: Sequence[Sequence[Expr]], left_out: int, budget: list[i
     for k in range(n):
         if k != left_out:
             minors = _extended(minors, rows[k], budget)
+    # C_ji = (-1)^(j+i) M_ji; a set of columns is a word with a bit for each of them
     full = (1 << n) - 1
     result = []
     for i in range(n):
@@ -54,7 +56,7 @@ def _extended(minors: dict[int, Expr], row: Sequence[Expr], budget: list[int]) -
             budget[0] -= 1
             if budget[0] < 0:
                 raise TooLarge("the inverse of the quasi-velocities (in minors)", MAX_MINORS + 1, MAX_MINORS)
-            # columns of the minor to the right of column i give the sign
+            # (-1)^(columns of the minor to the right of column i) gives the sign
             term = x * minor
             if bin(columns >> (i + 1)).count("1") % 2:
                 term = -term

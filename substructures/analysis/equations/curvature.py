@@ -18,11 +18,14 @@ Of the n^4 elements n^2 (n^2 - 1)/12 are independent, and only these are formed:
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations, combinations_with_replacement
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from substructures.analysis.given import StateArray
+from substructures.array import Array
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
@@ -34,12 +37,41 @@ from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model, require_open
 
 OUTPUTS = ("riemann", "ricci", "scalar_curvature", "inverse_metric", "christoffel_second")
-#: fields of a request
-FIELDS = frozenset(("q", "parameters"))
 ADVICE = "the metric is singular in this state, or its inverse is too large: check masses and coordinates"
 
 Entries = dict[tuple[int, ...], Expr]
 Quadruple = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True)
+class StateFailure:
+    """A state (its number) without a finite result, and what to do about it."""
+
+    state: int
+    code: Literal["not-finite"]
+    message: str
+
+
+@dataclass(frozen=True, repr=False)
+class CurvatureValues:
+    """``riemann`` (N, n, n, n, n): R_abcd; ``ricci`` (N, n, n): R_bd; ``scalar_curvature`` (N,): S; ``inverse_metric``
+    (N, n, n): g^ab; ``christoffel_second`` (N, n, n, n): Gamma^a_bc. The axis N is missing where one ``q`` (n,) was
+    given. ``failures``: states in which the metric is singular.
+    """
+
+    riemann: Array
+    ricci: Array
+    scalar_curvature: Array
+    inverse_metric: Array
+    christoffel_second: Array
+    failures: tuple[StateFailure, ...] = ()
+
+    def __repr__(self) -> str:
+        S = np.atleast_1d(self.scalar_curvature)
+        finite = S[np.isfinite(S)]
+        within = f"from {finite.min():.6g} to {finite.max():.6g}" if len(finite) else "nowhere finite"
+        sizes = f"n={self.ricci.shape[-1]}, states={len(S)}, failures={len(self.failures)}"
+        return f"CurvatureValues({sizes})\nscalar curvature {within}"
 
 
 def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
@@ -62,26 +94,29 @@ def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
 
 def curvature_values(
     model: Model,
-    request: Mapping[str, Any],
+    q: StateArray,
+    *,
+    parameters: Mapping[str, Any] | None = None,
     limit: int | None = None,
     engine: Evaluator = interpreted,
     formulas: Program | None = None,
-) -> dict[str, Any]:
-    """All five outputs as numbers: ``request`` has ``q`` (n,) or (N, n), or by coordinate name, and ``parameters``.
+) -> CurvatureValues:
+    """The curvature of the configuration space in numbers: R_abcd, R_bd, S, g^ab, Gamma^a_bc (see above).
 
-    The leading axis is dropped where ``q`` is (n,). ``failures`` lists states in which the metric is singular.
-    ``formulas``: the program of curvature(model), so that many calls derive it once. Raises InvalidDocument with
-    pointers, and MissingValue.
+    ``q`` (n,) or (N, n), or by coordinate [rad, m]; ``parameters`` in place of their defaults: one number, or (N,);
+    ``limit``: so many states at most. ``engine`` evaluates programs; ``formulas``: the program of curvature(model), so
+    that many calls derive it once. Raises InvalidInput (``/q``, ``/parameters/name``; the model's closures),
+    MissingValue and TooLarge.
     """
-    for key in request:
-        if key not in FIELDS:
-            raise InvalidDocument.at(f"/{key}", "unknown-field", f"unknown field '{key}'")
-    states = read_states(model, request, limit)
-    values = symbol_values(model, request, states, ("metric",))
-    found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), len(states.q))
+    given = {"q": q, "parameters": parameters or {}}
+    states = read_states(model, given, limit)
+    values = symbol_values(model, given, states, ("metric",))
+    found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), states.count)
+    # g^ab is not finite where det g = 0, and R, S with it
     good = np.all([np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in found.values()], axis=0)
-    listed = [{"state": int(i), "code": "not-finite", "message": ADVICE} for i in np.flatnonzero(~good)]
-    return {name: x[0] if states.single else x for name, x in found.items()} | {"failures": listed}
+    failures = tuple(StateFailure(int(i), "not-finite", ADVICE) for i in np.flatnonzero(~good))
+    riemann, ricci, scalar, inverse, second = (found[name][0] if states.single else found[name] for name in OUTPUTS)
+    return CurvatureValues(riemann, ricci, scalar, inverse, second, failures)
 
 
 def independent_elements(n: int) -> list[Quadruple]:
@@ -121,6 +156,7 @@ class _Space:
         """The five outputs. Raises ZeroDivisionError for a singular metric."""
         n, zero = self.n, self.graph.zero
         inverse = self._inverse()
+        # Gamma^a_bc = g^ae Gamma_ebc = Gamma^a_cb
         second: Entries = {
             (a, b, c): self._dot([inverse[a][e] for e in range(n)], [self.first.get((e, b, c), zero) for e in range(n)])
             for a in range(n)
@@ -131,9 +167,11 @@ class _Space:
         riemann = self._riemann(second)
         ricci: Entries = {}
         for b, d in combinations_with_replacement(range(n), 2):
+            # R_bd = g^ac R_abcd
             terms = (inverse[a][c] * riemann.get((a, b, c, d), zero) for a in range(n) for c in range(n))
             ricci[b, d] = self.graph.sum(terms)
             self._check()
+        # S = g^bd R_bd, elements off the diagonal twice
         twice = (inverse[b][d] * x * (1 if b == d else 2) for (b, d), x in ricci.items())
         return {
             "riemann": Formulas((n,) * 4, riemann),
@@ -151,6 +189,7 @@ class _Space:
         g = [[self.metric.get((a, b), zero) for b in range(n)] for a in range(n)]
         M = [[one if a == b else zero for b in range(n)] for a in range(n)]
         for e in range(n):
+            # rows of g become D L^T, those of 1 become M
             for a in range(e + 1, n):
                 factor = g[a][e] / g[e][e]
                 g[a] = [x - factor * y for x, y in zip(g[a], g[e], strict=True)]
@@ -167,7 +206,7 @@ class _Space:
             result |= _images((a, b, c, d), self._element(a, b, c, d, second))
             self._check()
         for a, b, c, d in combinations(range(self.n), 4):
-            # first Bianchi identity
+            # R_adbc = R_acbd - R_abcd (first Bianchi identity)
             last = result[a, c, b, d] - result[a, b, c, d]
             result |= _images((a, d, b, c), last)
         return result
@@ -175,6 +214,7 @@ class _Space:
     def _element(self, a: int, b: int, c: int, d: int, second: Entries) -> Expr:
         """R_abcd by the equation above."""
         zero, n = self.graph.zero, range(self.n)
+        # d_c Gamma_abd - d_d Gamma_abc + Gamma^f_ad Gamma_fbc - Gamma^f_ac Gamma_fbd
         slope = self.slopes[c].get((a, b, d), zero) - self.slopes[d].get((a, b, c), zero)
         plus = self._dot([second[e, a, d] for e in n], [self.first.get((e, b, c), zero) for e in n])
         minus = self._dot([second[e, a, c] for e in n], [self.first.get((e, b, d), zero) for e in n])

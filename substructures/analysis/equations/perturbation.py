@@ -15,9 +15,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
+from substructures.analysis.arguments import Scalar, exact
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import LENGTH, ModelFormulas, inputs_of
 from substructures.analysis.equations.kernels import Known, known_model
+from substructures.analysis.given import require_known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
@@ -71,6 +73,7 @@ def _perturbation(known: Known) -> Program:
     found = replay(source, f.graph, {})
     rows = _rows(found[ID], model.dof, f.graph.zero)
     names = inputs_of(model)
+    # F_ai = dQ_a/du_i = -dID_a/du_i
     by_input = gradient(rows, names)
     outputs = {
         "metric": Formulas((f.n, f.n), {i: x for i, x in f.elements("metric").items() if i[0] <= i[1]}, "symmetric"),
@@ -87,12 +90,14 @@ def _perturbation(known: Known) -> Program:
 def _with_closures(f: ModelFormulas, found: Mapping[str, Formulas]) -> dict[str, Formulas]:
     """The outputs that closures add or change."""
     K, residual, n = found["stiffness"].entries, found["residual"].entries, f.n
+    # lambda_k d_b G_ka
     second = gradient(f.reactions, f.model.coordinates)
     G, shape = f.elements("closure.jacobian"), f.model.program.outputs["closure.jacobian"].shape
     position, rates = [str(x.value) for x in f.q], dict(zip(f.model.coordinates, f.rates, strict=True))
     accelerations = {f"{name}'": f.graph.symbol(f"{name}''") for name in position}
     for a, name in enumerate(position):
         f.symbols[f"{name}''"] = Symbol(f"{name}''", "acceleration", f"{LENGTH[f.model.joints[a]]}/s^2")
+    # G' = d_b G q'^b, and G'' = d_b G' q'^b + dG'/dq'^b q''^b
     rate = directional(list(G.values()), rates)
     bent = directional(rate, rates | accelerations)
     return {
@@ -110,22 +115,24 @@ def _rows(formulas: Formulas, n: int, zero: Expr) -> list[Expr]:
     return [x if isinstance(x, Expr) else zero.graph.number(x) for x in entries]
 
 
-def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[str] | None = None) -> Program:
+def state_space(model: Model, outputs: Sequence[Scalar] = (), inputs: Sequence[str] | None = None) -> Program:
     """A (2n, 2n), B (2n, m), C (k, 2n), D (k, m) as formulas at any state, with ``derivative`` (2n,) = x' and
     ``output`` (k,) = y.
 
     ``outputs``: expressions in coordinates, velocities, inputs, parameters and t; ``inputs``: default all. Raises
-    InvalidDocument: bad expressions (``/outputs/i``), unknown inputs, forces without derivative, singular metric.
+    InvalidInput: bad expressions (``/outputs/i``), unknown inputs (``/inputs/i``), forces without derivative, singular
+    metric. Source: notation.md, section 7.
     """
     require_open(model.closures, "use the formulas 'perturbation', which have multipliers, or linearisations (numbers)")
     require_smooth(model)
     chosen = inputs_of(model) if inputs is None else tuple(inputs)
-    require_inputs(model, chosen)
+    require_known("inputs", "input", chosen, inputs_of(model))
     f = ModelFormulas(model)
-    given = [(x, f"/outputs/{i}") for i, x in enumerate(outputs)]
+    given = [(exact(x, f"/outputs/{i}"), f"/outputs/{i}") for i, x in enumerate(outputs)]
     read = read_expressions(model, {"output": given}, inputs=True)
     y = _rows(replay(read, f.graph, {})["output"], len(given), f.graph.zero)
     states = [str(x.value) for x in (*f.q, *f.rates)]
+    # x' = (q', g^-1 (Q - Gamma q' q'))
     x = [*f.rates, *f.acceleration]
     matrices = {"A": gradient(x, states), "B": gradient(x, chosen), "C": gradient(y, states), "D": gradient(y, chosen)}
     shapes = {"A": (2 * f.n, 2 * f.n), "B": (2 * f.n, len(chosen)), "C": (len(y), 2 * f.n), "D": (len(y), len(chosen))}
@@ -133,15 +140,3 @@ def state_space(model: Model, outputs: Sequence[object] = (), inputs: Sequence[s
     results["derivative"] = array((2 * f.n,), lambda i: x[i])
     results["output"] = array((len(y),), lambda i: y[i])
     return program(f.graph, results, {s.name: s for s in read.symbols} | f.symbols)
-
-
-def require_inputs(model: Model, names: Sequence[str]) -> None:
-    """Raises InvalidDocument for names that are no inputs."""
-    known = set(inputs_of(model))
-    faults = [
-        Fault(f"/inputs/{i}", "unknown-input", f"unknown input '{str(name)[:80]}'")
-        for i, name in enumerate(names)
-        if name not in known
-    ]
-    if faults:
-        raise InvalidDocument(faults)

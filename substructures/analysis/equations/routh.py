@@ -19,16 +19,18 @@ from dataclasses import dataclass
 
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.equations.formulas import Entries, Factors, ModelFormulas
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.tree.model import Model, require_open
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Reduced:
-    """``program``: metric (r, r), christoffel (r, r, r), gyroscopic (r, r), forces (r,), amended_potential, routhian
-    and cyclic_velocities (c,). ``momenta``: the symbols of the constant momenta ``p.<coordinate>``.
+    """The equations in the r remaining ``coordinates``, without the c ``cyclic`` ones.
+
+    ``program``: metric h (r, r), christoffel (r, r, r), gyroscopic B (r, r), forces f (r,), amended_potential V_p,
+    routhian R and cyclic_velocities (c,). ``momenta``: the symbols of the constant momenta ``p.<coordinate>``.
     """
 
     program: Program
@@ -36,11 +38,18 @@ class Reduced:
     cyclic: tuple[str, ...]
     momenta: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        sizes = f"coordinates={len(self.coordinates)}, cyclic={list(self.cyclic)}"
+        return f"Reduced({sizes})\n{len(self.program)} operations, outputs {', '.join(self.program.outputs)}"
+
 
 def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
-    """The model without the given cyclic coordinates (default: all), inputs at 0.
+    """The model without the given cyclic coordinates (default: all), inputs at 0, as formulas.
 
-    Raises InvalidDocument for a coordinate that is not cyclic (see first_integrals), or for none, and for closures.
+        h q''_r + Gamma^h q'_r q'_r + B q'_r = f        q'_c = K q'_r + g_cc^-1 p,  p constant
+
+    Raises InvalidInput for a coordinate that is not cyclic (``/coordinates/i``, see first_integrals), or for none, and
+    for closures. Source: E. J. Routh, 1877; J. E. Marsden, 1992 (see above).
     """
     require_open(model.closures, "use first integrals, and simulations")
     found: FirstIntegrals = first_integrals(model)
@@ -51,18 +60,20 @@ def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
 
 
 def require_cyclic(model: Model, found: FirstIntegrals, names: Sequence[str]) -> list[int]:
-    """Indices of cyclic coordinates. Raises InvalidDocument for others, and for none."""
+    """Indices of cyclic coordinates. Raises InvalidArgument for others, and for none."""
     if not names:
-        raise InvalidDocument.at("/coordinates", "no-cyclic-coordinate", "the model has no cyclic coordinate")
+        raise InvalidArgument.at("/coordinates", "no-cyclic-coordinate", "the model has no cyclic coordinate")
     for i, name in enumerate(names):
         if name not in found.cyclic:
             known = ", ".join(found.cyclic) or "none"
             message = f"'{str(name)[:80]}' is not a cyclic coordinate; cyclic are: {known}"
-            raise InvalidDocument.at(f"/coordinates/{i}", "not-cyclic", message)
+            raise InvalidArgument.at(f"/coordinates/{i}", "not-cyclic", message)
     return [model.coordinates.index(name) for name in names]
 
 
 class _Reduction:
+    """P, w and what is formed with them."""
+
     def __init__(self, f: ModelFormulas, cyclic: Sequence[int]) -> None:
         self.f, self.cyclic = f, list(cyclic)
         self.zero = f.graph.zero
@@ -74,11 +85,12 @@ class _Reduction:
         pairs = [(i, j, (a, b)) for i, a in enumerate(cyclic) for j, b in enumerate(cyclic)]
         block: Entries = {(i, j): self.g[ab] for i, j, ab in pairs if ab in self.g}
         factors = Factors(block, [names[c] for c in cyclic])
-        # columns of P by coordinate of the model, and w
+        # columns of P = (1, K) by coordinate of the model, and w = (0, g_cc^-1 p)
         self.P = [self._column(factors, r) for r in self.rest]
         self.w = dict(zip(self.cyclic, factors.solve(self.p), strict=True))
 
     def _column(self, factors: Factors, r: int) -> dict[int, Expr]:
+        # K = -g_cc^-1 g_cr
         coupling = [-self.g.get((c, r), self.zero) for c in self.cyclic]
         column = dict(zip(self.cyclic, factors.solve(coupling), strict=True))
         return {r: self.f.graph.one} | {c: x for c, x in column.items() if not x.is_zero}
@@ -87,11 +99,14 @@ class _Reduction:
         """All outputs."""
         f, n, m = self.f, len(self.rest), len(self.cyclic)
         h = [[self._metric(a, b) for b in range(n)] for a in range(n)]
+        # Gamma_ijk P_ia P_jb, then B_ab with w_k and Gamma^h_abc with P_kc
         gamma = {(a, b): self._pushed(self.P[a], self.P[b]) for a in range(n) for b in range(n)}
         gyroscopic: Entries = {(a, b): 2 * self._sum(x, self.w) for (a, b), x in gamma.items()}
         christoffel: Entries = {(a, b, c): self._sum(x, self.P[c]) for (a, b), x in gamma.items() for c in range(n)}
         applied = f.vector("forces")
+        # f_a = Q_a - P_ia w_j w_k Gamma_ijk (Q_i has no part at the cyclic coordinates)
         forces = [applied[r] - self._sum(self._pushed(self.P[a], self.w), self.w) for a, r in enumerate(self.rest)]
+        # V_p = V + 1/2 p^T g_cc^-1 p
         amended = f.scalar("potential_energy") + self._momentum_product() / 2
         outputs = {
             "metric": Formulas((n, n), {(a, b): h[a][b] for a in range(n) for b in range(a, n)}, "symmetric"),
@@ -139,6 +154,7 @@ class _Reduction:
     def _routhian(self, h: Sequence[Sequence[Expr]]) -> Expr:
         """1/2 q'_r^T h q'_r + p^T g_cc^-1 g_cr q'_r."""
         v = [self.f.rates[r] for r in self.rest]
+        # p^T g_cc^-1 g_cr q'_r = w_c g_cr q'_r
         kinetic = self.f.graph.sum(h[a][b] * v[a] * v[b] for a in range(len(v)) for b in range(len(v))) / 2
         pairs = [(c, r, x) for c in self.cyclic for r, x in zip(self.rest, v, strict=True) if (c, r) in self.g]
         return kinetic + self.f.graph.sum(self.w[c] * self.g[c, r] * x for c, r, x in pairs)

@@ -1,1 +1,10 @@
-"""Which inertial parameters a motion depends on, and their values from measurements."""
+"""Which inertial parameters a motion depends on, and their values from measurements.
+
+===============  =====================================================================================================
+module           what is there
+===============  =====================================================================================================
+base_parameters  ``base_parameters``: the combinations of inertial parameters that inverse dynamics depends on, exactly
+dependencies     linear dependencies with constant coefficients between columns of functions
+fit              ``excitation`` and ``identify``: how well a motion shows them, and their values from measured motions
+===============  =====================================================================================================
+"""

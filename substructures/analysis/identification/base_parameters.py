@@ -28,7 +28,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from substructures.analysis.identification.dependencies import Dependencies, Functions, dependencies
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.modular import Field, NoSquareRoot
@@ -56,7 +56,7 @@ READABLE = 50
 X = TypeVar("X", Expr, int)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BaseParameters:
     """beta, its regressor, and how it consists of the standard parameters.
 
@@ -75,6 +75,10 @@ class BaseParameters:
     unseen: tuple[str, ...]
     drives: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+
+    def __repr__(self) -> str:
+        sizes = f"base={self.count}, standard={len(self.standard)}, unseen={len(self.unseen)}"
+        return f"BaseParameters({sizes}, joints={len(self.coordinates)})\n{', '.join(self.names)}"
 
     @property
     def count(self) -> int:
@@ -96,15 +100,18 @@ class BaseParameters:
 
 
 def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:
-    """The base parameters of a tree, from its regressor; ``drives``: some of DRIVES.
+    """The base parameters beta of a tree, from its regressor; ``drives``: some of DRIVES.
 
-    Raises InvalidDocument for an unknown drive and for closures, TooLarge (size, limit).
+        Y(q, q', q'') pi = Y_B beta,        beta = [1 C] pi
+
+    with constant [1 C] (b, p). Raises InvalidInput for an unknown drive (``/drives/i``) and for closures, TooLarge
+    (size, limit). Source: M. Gautier and W. Khalil, 1990 (see above).
     """
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
     for i, name in enumerate(drives):
         if name not in DRIVES:
             message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}"
-            raise InvalidDocument.at(f"/drives/{i}", "unknown-drive", message)
+            raise InvalidArgument.at(f"/drives/{i}", "unknown-drive", message)
     columns = _Columns(Y, tuple(dict.fromkeys(drives)))
     found = dependencies(columns.functions())
     result = _program(Y, columns, found)
@@ -184,6 +191,7 @@ class _Columns:
         for b, name in enumerate(self.Y.coordinates):
             for (a, i), x in regressor(still | {f"{name}''": one}).items():
                 if a <= b:
+                    # g^i_ab = ID_a(q, 0, e_b) - G_ai
                     rows.setdefault(("metric", a, b), {})[i] = x - static.get((a, i), zero)
         kinds = {"armature": "metric", "offset": "static"}
         for i, (kind, a) in self.pairs:
@@ -200,6 +208,7 @@ def _program(Y: RegressorModel, columns: _Columns, found: Dependencies) -> Progr
         grouping |= {(place[b], j): _readable(c, graph) for b, c in coefficients.items()}
     pi = replay(Y.program, graph, {}, ["inertial_parameters"])["inertial_parameters"].entries
     beta = [graph.zero] * len(place)
+    # beta = [1 C] pi
     for (k, i), c in grouping.items():
         beta[k] = beta[k] + c * (pi.get((i,), 0) + graph.zero)
     full = columns.full(graph).items()

@@ -83,6 +83,7 @@ class _Echelon:
                 inverse = pow(row[pivot], -1, self.prime)
                 self.rows[pivot] = {j: x * inverse % self.prime for j, x in row.items()}
                 return True
+            # row - row_pivot known, whose pivot is one
             row = self._minus(row, row[pivot], known)
         return False
 
@@ -174,6 +175,7 @@ class _Search:
                 ((r, c) for r in open_rows for c in range(size) if c not in place and system[r][c].value),
                 key=lambda at: (not system[at[0]][at[1]].formula.is_number, system[at[0]][at[1]].formula.index),
             )
+            # divide the row by its pivot, and take it from all others (Gauss and Jordan)
             place[c] = r
             pivot = system[r][c]
             inverse = pow(pivot.value, -1, self.prime)

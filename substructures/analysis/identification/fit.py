@@ -15,15 +15,16 @@ parameters well when its singular value is not small beside the largest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
+from substructures.analysis.given import StateArray
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.array import Array
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.states import numeric, read_states, symbol_values
@@ -34,7 +35,16 @@ LIMIT = 1e3
 #: relative size of a singular value that counts as zero
 RANK = 1e-10
 REGRESSOR, OWN = "base_regressor", "base_parameters"
-FIELDS = frozenset(("q", "qd", "qdd", "tau", "parameters"))
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A motion that was given, and numbers in place of the defaults of parameters."""
+
+    q: StateArray
+    qd: StateArray | None
+    qdd: StateArray | None
+    parameters: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -47,7 +57,7 @@ class _Data:
     outputs: Mapping[str, Array]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Excitation:
     """How well given motion excites the base parameters ``names`` (b).
 
@@ -62,6 +72,10 @@ class Excitation:
     rank: int
     weak: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        sizes = f"parameters={len(self.names)}, rank={self.rank}, condition={self.condition:.4g}"
+        return f"Excitation({sizes})\n{self.advice or 'every base parameter is excited well'}"
+
     @property
     def is_good(self) -> bool:
         """Every base parameter is excited, and the condition number is moderate."""
@@ -75,7 +89,7 @@ class Excitation:
         return "move more joints at a time, faster and farther, so that these parameters show: " + ", ".join(self.weak)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Identification:
     """``values`` (b,) in ``units``, their ``deviations`` (b,) (standard), ``residual`` (n,): root mean square of the
     force that is not explained, by joint [N m, N]; ``excitation``. ``status``: identified; failed where the motion does
@@ -90,29 +104,65 @@ class Identification:
     status: Literal["identified", "failed"]
     message: str
 
+    def __repr__(self) -> str:
+        worst = float(self.residual.max(initial=0))
+        finding = f"failed: {self.message}" if self.status == "failed" else f"largest unexplained force {worst:.4g}"
+        return f"Identification(parameters={len(self.names)}, joints={len(self.residual)})\n{finding}"
 
-def excitation(base: BaseParameters, request: Mapping[str, Any]) -> Excitation:
-    """How well motion q, qd, qdd (N, n each) excites the base parameters. Raises InvalidDocument, MissingValue."""
-    return _excitation(base.names, _stacked(base, request).outputs[REGRESSOR])
 
+def excitation(
+    base: BaseParameters,
+    q: StateArray,
+    qd: StateArray | None,
+    qdd: StateArray,
+    *,
+    parameters: Mapping[str, Any] | None = None,
+) -> Excitation:
+    """How well a motion shows the base parameters: singular values of the scaled regressor W = [Y_B(q, q', q'')].
 
-def identify(base: BaseParameters, request: Mapping[str, Any], model: Model | None = None) -> Identification:
-    """Base parameters from q, qd, qdd and tau (N, n each), and ``parameters`` for kinematic parameters.
-
-    ``model``: whose springs, dampers, loads and armature are known (its masses do not matter, drives are found as
-    differences to its own); without one ``tau`` is explained by the base parameters alone. Raises InvalidDocument with
-    pointers, and MissingValue.
+    ``q``, ``qd``, ``qdd`` (N, n), or columns by coordinate [rad, m, s]; ``qd`` None: at rest. ``parameters``: kinematic
+    ones, in place of their defaults. Raises InvalidInput (``/q``, ``/qdd``, ``/parameters/name``, ...) and
+    MissingValue. Source: J. Swevers et al., IEEE Transactions on Robotics and Automation 13(5), 1997.
     """
-    data = _stacked(base, request, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
-    W, tau, b = data.outputs[REGRESSOR], _forces(request, data), base.count
-    if model is not None:
-        tau = tau - _known(model, request, data)
+    data = _stacked(base, _Motion(q, qd, qdd, parameters or {}))
+    return _excitation(base.names, data.outputs[REGRESSOR])
+
+
+def identify(
+    base: BaseParameters,
+    q: StateArray,
+    qd: StateArray | None,
+    qdd: StateArray,
+    tau: Sequence[Sequence[float]] | Array,
+    *,
+    parameters: Mapping[str, Any] | None = None,
+    model: Model | None = None,
+) -> Identification:
+    """Base parameters beta from a measured motion: beta = argmin |D^-1 (W beta - tau + known)|^2 (see above).
+
+    ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N]; states also as columns by coordinate; ``qd`` None: at
+    rest. ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and
+    armature are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is
+    explained by the base parameters alone. A motion that does not excite all of them is a result with status
+    ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
+    IEEE ICRA 1997.
+    """
+    motion = _Motion(q, qd, qdd, parameters or {})
+    data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
+    force = _forces(tau, data)
+    return _fitted(base, data, force if model is None else force - _known(model, motion, data))
+
+
+def _fitted(base: BaseParameters, data: _Data, tau: Array) -> Identification:
+    """Least squares twice, the second time with the standard deviations of the first as weights."""
+    W, b = data.outputs[REGRESSOR], base.count
     judged = _excitation(base.names, W)
     if W.shape[0] * W.shape[1] <= b:
         message = f"{len(W)} samples of {W.shape[1]} joints cannot determine {b} parameters: give more"
-        raise InvalidDocument.at("/q", "too-few", message)
+        raise InvalidArgument.at("/q", "too-few", message)
     flat, force = W.reshape(-1, b), tau.reshape(-1)
     first = _solved(flat, force)
+    # D = diag sigma_a,  sigma_a^2 = mean over the samples of (tau - W beta)_a^2
     sigma = np.sqrt(np.mean((tau - W @ first) ** 2, axis=0))
     # a joint that is explained to rounding must not take all the weight
     least = 1e-12 * float(np.abs(tau).max(initial=0)) or 1.0
@@ -133,36 +183,35 @@ def identify(base: BaseParameters, request: Mapping[str, Any], model: Model | No
     )
 
 
-def _stacked(base: BaseParameters, request: Mapping[str, Any], names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
-    """Outputs of the program for the motion of a request."""
-    for key in request:
-        if key not in FIELDS:
-            raise InvalidDocument.at(f"/{key}", "unknown-field", f"unknown field '{key}'")
+def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
+    """Outputs of the program along a motion."""
     view = Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
-    states = read_states(view, request, None)
+    states = read_states(view, vars(motion), None)
     if states.qdd is None:
-        raise InvalidDocument.at("/qdd", "missing", "accelerations 'qdd' are needed")
-    values = symbol_values(view, request, states, ())
+        raise InvalidArgument.at("/qdd", "missing", "accelerations 'qdd' are needed")
+    values = symbol_values(view, vars(motion), states, ())
     values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(base.coordinates)}
-    return _Data(states.q, states.qd, states.qdd, interpret_in_blocks(base.program, values, names, len(states.q)))
+    # one position for all accelerations, ...
+    q, qd, qdd = (np.broadcast_to(x, (states.count, states.q.shape[1])) for x in (states.q, states.qd, states.qdd))
+    return _Data(q, qd, qdd, interpret_in_blocks(base.program, values, names, states.count))
 
 
-def _forces(request: Mapping[str, Any], data: _Data) -> Array:
-    given = request.get("tau")
+def _forces(given: Any, data: _Data) -> Array:
     if given is None:
-        raise InvalidDocument.at("/tau", "missing", "actuator forces 'tau' are needed")
+        raise InvalidArgument.at("/tau", "missing", "actuator forces 'tau' are needed")
     tau = np.atleast_2d(numeric(given, "/tau"))
     if tau.shape != data.q.shape:
         message = f"shape {tau.shape} found, {data.q.shape} expected"
-        raise InvalidDocument.at("/tau", "wrong-length", message)
+        raise InvalidArgument.at("/tau", "wrong-length", message)
     return tau
 
 
-def _known(model: Model, request: Mapping[str, Any], data: _Data) -> Array:
+def _known(model: Model, motion: _Motion, data: _Data) -> Array:
     """Inverse dynamics of the model without its inertial forces: less Y_B beta of its own values."""
-    given = (request.get("parameters") or {}).items()
+    given = motion.parameters.items()
     common = {"q": data.q, "qd": data.qd, "qdd": data.qdd, "quantities": ["inverse_dynamics"]}
     answer = evaluate(model, {**common, "parameters": {name: x for name, x in given if name in model.parameters}})
+    # ID(q, q', q'') - Y_B beta
     inertial = np.einsum("nab,nb->na", data.outputs[REGRESSOR], data.outputs[OWN])
     return np.asarray(answer["inverse_dynamics"] - inertial, dtype=np.float64)
 
@@ -172,6 +221,7 @@ def _excitation(names: tuple[str, ...], W: Array) -> Excitation:
     length = np.linalg.norm(flat, axis=0)
     scaled = flat / np.where(length > 0, length, 1.0)
     _, s, V = np.linalg.svd(scaled, full_matrices=len(scaled) < len(names))
+    # sigma_i of W diag(1/|W_i|); fewer samples than parameters leave zeros
     values = np.zeros(len(names))
     values[: len(s)] = s
     top = float(values.max(initial=0))
@@ -198,5 +248,6 @@ def _deviations(W: Array, residual: Array) -> Array:
     _, s, V = np.linalg.svd(W / scale, full_matrices=False)
     if s.min(initial=np.inf) <= RANK * s.max(initial=0):
         return np.full(W.shape[1], np.inf)
+    # cov = sigma^2 V diag(1/s^2) V^T,  sigma^2 = |r|^2 / (rows - columns)
     variance = float(residual @ residual) / (len(W) - W.shape[1])
     return np.asarray(np.sqrt(variance * np.sum((V / s[:, None]) ** 2, axis=0)) / scale, dtype=np.float64)

@@ -1,1 +1,17 @@
-"""States of rest and what happens near them: equilibria, linearisation, vibrations, root loci."""
+"""States of rest and what happens near them.
+
+======================  ==============================================================================================
+module                  what is there
+======================  ==============================================================================================
+equilibria              ``equilibria``: positions of rest of a model, each with its linearisation
+equilibrium_search      how they are found, of trees and of closed loops: Newton's method from many starts
+linearise               ``linearise``: M, D, K, F and A, B, C, D about states, for open trees
+linearise_closed        the same for closed loops, in independent coordinates
+linearisation_result    ``Linearisation`` and ``ClosedLinearisation``: what linearise gives
+operating_point         what linearise is given, and what both of its ways share
+vibrations              modes of M x'' + D x' + K x = 0, and what they say about stability
+root_locus              ``root_locus``: eigenvalues of an equilibrium over a parameter
+======================  ==============================================================================================
+
+The same as formulas: :mod:`substructures.analysis.equations.perturbation`.
+"""

@@ -4,20 +4,17 @@ Q_a + lambda_k G_ka = 0, phi_k(q) = 0.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from substructures.analysis.equations.formulas import require_moving
-from substructures.analysis.stability.equilibria_closed import ClosedSearch
-from substructures.analysis.stability.equilibrium_search import EquilibriaRequest, RestSearch
-from substructures.analysis.stability.linearisation import Linearisation
+from substructures.analysis.stability.equilibrium_search import ClosedSearch, RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
-from substructures.analysis.stability.linearise_closed import ClosedLinearisation
 from substructures.array import Array
-from substructures.documents import read_model
 from substructures.tree.model import Model
 
 #: two equilibria closer than this are one [rad, m]
@@ -26,10 +23,10 @@ SAME = 1e-6
 SINGULAR = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Equilibrium:
-    """``q`` (n,): angles in (-pi, pi]. ``free``: directions (k, n) in which the forces do not decide (K singular); with
-    closures those that keep them.
+    """``q`` (n,): angles in (-pi, pi] [rad], distances [m]. ``free`` (k, n): directions of length one in which the
+    forces do not decide (K singular); with closures those that keep them.
 
     ``at``: the linearisation there with modes and stability.
     """
@@ -38,8 +35,17 @@ class Equilibrium:
     free: Array
     at: Linearisation
 
+    def __repr__(self) -> str:
+        place = ", ".join(f"{name}={x:.6g}" for name, x in zip(self.at.coordinates, self.q.tolist(), strict=True))
+        return f"Equilibrium({place})\n{self.at.message or self.verdict}, {len(self.free)} undetermined directions"
 
-@dataclass(frozen=True)
+    @property
+    def verdict(self) -> str:
+        """What the linearisation says about its stability; ``failed`` where there is none."""
+        return "failed" if self.at.stability is None else self.at.stability.verdict
+
+
+@dataclass(frozen=True, repr=False)
 class Equilibria:
     """All that were found, in the order of their coordinates. ``held``: coordinates on which no force and no closure
     depends, kept at their start. ``message``: advice when nothing was found.
@@ -49,47 +55,64 @@ class Equilibria:
     held: tuple[str, ...]
     message: str = ""
 
-    def summary(self) -> dict[str, Any]:
-        """As plain data and arrays."""
-        found = [{"q": e.q, "free": e.free, "at": e.at.summary()} for e in self.found]
-        return {"found": found, "held": list(self.held), "message": self.message}
+    def __repr__(self) -> str:
+        verdicts = Counter(e.verdict for e in self.found)
+        finding = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
+        return f"Equilibria(found={len(self.found)}, held={list(self.held)})\n{self.message or finding}"
 
 
-def equilibria(model: Model, request: Mapping[str, Any] | None = None) -> Equilibria:
-    """Equilibria of a model; ``request``: see EquilibriaRequest.
+def equilibria(
+    model: Model,
+    *,
+    starts: Sequence[float] | Sequence[Sequence[float]] | Array | None = None,
+    count: int = 32,
+    reach: float = 1.0,
+    seed: int = 0,
+    t: float = 0.0,
+    parameters: Mapping[str, float] | None = None,
+    inputs: Mapping[str, float] | None = None,
+) -> Equilibria:
+    """Positions of rest of a model: Q_a(q, q' = 0) = 0, with closures Q_a + lambda_k G_ka = 0 and phi_k(q) = 0.
 
-    Starts of closed loops are first moved onto the closures; an equilibrium in a singular position has a linearisation
-    that is ``failed``. Raises InvalidDocument (pointers; ``not-smooth``) and MissingValue.
+    Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
+    distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
+    ``inputs`` [N m, N] (0 by default) stay as they are. Starts of closed loops are first moved onto the closures; an
+    equilibrium in a singular position has a linearisation that is ``failed``. That none is found is a result with
+    advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative) and
+    MissingValue. Source: notation.md, section 7.
     """
     require_moving(model)
-    read = read_model(EquilibriaRequest, request or {})
-    search = ClosedSearch(model, read) if model.closures else RestSearch(model, read)
-    starts = search.starts()
-    held = search.held(starts)
+    conditions = RestConditions(t, parameters or {}, inputs or {})
+    within = SearchRange(starts, count, reach, seed)
+    search = ClosedSearch(model, within, conditions) if model.closures else RestSearch(model, within, conditions)
+    places = search.starts()
+    held = search.held(places)
     moving = [a for a in range(model.dof) if a not in held]
     found: list[Array] = []
-    starts[:, held] = starts[0, held]
-    for start in starts:
+    places[:, held] = places[0, held]
+    for start in places:
         q = search.solve(start, moving)
         if q is not None and not any(search.distance(q, other) < SAME for other in found):
             found.append(q)
     names = tuple(model.coordinates[a] for a in held)
     ordered = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])] if found and model.dof else found
-    results = tuple(_described(model, read, q) for q in ordered)
-    message = "" if results else search.advice(starts[0], held)
+    results = tuple(_described(model, conditions, q) for q in ordered)
+    message = "" if results else search.advice(places[0], held)
     return Equilibria(results, names, message)
 
 
-def _described(model: Model, read: EquilibriaRequest, q: Array) -> Equilibrium:
+def _described(model: Model, conditions: RestConditions, q: Array) -> Equilibrium:
     """With its singular directions and its linearisation."""
-    at = linearise(model, {"q": q, "t": read.t, "parameters": read.parameters, "inputs": read.inputs})
+    at = linearise(model, q, t=conditions.t, parameters=conditions.parameters, inputs=conditions.inputs)
     if isinstance(at, ClosedLinearisation):
         q = at.q
     if at.status == "failed" or not len(at.K):
         return Equilibrium(q, np.zeros((0, model.dof)), at)
+    # K dq = 0 up to rounding
     _, sizes, rows = np.linalg.svd(at.K)
     free = rows[sizes <= SINGULAR * max(1.0, float(sizes.max(initial=0)))]
     if isinstance(at, ClosedLinearisation):
+        # dq = N dy
         free = free @ at.tangent.T
         free /= np.linalg.norm(free, axis=1, keepdims=True)
     return Equilibrium(q, free, at)

@@ -1,21 +1,121 @@
-"""Linearisation of a model in numbers: a request as plain data in, matrices, modes and stability out."""
+"""Linearisation of a model in numbers: of open trees here, of closed loops by :mod:`.linearise_closed`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from substructures.analysis.stability.linearisation import Linearisation
+import numpy as np
+
+from substructures.analysis.arguments import Scalar
+from substructures.analysis.equations.formulas import inputs_of, require_moving
+from substructures.analysis.equations.perturbation import perturbation
+from substructures.analysis.given import StateArray
+from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
-from substructures.analysis.stability.linearise_tree import linearise_tree
+from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
+from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, stability
+from substructures.array import Array
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.states import States, read_states, symbol_values
 from substructures.tree.model import Model
 
+DYNAMICS = ("metric", "bias", "forces")
 
-def linearise(model: Model, request: Mapping[str, Any]) -> Linearisation:
-    """Perturbation equations and state-space matrices of any model; ``request``: see LinearisationRequest.
 
-    Of a model with closures: linearise_closed, about one state in independent coordinates; else linearise_tree, about
-    one state or states along a trajectory. Raises InvalidDocument (pointers; ``not-smooth`` for forces without
-    derivative) and MissingValue.
+def linearise(
+    model: Model,
+    q: StateArray,
+    *,
+    qd: StateArray | None = None,
+    qdd: StateArray | None = None,
+    t: float | Sequence[float] | Array = 0,
+    parameters: Mapping[str, Any] | None = None,
+    inputs: Mapping[str, Any] | None = None,
+    outputs: Mapping[str, Scalar] | None = None,
+    of_inputs: Sequence[str] | None = None,
+) -> Linearisation:
+    """Perturbation equations and state-space matrices of a model about a state, or states along a trajectory.
+
+        M dq'' + D dq' + K dq = F du        dx' = A dx + B du,  dy = C dx + Dy du,  x = (q, q')
+
+    ``q``, ``qd``, ``qdd`` (n,) or (N, n), or by coordinate [rad, m, s]; ``qd`` is 0 by default, ``qdd`` that of the
+    motion. ``t`` [s], ``parameters`` (in place of their defaults) and ``inputs`` [N m, N] (0 by default): one number,
+    or (N,). ``outputs``: y by name, expressions in q, q', inputs, parameters and t; ``of_inputs``: the columns of B and
+    D (default all). A model with closures is linearised about the closed state nearest to one given state, without
+    ``qdd``, in independent coordinates, which gives a ClosedLinearisation.
+
+    Numerical failures (a singular metric, loops that cannot be closed) are results with status ``failed`` and advice.
+    Raises InvalidInput (``/q``, ``/outputs/y``, ``/of_inputs/i``, ...; ``not-smooth`` for forces without derivative)
+    and MissingValue. Source: P. C. Mueller and W. O. Schiehlen, Linear Vibrations, 1985; notation.md, section 7.
     """
-    return linearise_closed(model, request) if model.closures else linearise_tree(model, request)
+    require_moving(model)
+    point = OperatingPoint(model, q, qd, qdd, t, parameters or {}, inputs or {}, outputs or {}, of_inputs)
+    return linearise_closed(point) if model.closures else _linearise_tree(point)
+
+
+def _linearise_tree(point: OperatingPoint) -> Linearisation:
+    """M, D, K, F of a tree without closures, and A, B, C, D."""
+    model = point.model
+    states = read_states(model, {"q": point.q, "qd": point.qd, "qdd": point.qdd}, None)
+    chosen = point.chosen_inputs()
+    source = perturbation(model)
+    values = symbol_values(model, point.conditions, states, DYNAMICS)
+    qdd = _accelerations(model, values, states)
+    # M, D, K, F and the residual at (q, q', q'', u, t)
+    values |= {f"{name}''": qdd[:, a] for a, name in enumerate(model.coordinates)}
+    found = interpret_in_blocks(source, values, list(MATRICES), len(qdd))
+    found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
+    by_output = point.output_matrices(chosen, values, len(qdd))
+    result = _assembled(model, (chosen, tuple(point.outputs)), found, by_output, qdd)
+    message = fault_of(model.coordinates, result.qdd, result.D, result.K)
+    if message:
+        result = replace(result, status="failed", message=message)
+    return _judged(point, states, _single(result)) if states.single else result
+
+
+def _accelerations(model: Model, values: Mapping[str, Any], states: States) -> Array:
+    if states.qdd is not None:
+        return np.array(np.broadcast_to(states.qdd, (states.count, model.dof)))
+    found = interpret_in_blocks(model.program, values, list(DYNAMICS), states.count)
+    # g q'' = Q - Gamma q' q'
+    return cholesky_solve(found["metric"], found["forces"] - found["bias"])
+
+
+def _assembled(
+    model: Model,
+    names: tuple[tuple[str, ...], tuple[str, ...]],
+    found: Mapping[str, Array],
+    by_output: tuple[Array, Array],
+    qdd: Array,
+) -> Linearisation:
+    """All matrices, states first; ``names``: of inputs and outputs."""
+    M, D, K, F = (found[name] for name in ("metric", "damping", "stiffness", "input"))
+    pairs = []
+    for m, d, k, f in zip(M, D, K, F, strict=True):
+        try:
+            pairs.append((first_order(m, d, k), input_matrix(m, f)))
+        except np.linalg.LinAlgError:  # M^-1 does not exist: a failure, told below
+            n = len(m)
+            pairs.append((np.full((2 * n, 2 * n), np.nan), np.full((2 * n, f.shape[1]), np.nan)))
+    A, B = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
+    return Linearisation(model.coordinates, *names, M, D, K, F, A, B, *by_output, qdd, found["residual"])
+
+
+def _single(result: Linearisation) -> Linearisation:
+    names = ("M", "D", "K", "F", "A", "B", "C", "Dy", "qdd", "residual")
+    return replace(result, **{name: getattr(result, name)[0] for name in names})
+
+
+def _judged(point: OperatingPoint, states: States, result: Linearisation) -> Linearisation:
+    """With modes and stability where the state is an equilibrium."""
+    still = not states.qd.any() and result.status == "finished"
+    if not still or not is_small(result.qdd, result.K, result.M):
+        return result
+    # a given q'' = 0 is an equilibrium only where M^-1 (g q'' + Gamma q' q' - Q) vanishes, too
+    if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):
+        return result
+    found = modes(result.M, result.D, result.K)
+    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential()))

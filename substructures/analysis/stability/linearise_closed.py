@@ -15,7 +15,7 @@ Design 104, 1982).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,67 +24,31 @@ from numpy.typing import NDArray
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
 from substructures.analysis.closed.loops import independent_coordinates, least_multipliers, mobility
 from substructures.analysis.closed.projection import consistent_state
-from substructures.analysis.equations.formulas import inputs_of, multipliers_of, require_moving
+from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.motion.problem import Start
-from substructures.analysis.stability.linearisation import (
-    MATRICES,
-    Linearisation,
-    LinearisationRequest,
-    chosen_inputs,
-    fault_of,
-    has_potential,
-    is_small,
-    output_matrices,
-)
-from substructures.analysis.stability.vibrations import first_order, modes, normed, stability
+from substructures.analysis.stability.linearisation_result import ClosedLinearisation
+from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
+from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, normed, stability
 from substructures.array import Array
-from substructures.documents import read_model
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.quantities.states import read_states, symbol_values
-from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces", "closure.residual", "closure.jacobian", "closure.acceleration")
 ALONG = ("closure.jacobian", "closure.jacobian_rate", "closure.jacobian_second")
 
 
-@dataclass(frozen=True, kw_only=True)
-class ClosedLinearisation(Linearisation):
-    """As Linearisation, with M, D, K (r, r), F (r, k), A (2r, 2r), ... in the coordinates ``independent`` (r names).
-
-    ``q``, ``qd`` (n,): the closed state. ``tangent`` (n, r): N. ``multipliers`` (m,) of least norm, of the rows
-    ``constraints``. In all coordinates are ``qdd`` and ``residual`` (n,): g q'' + Gamma q'q' - Q - G^T lambda, and the
-    shapes of modes.
-    """
-
-    independent: tuple[str, ...]
-    constraints: tuple[str, ...]
-    q: Array
-    qd: Array
-    tangent: Array
-    multipliers: Array
-
-    def summary(self) -> dict[str, Any]:
-        """As plain data."""
-        names = {"independent": list(self.independent), "constraints": list(self.constraints)}
-        arrays = {name: getattr(self, name) for name in ("q", "qd", "tangent", "multipliers")}
-        return super().summary() | names | arrays
-
-
-def linearise_closed(model: Model, request: Mapping[str, Any]) -> ClosedLinearisation:
+def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     """Perturbation equations and state-space matrices about the closed state nearest to the given one.
 
-    ``request``: see LinearisationRequest, for one state ``q`` (n,), at rest or moving as the equations of motion say.
-    x = (y, y'). At an equilibrium also ``modes`` and ``stability``. Loops that cannot be closed and singular positions
-    are ``failed``, with advice. Raises InvalidDocument (pointers; ``one-state`` for a trajectory, ``not-smooth``) and
-    MissingValue.
+    The point is one state ``q`` (n,), at rest or moving as the equations of motion say. x = (y, y'). At an equilibrium
+    also ``modes`` and ``stability``. Loops that cannot be closed and singular positions are ``failed``, with advice.
+    Raises InvalidInput (``one-state`` for a trajectory, ``not-smooth``) and MissingValue.
     """
-    require_moving(model)
-    read = read_model(LinearisationRequest, request)
-    values = _values(model, read)
-    chosen = chosen_inputs(model, read)
-    s = _constrained(model, read, values)
+    model, values = point.model, _values(point)
+    chosen = point.chosen_inputs()
+    s = _constrained(point, values)
     state = consistent_state(s, values["t"], s.conditions.q, s.conditions.qd)
     place = mobility(s, values["t"], state.q)
     message = state.message or ("the position is singular: " + SINGULAR if place.singular else "")
@@ -92,6 +56,7 @@ def linearise_closed(model: Model, request: Mapping[str, Any]) -> ClosedLinearis
     qdd, multipliers = np.full(s.n, np.nan), np.full(len(s.labels), np.nan)
     try:
         qdd, _ = s.accelerations(s.independent_rows())
+        # G^T lambda = g q'' + Gamma q' q' - Q
         multipliers = least_multipliers(s, qdd)
     except Singular as error:
         message = message or str(error)
@@ -99,31 +64,30 @@ def linearise_closed(model: Model, request: Mapping[str, Any]) -> ClosedLinearis
     found = interpret(perturbation(model), values, [*MATRICES, *ALONG])
     message = message or fault_of(model.coordinates, qdd, found["damping"], found["stiffness"])
     found["input"] = found["input"][:, [inputs_of(model).index(name) for name in chosen]]
-    found["C"], found["Dy"] = (x[0] for x in output_matrices(model, read, chosen, values, 1))
-    result = _reduced(s, found, (chosen, tuple(read.outputs)), qdd, multipliers)
-    if message:
-        return _failed(result, message)
-    return _at_equilibrium(model, read, result)
+    found["C"], found["Dy"] = (x[0] for x in point.output_matrices(chosen, values, 1))
+    result = _reduced(s, found, (chosen, tuple(point.outputs)), qdd, multipliers)
+    return _failed(result, message) if message else _judged(point, result)
 
 
-def _values(model: Model, read: LinearisationRequest) -> dict[str, float]:
-    """Numbers of all symbols. Raises InvalidDocument, MissingValue."""
-    if read.qdd is not None:
+def _values(point: OperatingPoint) -> dict[str, float]:
+    """Numbers of all symbols. Raises InvalidInput, MissingValue."""
+    model = point.model
+    if point.qdd is not None:
         message = "the accelerations of closed loops follow from their motion: leave 'qdd' out"
-        raise InvalidDocument.at("/qdd", "not-supported", message)
-    given = {"q": read.q, "qd": read.qd, "parameters": read.parameters, "inputs": read.inputs, "t": read.t}
+        raise InvalidArgument.at("/qdd", "not-supported", message)
+    given = {"q": point.q, "qd": point.qd, **point.conditions}
     states = read_states(model, given, None)
     if not states.single:
         message = f"{states.count} states: closed loops are linearised about one state 'q' of shape ({model.dof},)"
-        raise InvalidDocument.at("/q", "one-state", message)
+        raise InvalidArgument.at("/q", "one-state", message)
     found = symbol_values(model, given, states, NEEDS)
     return {name: float(np.ravel(x)[0]) for name, x in found.items()}
 
 
-def _constrained(model: Model, read: LinearisationRequest, values: Mapping[str, float]) -> Constrained:
-    numbers = {field: {name: values[name] for name in getattr(read, field)} for field in ("parameters", "inputs")}
-    q, qd = ([values[f"{name}{prime}"] for name in model.coordinates] for prime in ("", "'"))
-    return Constrained(model, Start(q, qd, numbers["parameters"], numbers["inputs"]), (values["t"], values["t"]))
+def _constrained(point: OperatingPoint, values: Mapping[str, float]) -> Constrained:
+    q, qd = ([values[f"{name}{prime}"] for name in point.model.coordinates] for prime in ("", "'"))
+    parameters, inputs = ({name: values[name] for name in given} for given in (point.parameters, point.inputs))
+    return Constrained(point.model, Start(q, qd, parameters, inputs), (values["t"], values["t"]))
 
 
 def _put(s: Constrained, values: dict[str, float], qdd: Array, multipliers: Array) -> None:
@@ -143,11 +107,14 @@ def _reduced(
     """Everything at the state where s is, in independent coordinates; ``names``: of inputs and outputs."""
     coordinates, n = s.model.coordinates, s.n
     M, D, K, F, C = (found[name] for name in ("metric", "damping", "stiffness", "input", "C"))
+    # dq = N dy by the pivots of G
     y = independent_coordinates(s.G)
     N, rate, second = _tangent(s.independent_rows(), y, *(found[name] for name in ALONG))
     with np.errstate(invalid="ignore"):
+        # of dy'', du, dy' and dy in the equation above
         m, f = N.T @ M @ N, N.T @ F
         d, k = N.T @ (D @ N + 2 * M @ rate), N.T @ (K @ N + D @ rate + M @ second)
+        # C_q dq + C_q' dq' with dq = N dy, dq' = N dy' + N' dy
         output = np.hstack([C[:, :n] @ N + C[:, n:] @ rate, C[:, n:] @ N])
     return ClosedLinearisation(
         coordinates,
@@ -167,11 +134,12 @@ def _reduced(
 def _tangent(
     rows: NDArray[np.int64], y: NDArray[np.int64], G: Array, rate: Array, second: Array
 ) -> tuple[Array, Array, Array]:
-    """N, N', N'' (n, r)."""
+    """N, N', N'' (n, r) (notation.md, section 10)."""
     n = G.shape[1]
     others = np.setdiff1d(np.arange(n), y)
     G, rate, second = G[rows], rate[rows], second[rows]
     N, N1, N2 = (np.zeros((n, len(y))) for _ in range(3))
+    # G_z N_z = -G_y,  G_z N'_z = -G' N,  G_z N''_z = -G'' N - 2 G' N'  for the other coordinates z
     N[y] = np.eye(len(y))
     N[others] = -np.linalg.solve(G[:, others], G[:, y])
     N1[others] = -np.linalg.solve(G[:, others], rate @ N)
@@ -183,7 +151,7 @@ def _state_space(M: Array, D: Array, K: Array, F: Array) -> tuple[Array, Array]:
     r = len(M)
     if not np.isfinite([x.sum() for x in (M, D, K, F)]).all() or np.linalg.matrix_rank(M) < r:
         return np.full((2 * r, 2 * r), np.nan), np.full((2 * r, F.shape[1]), np.nan)
-    return first_order(M, D, K), np.vstack([np.zeros_like(F), np.linalg.solve(M, F)])
+    return first_order(M, D, K), input_matrix(M, F)
 
 
 def _failed(result: ClosedLinearisation, message: str) -> ClosedLinearisation:
@@ -193,12 +161,13 @@ def _failed(result: ClosedLinearisation, message: str) -> ClosedLinearisation:
     return replace(result, status="failed", message=message, **nothing)
 
 
-def _at_equilibrium(model: Model, read: LinearisationRequest, result: ClosedLinearisation) -> ClosedLinearisation:
-    moving = [model.coordinates.index(name) for name in result.independent]
+def _judged(point: OperatingPoint, result: ClosedLinearisation) -> ClosedLinearisation:
+    """With modes and stability where the closed state is an equilibrium."""
+    moving = [result.coordinates.index(name) for name in result.independent]
     if result.qd.any() or not is_small(result.qdd[moving], result.K, result.M):
         return result
+    # shapes in all coordinates: dq = N dy
     found = tuple(
         replace(mode, shape=normed(result.tangent @ mode.shape)) for mode in modes(result.M, result.D, result.K)
     )
-    judged = stability(found, result.D, result.K, has_potential(model, read))
-    return replace(result, modes=found, stability=judged)
+    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential()))

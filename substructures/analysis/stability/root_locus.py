@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from itertools import groupby
+from typing import Any
 
 import numpy as np
-from pydantic import Field
 from scipy.optimize import linear_sum_assignment
 
+from substructures.analysis.arguments import Numbers, reals
+from substructures.analysis.given import StateArray, numbers
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
-from substructures.documents import DocumentPart, read_model
-from substructures.documents.fields import Real
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument
+from substructures.quantities.states import numeric, read_states
 from substructures.tree.model import Model
 
-
-class RootLocusRequest(DocumentPart):
-    """``parameter`` takes the ``values`` one after the other; ``q``: where the first equilibrium is near to."""
-
-    parameter: str
-    values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000)]
-    q: Any
-    parameters: dict[str, Real] = Field({}, description="of all others, in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+#: of a parameter
+MAX_VALUES = 10_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RootLocus:
     """Branches: ``eigenvalues`` (N, 2r) [1/s] for r degrees of freedom (n of a tree without closures), ``q`` (N, n) and
     ``stability`` verdicts at ``values`` (N,).
@@ -43,56 +37,84 @@ class RootLocus:
     status: str = "finished"
     message: str = ""
 
-    def summary(self) -> dict[str, Any]:
-        """As plain data and arrays; eigenvalues as pairs, (N, 2r, 2)."""
-        pairs = np.stack([self.eigenvalues.real, self.eigenvalues.imag], axis=-1)
-        return {**vars(self), "eigenvalues": pairs, "stability": list(self.stability)}
+    def __repr__(self) -> str:
+        branches = self.eigenvalues.shape[1]
+        finding = ", then ".join(verdict for verdict, _ in groupby(self.stability))
+        message = f"failed: {self.message}" if self.status == "failed" else finding
+        return f"RootLocus(values={len(self.values)}, branches={branches})\n{message}"
 
 
-def root_locus(model: Model, request: Mapping[str, Any]) -> RootLocus:
-    """Eigenvalues of x' = A x over the values of a parameter, in branches that change least from value to value.
+def root_locus(
+    model: Model,
+    parameter: str,
+    values: Numbers,
+    q: StateArray,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    inputs: Mapping[str, float] | None = None,
+) -> RootLocus:
+    """Eigenvalues of x' = A x at an equilibrium, in branches that change least from value to value of a parameter.
 
-    ``request``: see RootLocusRequest. Raises InvalidDocument (pointers) and MissingValue.
+    ``parameter`` takes the ``values`` (N,) one after the other; ``q`` (n,) [rad, m]: where the first equilibrium is
+    near to. ``parameters``: all others, in place of their defaults; ``inputs``: constant [N m, N], 0 by default. An
+    equilibrium that is lost ends the locus with advice. Raises InvalidInput (``/parameter``, ``/values``, ``/q``, ...)
+    and MissingValue. Source: W. R. Evans, Graphical analysis of control systems, Trans. AIEE 67, 1948.
     """
-    read = read_model(RootLocusRequest, request)
-    if read.parameter not in model.parameters:
-        raise InvalidDocument.at("/parameter", "unknown-parameter", f"unknown parameter '{read.parameter[:80]}'")
-    q: Any = read.q
+    at = reals(values, "/values")
+    if not 0 < len(at) <= MAX_VALUES:
+        message = f"{len(at):,} values; 1 to {MAX_VALUES:,} are needed"
+        raise InvalidArgument.at("/values", "too-short" if not at else "too-long", message)
+    others, constant = numbers(parameters, "parameters"), numbers(inputs, "inputs")
+    if parameter not in model.parameters:
+        raise InvalidArgument.at("/parameter", "unknown-parameter", f"unknown parameter '{str(parameter)[:80]}'")
+    near = _start(model, q)
     rows: list[tuple[Array, ComplexArray, str]] = []
     status, message = "finished", ""
-    for value in read.values:
-        found = _nearest(model, read, value, q)
+    for value in at:
+        found = _nearest(model, near, others | {parameter: value}, constant)
         if found is None or (rows and len(found[1]) != len(rows[-1][1])):
             status = "failed"
-            message = f"there is no equilibrium near the last one at {read.parameter} = {value:g}: take smaller steps"
+            message = f"there is no equilibrium near the last one at {parameter} = {value:g}: take smaller steps"
             break
-        q, roots, verdict = found
-        rows.append((q, _followed(rows[-1][1], roots) if rows else roots, verdict))
-    n, count = model.dof, len(rows)
-    return RootLocus(
-        np.array(read.values[:count]),
-        np.array([row[0] for row in rows]).reshape(count, n),
-        np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, len(rows[0][1]) if rows else 2 * n),
-        tuple(row[2] for row in rows),
-        status,
-        message,
-    )
+        near, roots, verdict = found
+        rows.append((near, _followed(rows[-1][1], roots) if rows else roots, verdict))
+    return RootLocus(np.array(at[: len(rows)]), *_branches(rows, model.dof), status, message)
 
 
-def _nearest(model: Model, read: RootLocusRequest, value: float, q: Any) -> tuple[Array, ComplexArray, str] | None:
-    """The equilibrium that Newton's method finds from q."""
-    parameters = read.parameters | {read.parameter: value}
-    request = {"starts": [np.asarray(q).tolist()], "count": 0, "parameters": parameters, "inputs": read.inputs}
-    found = equilibria(model, request).found
+def _branches(rows: Sequence[tuple[Array, ComplexArray, str]], n: int) -> tuple[Array, ComplexArray, tuple[str, ...]]:
+    """q (N, n), eigenvalues (N, 2r) and verdicts."""
+    count, width = len(rows), len(rows[0][1]) if rows else 2 * n
+    q = np.array([row[0] for row in rows]).reshape(count, n)
+    roots = np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, width)
+    return q, roots, tuple(row[2] for row in rows)
+
+
+def _start(model: Model, q: Any) -> Array:
+    """One position (n,), by coordinate, or a number where there is one coordinate. Raises InvalidInput."""
+    if isinstance(q, Mapping):
+        return read_states(model, {"q": q}, 1).q[0]
+    start = np.atleast_1d(numeric(q, "/q"))
+    if start.shape != (model.dof,):
+        raise InvalidArgument.at("/q", "wrong-length", f"shape {start.shape} found, ({model.dof},) expected")
+    return start
+
+
+def _nearest(
+    model: Model, q: Array, parameters: Mapping[str, float], inputs: Mapping[str, float]
+) -> tuple[Array, ComplexArray, str] | None:
+    """The equilibrium that Newton's method finds from q, its eigenvalues, and the verdict."""
+    found = equilibria(model, starts=q, count=0, parameters=parameters, inputs=inputs).found
     if not found:
         return None
-    near = min(found, key=lambda e: float(np.abs(e.q - np.asarray(q, dtype=np.float64)).max(initial=0)))
+    near = min(found, key=lambda e: float(np.abs(e.q - q).max(initial=0)))
     if near.at.stability is None:
         return None
+    # det(A - z 1) = 0
     return near.q, np.linalg.eigvals(near.at.A).astype(np.complex128), near.at.stability.verdict
 
 
 def _followed(before: ComplexArray, roots: ComplexArray) -> ComplexArray:
     """The roots in the order in which they are nearest to the ones before."""
+    # the permutation s of least sum |z_i - z'_s(i)|
     _, order = linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
     return roots[order]

@@ -20,7 +20,7 @@ NEUTRAL = 1e-7
 SYMMETRIC = 1e-12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Mode:
     """x = Re(shape e^(eigenvalue t)). Of a pair of complex eigenvalues the one with positive imaginary part.
 
@@ -30,6 +30,11 @@ class Mode:
 
     eigenvalue: complex
     shape: ComplexArray
+
+    def __repr__(self) -> str:
+        largest = int(np.abs(self.shape).argmax()) if len(self.shape) else 0
+        finding = f"{self.hertz:.6g} Hz, damping ratio {self.damping_ratio:.4g}, largest in coordinate {largest}"
+        return f"Mode(eigenvalue={self.eigenvalue:.6g} 1/s, n={len(self.shape)})\n{finding}"
 
     @property
     def frequency(self) -> float:
@@ -41,15 +46,10 @@ class Mode:
         """-Re/|eigenvalue|; 0 for the eigenvalue 0."""
         return -self.eigenvalue.real / abs(self.eigenvalue) if self.eigenvalue else 0.0
 
-    def plain(self) -> dict[str, Any]:
-        """As numbers for JSON; complex numbers are pairs."""
-        return {
-            "eigenvalue": [self.eigenvalue.real, self.eigenvalue.imag],
-            "frequency": self.frequency,
-            "hertz": abs(self.eigenvalue.imag) / (2 * np.pi),
-            "damping_ratio": self.damping_ratio,
-            "shape": [[z.real, z.imag] for z in self.shape.tolist()],
-        }
+    @property
+    def hertz(self) -> float:
+        """|Im eigenvalue|/(2 pi): oscillations in a second."""
+        return abs(self.eigenvalue.imag) / (2 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,11 @@ def is_symmetric(K: Array) -> bool:
 
 
 def _undamped(M: Array, K: Array) -> list[Mode]:
+    # K x = w^2 M x
     squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
     floor = 1e-13 * np.abs(squares).max()
     found = []
+    # z = 0 (listed once), +-i w, or +-sqrt(-w^2)
     for square, shape in zip(squares.tolist(), shapes.T, strict=True):
         if abs(square) <= floor:
             values = [0j]
@@ -104,10 +106,17 @@ def _general(M: Array, D: Array, K: Array) -> list[Mode]:
 
 
 def first_order(M: Array, D: Array, K: Array) -> Array:
-    """A of x' = A x, x = (q, q')."""
+    """A (2n, 2n) of x' = A x, x = (q, q')."""
     n = len(M)
+    # A = [0 1; -M^-1 K  -M^-1 D]
     lower = -np.linalg.solve(M, np.hstack([K, D]))
     return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
+
+
+def input_matrix(M: Array, F: Array) -> Array:
+    """B (2n, m) of x' = A x + B u."""
+    # B = [0; M^-1 F]
+    return np.vstack([np.zeros_like(F), np.linalg.solve(M, F)])
 
 
 def normed(shape: Any) -> ComplexArray:

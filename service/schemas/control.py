@@ -1,0 +1,75 @@
+"""Problems of optimal control as they are sent: bodies of requests, items of jobs, documents on the command line; SI
+units, angles in rad.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from service.schemas.parts import Part
+from substructures.analysis.control import nonlinear_program, problem
+from substructures.documents import DocumentPart
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class Cost(Part):
+    """l and phi."""
+
+    running: str = Field("0", description="l(q, q', u, t, parameters), per second")
+    terminal: str = Field("0", description="phi(q, q', t, parameters)")
+
+    def value(self) -> problem.Cost:
+        """As the science takes it."""
+        return problem.Cost(self.running, self.terminal)
+
+
+class ControlProblem(DocumentPart):
+    """The parts of a request that say what is controlled, and how the equations of motion are discretised.
+
+    A control is constant in each of the ``intervals`` (``hold``: constant) or linear between its ends (linear);
+    ``steps``: Runge-Kutta steps in each of them.
+    """
+
+    controls: tuple[str, ...] = Field(min_length=1, description="names of inputs")
+    cost: Cost = Cost()
+    horizon: float = Field(gt=0, allow_inf_nan=False, description="s")
+    intervals: int = Field(ge=1, le=problem.MAX_INTERVALS)
+    steps: int = Field(1, ge=1, le=10_000, description="Runge-Kutta steps in each interval")
+    hold: Literal["constant", "linear"] = "linear"
+    q: Any = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
+    qd: Any = Field(None, description="rad/s, m/s; default: at rest")
+    t: float = Field(0.0, allow_inf_nan=False, description="when it starts, s")
+    inputs: dict[str, Finite] = Field({}, description="constant values of the other inputs; default: zero")
+    parameters: dict[str, Finite] = Field({}, description="instead of their defaults")
+
+
+class GradientRequest(ControlProblem):
+    """A problem with controls."""
+
+    values: dict[str, Any] = Field({}, description="by control: one number, or one for each node; default: zero")
+    vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
+
+
+class End(Part):
+    """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
+
+    q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")
+    qd: list[float | None] | dict[str, float | None] = Field({}, description="rad/s, m/s")
+
+    def value(self) -> nonlinear_program.End:
+        """As the science takes it."""
+        return nonlinear_program.End(self.q, self.qd)
+
+
+class OptimalControlRequest(ControlProblem):
+    """A problem with demands, bounds and a guess."""
+
+    end: End = End()
+    bounds: dict[str, tuple[float | None, float | None]] = Field({}, description="least and largest value by control")
+    guess: dict[str, Any] = Field({}, description="controls to begin with: one number, or one for each node")
+    segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
+    iterations: int = Field(500, ge=1, le=100_000)
+    tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")

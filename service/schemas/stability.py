@@ -1,0 +1,50 @@
+"""Questions about stability as they are asked: bodies of requests, items of jobs, documents on the command line; SI
+units, angles in rad.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from substructures.documents import DocumentPart
+from substructures.documents.fields import Number, Positive, Real
+
+
+class LinearisationRequest(DocumentPart):
+    """A state, or states along a trajectory; ``qdd``: default that of the motion.
+
+    With closures one state, which is moved onto them, and no ``qdd``.
+    """
+
+    q: Any
+    qd: Any = None
+    qdd: Any = None
+    t: Any = 0
+    parameters: dict[str, Any] = Field({}, description="in place of their defaults; numbers, or one for each state")
+    inputs: dict[str, Any] = Field({}, description="about which is linearised, 0 by default; or one for each state")
+    outputs: dict[str, Number] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
+    of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
+
+
+class EquilibriaRequest(DocumentPart):
+    """Where to look: ``starts`` (N, n), and ``count`` random ones in +-pi for angles, +-``reach`` for distances."""
+
+    starts: Any = None
+    count: Annotated[int, Field(ge=0, le=10_000)] = 32
+    reach: Positive = Field(1.0, description="m")
+    seed: Annotated[int, Field(ge=0)] = 0
+    t: Real = 0.0
+    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+
+
+class RootLocusRequest(DocumentPart):
+    """``parameter`` takes the ``values`` one after the other; ``q``: where the first equilibrium is near to."""
+
+    parameter: str
+    values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000)]
+    q: Any
+    parameters: dict[str, Real] = Field({}, description="of all others, in place of their defaults")
+    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")

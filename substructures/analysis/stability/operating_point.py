@@ -1,0 +1,110 @@
+"""What a model is linearised about, and what linearisations of trees and of closed loops share: columns of inputs,
+rows of outputs, faults, and whether a state is at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.arguments import Scalar, exact
+from substructures.analysis.equations.energy import has_even_dissipation
+from substructures.analysis.equations.expressions import read_expressions
+from substructures.analysis.equations.formulas import inputs_of
+from substructures.analysis.given import StateArray, require_known
+from substructures.array import Array
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.program import Program, array, program
+from substructures.expr.replay import replay
+from substructures.tree.model import Model
+
+#: accelerations of an equilibrium, relative to the accelerations that its forces would cause one by one
+AT_REST = 1e-8
+#: outputs of the perturbation equations
+MATRICES = ("metric", "damping", "stiffness", "input", "residual")
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """The arguments of :func:`substructures.analysis.stability.linearise.linearise`."""
+
+    model: Model
+    q: StateArray
+    qd: StateArray | None
+    qdd: StateArray | None
+    t: Any
+    parameters: Mapping[str, Any]
+    inputs: Mapping[str, Any]
+    outputs: Mapping[str, Scalar]
+    of_inputs: Sequence[str] | None
+
+    @property
+    def conditions(self) -> dict[str, Any]:
+        """What holds beside the state."""
+        return {"parameters": self.parameters, "inputs": self.inputs, "t": self.t}
+
+    def chosen_inputs(self) -> tuple[str, ...]:
+        """The columns of B and D. Raises InvalidArgument (``/of_inputs/i``)."""
+        known = inputs_of(self.model)
+        if self.of_inputs is None:
+            return known
+        require_known("of_inputs", "input", self.of_inputs, known)
+        return tuple(self.of_inputs)
+
+    def output_matrices(self, chosen: tuple[str, ...], values: Mapping[str, Any], count: int) -> tuple[Array, Array]:
+        """C (N, k, 2n) and D (N, k, m) in all coordinates and velocities. Raises InvalidInput (``/outputs/y``)."""
+        given = [(exact(x, f"/outputs/{name}"), f"/outputs/{name}") for name, x in self.outputs.items()]
+        y = read_expressions(self.model, {"output": given}, inputs=True)
+        found = interpret_in_blocks(output_jacobian(self.model, y, chosen), values, ["C", "D"], count)
+        return found["C"], found["D"]
+
+    def has_potential(self) -> bool:
+        """Whether the forces have a potential, but for dampers that are linear in the velocities and even."""
+        # a constant actuator force has one, too: V = -tau_a q^a
+        driven = [name for name, value in self.inputs.items() if np.any(value) and not name.startswith("tau.")]
+        zero = [name for name, value in self.parameters.items() if not np.any(value)]
+        return has_even_dissipation(self.model, driven, zero)
+
+
+def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> Program:
+    """C (k, 2n) = dy/d(q, q') and D (k, m) = dy/du of the output ``output`` (k,)."""
+    graph = Graph()
+    k, m = source.outputs["output"].shape[0], len(inputs)
+    entries = replay(source, graph, {})["output"].entries
+    rows = [x if isinstance(x := entries.get((i,), graph.zero), Expr) else graph.number(x) for i in range(k)]
+    names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    C, D = gradient(rows, names), gradient(rows, inputs)
+    outputs = {
+        "C": array((k, len(names)), lambda i, j: C[i][j]),
+        "D": array((k, m), lambda i, j: D[i][j]),
+    }
+    return program(graph, outputs, {s.name: s for s in source.symbols})
+
+
+def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array) -> str:
+    """What is not finite, with its place and what to change; else nothing. Leading axes of states are allowed."""
+    if not np.isfinite(qdd).all():
+        return "the metric is singular or not positive definite here: change masses, inertias or the state"
+    for matrix, by in ((D, "the velocity of "), (K, "")):
+        bad = np.argwhere(~np.isfinite(matrix))
+        if len(bad):
+            *_, a, b = bad[0]
+            return (
+                f"the derivative of the force on '{coordinates[a]}' by {by}'{coordinates[b]}' is not finite here: a "
+                "load has a root or a quotient at zero; add a small number under the root, or move the state away from "
+                "there"
+            )
+    return ""
+
+
+def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
+    """Accelerations that are rounding: below 1e-8 of what a unit displacement causes (or of 1)."""
+    # |q''| <= 1e-8 max(1, |M^-1 K|)
+    scale = max(1.0, float(np.abs(np.linalg.solve(M, K)).max(initial=0)))
+    return bool(np.abs(qdd).max(initial=0) <= AT_REST * scale)
