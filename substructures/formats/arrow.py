@@ -235,5 +235,7 @@ def _to_arrow(values: Array, missing: NDArray[np.bool_] | None) -> Any:
     mask = None if missing is None else pa.array(missing)
     if values.ndim == 1:
         return pa.array(values, mask=missing)
-    flat = pa.array(np.ascontiguousarray(values).reshape(-1))
-    return pa.FixedSizeListArray.from_arrays(flat, prod(values.shape[1:]), mask=mask)
+    flat, width = pa.array(np.ascontiguousarray(values).reshape(-1)), prod(values.shape[1:])
+    if not width:  # from_arrays cannot tell how many rows there are
+        return pa.Array.from_buffers(pa.list_(pa.float64(), 0), len(values), [None], children=[flat])
+    return pa.FixedSizeListArray.from_arrays(flat, width, mask=mask)

@@ -148,6 +148,16 @@ def test_batches_without_rows_are_passed_over(double: TestClient) -> None:
     assert len(pa.ipc.open_stream(post(double, body).content).read_all()) == 10
 
 
+def test_columns_of_no_width() -> None:
+    """Such as the redundant rows of a closed loop that has none; the number of rows is kept."""
+    shape = (5, 0, 3)
+    file = io.BytesIO(b"".join(map(bytes, arrow.write_tables([arrow.ArrowTable({"none": np.zeros(shape)})], {}))))
+    assert pa.ipc.open_stream(file).read_all().num_rows == 5
+    file.seek(0)
+    (read,) = arrow.read_tables(file)
+    assert (read["count"], read["none"].shape) == (5, shape)
+
+
 def test_states_without_a_result_are_null(double: TestClient) -> None:
     masses = np.where(np.arange(10) == 4, 0.0, 1.0)
     body = stream([{"q": lists(Q), "parameters.arm.m": masses}], {"quantities": ["forward_dynamics", "metric"]})
