@@ -78,7 +78,7 @@ def assert_same(found: Any, known: Any) -> None:
         for name, value in known.items():
             assert_same(found[name], value)
     elif np.asarray(known).dtype.kind == "f":
-        np.testing.assert_allclose(found, known, rtol=1e-14, atol=1e-15)
+        np.testing.assert_allclose(found, known, rtol=1e-12, atol=1e-13)
     else:
         np.testing.assert_array_equal(found, known)
 

@@ -83,7 +83,8 @@ def test_one_direction_for_all_states_and_npz(double: TestClient) -> None:
     assert answer.status_code == 200, answer.text
     found = np.load(io.BytesIO(answer.content), allow_pickle=False)
     for name in names:
-        np.testing.assert_array_equal(found[name], expected[name])
+        # the kernel may have been compiled in between: its last bits are not those of the interpreter
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, atol=1e-12)
     assert found["columns.names"].tolist() == expected["columns"]["names"]
 
 
