@@ -65,6 +65,11 @@ class Program:
     def __len__(self) -> int:
         return len(self.operations)
 
+    def __repr__(self) -> str:
+        """Two lines: its size, and its outputs with their shapes."""
+        outputs = ", ".join(f"{name} {'x'.join(map(str, x.shape)) or 'scalar'}" for name, x in self.outputs.items())
+        return f"Program, {len(self.operations)} operations of {len(self.symbols)} symbols\n{outputs or 'no outputs'}"
+
     @cached_property
     def _encoded(self) -> bytes:
         document = {

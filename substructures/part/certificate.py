@@ -145,3 +145,9 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
         return None
     eigenvalues = np.linalg.eigvalsh(metric)
     return bool((eigenvalues[..., 0] > 1e-13 * eigenvalues[..., -1]).all())
+
+
+def told_agreement(certificate: Mapping[str, Any]) -> str:
+    """The largest error of a certificate, in words."""
+    errors = certificate.get("direct_form", {}).get("max_relative_error", {})
+    return f"agrees with the direct form to {max(errors.values(), default=0):.0e}" if errors else "not verified"

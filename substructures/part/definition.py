@@ -160,3 +160,14 @@ class Definition(Document):
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
     ports: tuple[Port, ...] = Field((), max_length=500)
     loads: tuple[Load, ...] = Field((), max_length=1000)
+
+    def __repr__(self) -> str:
+        """Two lines: its name and title, and the names in it."""
+        bodies, ports = ", ".join(b.name for b in self.bodies), ", ".join(p.name for p in self.ports)
+        title = f": {self.title}" if self.title else ""
+        return (
+            f"Definition '{self.name}'{title}\n"
+            f"bodies {bodies or 'none'}; ports {ports or 'none'}; parameters {', '.join(self.parameters) or 'none'}"
+        )
+
+    __str__ = __repr__

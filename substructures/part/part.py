@@ -8,10 +8,10 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.operations import Output
 from substructures.expr.program import Program, program
-from substructures.part.certificate import certify_part
+from substructures.part.certificate import certify_part, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
@@ -49,6 +49,13 @@ class Part:
     definition: Definition
     program: Program
     certificate: Mapping[str, Any] = field(hash=False)
+
+    def __repr__(self) -> str:
+        """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
+        what = f"{self.dof} coordinates ({self.joints or 'none'}): {listed(self.coordinates) or 'none'}"
+        places = f"bodies {listed(self.bodies) or 'none'}; ports {listed(self.ports) or 'none'}"
+        figures = f"{told_operations(self.operations)}; {told_agreement(self.certificate)}"
+        return f"Part '{self.name}', {what}; {places}\n{figures}"
 
     @classmethod
     def load(cls, definition: Definition, program_bytes: bytes, certificate: Mapping[str, Any]) -> Part:
@@ -205,3 +212,8 @@ def recheck(part: Part) -> dict[str, Any]:
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
     return certify_part(m, part.program, 0.0)
+
+
+def told_operations(operations: Mapping[str, int]) -> str:
+    """How much metric and Christoffel symbols take, in words."""
+    return f"operations: metric {operations['metric']}, christoffel {operations['christoffel']}"

@@ -78,6 +78,14 @@ class TreeSpec(Document):
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
 
+    def __repr__(self) -> str:
+        """Two lines: its name, and what hangs on what."""
+        loops = f"; closures {', '.join(c.name for c in self.closures)}" if self.closures else ""
+        hosts = ", ".join(f"{i.name} at {i.at}" for i in self.instances)
+        return f"TreeSpec '{self.name}', {len(self.instances)} instances\n{hosts or 'empty'}{loops}"
+
+    __str__ = __repr__
+
 
 def read_instance(data: Any) -> Instance:
     """One instance from plain data. Raises InvalidDocument."""

@@ -27,12 +27,13 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
-from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part
+from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part, told_operations
 from substructures.part.topology import christoffel_entries
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
@@ -58,6 +59,12 @@ class Model:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     certificate: Mapping[str, Any] = field(hash=False)
     closures: tuple[ClosureRows, ...] = ()
+
+    def __repr__(self) -> str:
+        """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
+        loops = f"; closures {listed(rows.name for rows in self.closures)}" if self.closures else ""
+        what = f"{self.dof} coordinates ({self.joints or 'none'}): {listed(self.coordinates) or 'none'}{loops}"
+        return f"Model, {what}\n{told_operations(self.operations)}; {told_agreement(self.certificate)}"
 
     @cached_property
     def operations(self) -> dict[str, int]:
