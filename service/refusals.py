@@ -3,7 +3,7 @@
 ::
 
     Refused                a request that cannot be served: status, code, detail
-    InvalidDocument        422, one error for every fault, with a pointer into the document
+    InvalidInput           422, one error for every fault, with a pointer into the body
     TooLarge, MissingValue 422
 """
 
@@ -14,7 +14,7 @@ from http import HTTPStatus
 from typing import Any
 
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
+from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge
 
 
 class Refused(Exception):
@@ -49,7 +49,7 @@ def known_refusal(error: Exception) -> Refused | None:
     match error:
         case Refused():
             return error
-        case InvalidDocument():
+        case InvalidInput():
             detail = "; ".join(str(fault) for fault in error.faults[:3])
             return Refused(422, "invalid-document", detail, error.faults)
         case TooLarge():

@@ -8,7 +8,16 @@
 """
 
 from substructures import catalogue
-from substructures.errors import Fault, InvalidDocument, InvalidProgram, MissingValue, SubstructuresError, TooLarge
+from substructures.errors import (
+    Fault,
+    InvalidArgument,
+    InvalidDocument,
+    InvalidInput,
+    InvalidProgram,
+    MissingValue,
+    SubstructuresError,
+    TooLarge,
+)
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.part.part import Formula, Part, derive
@@ -20,7 +29,9 @@ __all__ = [
     "Fault",
     "Formula",
     "Instance",
+    "InvalidArgument",
     "InvalidDocument",
+    "InvalidInput",
     "InvalidProgram",
     "MissingValue",
     "Model",

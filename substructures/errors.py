@@ -3,7 +3,9 @@
 ::
 
     SubstructuresError
-    |-- InvalidDocument      a definition, tree, expression or request that cannot be used: faults with pointers
+    |-- InvalidInput         something given that cannot be used: faults with pointers
+    |   |-- InvalidDocument  a definition, tree, expression or request
+    |   `-- InvalidArgument  an argument of a function; pointers start with its name
     |-- TooLarge             something exceeds a limit: what, size, limit
     |-- InvalidProgram       a stored program that is damaged or of an unknown version: position
     `-- MissingValue         a symbol that needs a number has none: name
@@ -11,13 +13,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Self
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing wrong in a document. ``pointer`` is an RFC 6901 pointer into it, ``code`` is for programs."""
+    """One thing wrong in a document or an argument. ``pointer`` is an RFC 6901 pointer, ``code`` is for programs."""
 
     pointer: str
     code: str
@@ -37,17 +40,33 @@ class SubstructuresError(Exception):
     """Root of all exceptions raised on purpose."""
 
 
-class InvalidDocument(SubstructuresError):
-    """A document or request that cannot be used; ``faults`` says where and why."""
+class InvalidInput(SubstructuresError):
+    """Something given that cannot be used; ``faults`` says where and why."""
 
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)
         super().__init__("; ".join(map(str, self.faults)))
 
     @classmethod
-    def at(cls, pointer: str, code: str, message: str) -> InvalidDocument:
+    def at(cls, pointer: str, code: str, message: str) -> Self:
         """The exception for a single fault."""
         return cls([Fault(pointer, code, message)])
+
+    def moved(self, place: Callable[[str], str]) -> Self:
+        """The same exception for whoever gave the input inside of something else: ``place`` maps its pointers."""
+        return type(self)(replace(fault, pointer=place(fault.pointer)) for fault in self.faults)
+
+    def below(self, place: str) -> Self:
+        """:meth:`moved` below a pointer."""
+        return self.moved(lambda pointer: place + pointer)
+
+
+class InvalidDocument(InvalidInput):
+    """A document or request that cannot be used; pointers lead into it."""
+
+
+class InvalidArgument(InvalidInput):
+    """An argument of a function that cannot be used; pointers start with its name: ``/q/0/1`` is ``q[0][1]``."""
 
 
 class TooLarge(SubstructuresError):

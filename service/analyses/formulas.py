@@ -23,7 +23,7 @@ from substructures.analysis.equations.velocity_constraints import VelocityConstr
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 from substructures.expr.program import Program
 
 Options = Mapping[str, tuple[str, ...]]
@@ -96,9 +96,8 @@ def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:
     if found is None:
         try:
             found = quantity.make(source, options)
-        except InvalidDocument as error:
-            moved = [Fault(quantity.pointer(f.pointer), f.code, f.message) for f in error.faults]
-            raise InvalidDocument(moved) from None
+        except InvalidInput as error:
+            raise error.moved(quantity.pointer) from None
         size, limit = len(found.program), source.limits.program_nodes
         if size > limit:
             raise TooLarge("the formulas (in operations)", size, limit)
@@ -124,9 +123,8 @@ def base_of(source: Source, drives: tuple[str, ...]) -> BaseParameters:
     """The base parameters of a tree, remembered. Raises InvalidDocument (``/drives/i``), TooLarge."""
     try:
         value = _remembered(source, _QUANTITIES["base_parameters"], {"drives": drives} if drives else {}).value
-    except InvalidDocument as error:
-        moved = [Fault(f.pointer.removeprefix("/query"), f.code, f.message) for f in error.faults]
-        raise InvalidDocument(moved) from None
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: pointer.removeprefix("/query")) from None
     if not isinstance(value, BaseParameters):
         raise TypeError("base parameters expected")
     return value

@@ -10,7 +10,7 @@ import orjson
 
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
 from service.refusals import not_found, unprocessable
-from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.errors import InvalidInput, TooLarge, listed
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.printers import entries, render
@@ -107,7 +107,7 @@ def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: s
         return program
     try:
         return bind(program, chosen)
-    except InvalidDocument as error:
+    except InvalidInput as error:
         message = "; ".join(fault.message for fault in error.faults)
         raise unprocessable("bind", message, "/query/bind") from None
 

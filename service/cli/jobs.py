@@ -19,7 +19,7 @@ from substructures.client import Client
 from substructures.client.connection import step
 from substructures.client.jobs import FORMATS, PATIENCE
 from substructures.documents import read_json, read_yaml
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument, InvalidInput
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
 
@@ -136,9 +136,8 @@ def _named(path: Path) -> Iterator[None]:
     """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
     try:
         yield
-    except InvalidDocument as error:
-        faults = [Fault(f"{path}#{f.pointer}" if f.pointer else str(path), f.code, f.message) for f in error.faults]
-        raise InvalidDocument(faults) from None
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None
 
 
 def _client(options: argparse.Namespace) -> Client:

@@ -25,7 +25,7 @@ from service.refusals import Refused
 from service.server import serve, work
 from service.settings import Settings, SettingsError, from_environment
 from substructures.client import Client, ProblemError
-from substructures.errors import InvalidDocument, SubstructuresError
+from substructures.errors import InvalidInput, SubstructuresError
 from substructures.part.alone import lean
 from substructures.part.definition import Definition
 from substructures.part.part import derive
@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command: Callable[[argparse.Namespace], int] = options.command
     try:
         return command(options)
-    except InvalidDocument as error:
+    except InvalidInput as error:
         for fault in error.faults:
             _complain(f"{fault.pointer or '/'}: {fault.message}")
     except (*EXPECTED, ValueError, OverflowError) as error:

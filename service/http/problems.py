@@ -3,7 +3,7 @@
 ::
 
     Refused                a request that cannot be served: status, code, detail
-    InvalidDocument        422, one error for every fault, with a pointer into the document
+    InvalidInput           422, one error for every fault, with a pointer into the body
     TooLarge, MissingValue 422
     anything else          500; the log has the trace, the client the request id
 """
@@ -26,7 +26,7 @@ from service.http.request_id import current_request_id
 from service.queries.common import is_conflict, is_full, is_outage
 from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from substructures.documents import message_of, pointer_step
-from substructures.errors import Fault, InvalidDocument, MissingValue, TooLarge
+from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
@@ -97,5 +97,5 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
             error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
         return response(error, request.url.path)
 
-    for kind in (Refused, InvalidDocument, TooLarge, MissingValue, RequestValidationError, HTTPException):
+    for kind in (Refused, InvalidInput, TooLarge, MissingValue, RequestValidationError, HTTPException):
         app.add_exception_handler(kind, handle)

@@ -17,7 +17,7 @@ from service.refusals import Refused, not_found
 from service.settings import Limits
 from service.store import Store
 from substructures.documents import write_json
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 SHOWN = 20  # faults
 STORING = ("assemble", "derive")  # kinds whose results are trees and versions
@@ -102,7 +102,7 @@ def _resolved(
         try:
             pinned, blobs = kinds.resolve(kind, dict(item), library)
             resolved.append(_new_item(kind, {**pinned, **members}, blobs))  # as text, which the collector passes over
-        except InvalidDocument as error:
+        except InvalidInput as error:
             bad += 1
             faults += [Fault(place + f.pointer, f.code, note + f.message) for f in error.faults]
         except TooLarge as error:

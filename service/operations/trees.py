@@ -19,7 +19,7 @@ from service.refusals import Refused, not_found
 from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
@@ -99,13 +99,8 @@ def prepare_change(store: Store, change: TreeChange) -> Revision:
     """Couple a changed tree. Raises InvalidDocument, TooLarge."""
     try:
         return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
-    except InvalidDocument as error:
-        raise InvalidDocument(_within(fault, change.step) for fault in error.faults) from None
-
-
-def _within(fault: Fault, step: str) -> Fault:
-    """The fault as seen from the instance document alone."""
-    return Fault(fault.pointer.removeprefix(step), fault.code, fault.message)
+    except InvalidInput as error:  # as seen from the instance document alone
+        raise error.moved(lambda pointer: pointer.removeprefix(change.step)) from None
 
 
 def _is_pinned(text: str) -> bool:
@@ -163,8 +158,8 @@ def _derived(store: Store, index: int, instance: Instance) -> Part:
     step = f"/instances/{index}/definition"
     try:
         part = derive(instance.definition, store.settings.limits.program_nodes)
-    except InvalidDocument as error:
-        raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
+    except InvalidInput as error:
+        raise error.below(step) from None
     store.remember_part(part)
     return part
 

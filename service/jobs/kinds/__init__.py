@@ -18,7 +18,7 @@ from service.jobs.kinds.library import Library
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.settings import Limits
-from substructures.errors import Fault, InvalidDocument, InvalidProgram
+from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
 from substructures.part.certificate import VerificationFailed
 
 __all__ = ["KINDS", "Library", "expand", "resolve", "run"]
@@ -52,8 +52,8 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
             raise InvalidDocument.at(pointer, "object-expected", "an object is needed")
         try:
             items += _KINDS[kind].spread(given, limits, library)
-        except InvalidDocument as error:
-            raise InvalidDocument(Fault(pointer + f.pointer, f.code, f.message) for f in error.faults) from None
+        except InvalidInput as error:
+            raise error.below(pointer) from None
         if len(items) > limits.job_items:
             message = f"more than {limits.job_items:,} items after splitting; submit several jobs"
             raise InvalidDocument.at("/items", "too-many-items", message)

@@ -13,7 +13,7 @@ from service.jobs.kinds.library import Library, StoredVersion
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
@@ -131,9 +131,8 @@ def _part(index: int, instance: Instance, item: ItemDocument, blobs: Blobs) -> P
         return part_of(digest, item["programs"][digest], blobs)
     try:
         return derive(instance.definition, item["nodes"])
-    except InvalidDocument as error:
-        step = f"/instances/{index}/definition"
-        raise InvalidDocument(Fault(step + f.pointer, f.code, f.message) for f in error.faults) from None
+    except InvalidInput as error:
+        raise error.below(f"/instances/{index}/definition") from None
 
 
 ASSEMBLE = Kind(_spread, pinned_tree, _run)

@@ -33,7 +33,7 @@ from service.jobs.kinds.trees import pinned, source_of
 from service.refusals import Refused
 from service.settings import Limits
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument, TooLarge, listed
+from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
 from substructures.expr.graph import Graph
 from substructures.expr.parse import ExpressionError, parse
 from substructures.printers import FORMATS
@@ -131,8 +131,8 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
     try:
         text = (_stored if is_stored else _followed)(source, item, style).encode()
-    except InvalidDocument as error:
-        raise InvalidDocument(_moved(error.faults)) from None
+    except InvalidInput as error:
+        raise error.moved(_place) from None
     except Refused as error:
         raise Refused(error.status, error.code, error.detail, _moved(error.faults), **error.members) from None
     summary = {"tree": item["tree"], "quantity": quantity, "media_type": FORMATS[style.format], "bytes": len(text)}

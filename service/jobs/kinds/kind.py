@@ -11,7 +11,7 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree
 from service.settings import Limits
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, InvalidInput
 
 ItemDocument = dict[str, Any]
 Blobs = Mapping[str, bytes]
@@ -37,8 +37,8 @@ def inside(place: str) -> Iterator[None]:
     """Faults that are found here have pointers relative to this place of the item."""
     try:
         yield
-    except InvalidDocument as error:
-        raise InvalidDocument(Fault(place + f.pointer, f.code, f.message) for f in error.faults) from None
+    except InvalidInput as error:
+        raise error.below(place) from None
 
 
 def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:

@@ -22,7 +22,7 @@ from substructures.analysis.motion.steppers import Stepper, scipy_stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.array import Array
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidDocument, InvalidInput
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
@@ -48,7 +48,7 @@ def simulate_tree(
     along = read_tree(model, asked)
     try:
         f = RightHandSide(model, along.values, along.zero, along, folder)
-    except InvalidDocument as error:
+    except InvalidInput as error:
         if any(fault.code == "singular-metric" for fault in error.faults):
             return _failed(along, asked, str(error))
         raise

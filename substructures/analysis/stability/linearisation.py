@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from substructures.analysis.stability.vibrations import Mode, Stability
 from substructures.array import Array
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Number
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidInput
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret_in_blocks
@@ -100,9 +100,8 @@ def chosen_inputs(model: Model, read: LinearisationRequest) -> tuple[str, ...]:
     chosen = inputs_of(model) if read.of_inputs is None else read.of_inputs
     try:
         require_inputs(model, chosen)
-    except InvalidDocument as error:
-        moved = [replace(f, pointer=f.pointer.replace("/inputs", "/of_inputs")) for f in error.faults]
-        raise InvalidDocument(moved) from None
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: pointer.replace("/inputs", "/of_inputs")) from None
     return chosen
 
 
