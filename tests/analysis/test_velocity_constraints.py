@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from analysis_models import catalogue_model
 from closed_trees import at, slider_crank
 from random_trees import Kind, Plain, model_of, random_definition
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
@@ -186,3 +187,13 @@ def test_rows_that_follow_from_others_are_left_out() -> None:
     twice = [BLADE, BLADE | {"name": "again"}]
     equations = quasi_velocity_equations(sleigh(), {"constraints": twice})
     assert (equations.constraints, equations.dependent) == (("blade",), ("again",))
+
+
+def test_constraints_with_constant_coefficients() -> None:
+    """A gear between two coordinates, q'_1 = 2 q'_2: the rows have no symbol, and rank and choice are found as well."""
+    model = catalogue_model("double-pendulum")
+    gear = {"name": "gear", "type": "linear", "expression": "x.q1' - 2*x.q2'"}
+    equations = quasi_velocity_equations(model, {"constraints": [gear, gear | {"name": "again"}]})
+    assert (equations.constraints, equations.dependent) == (("gear",), ("again",))
+    assert equations.velocities == ("x.q2'",)
+    exact(equations, {"rates": {(0,): "2*x.q2'", (1,): "x.q2'"}})

@@ -24,7 +24,7 @@ def _numbers(f: Formulation, rows: Sequence[Sequence[Expr]], near: Mapping[str, 
     values = {s.name: rng.uniform(0.3, 1.1, 3) for s in p.symbols}
     if near is not None:
         values |= {name: np.full(3, near[name]) for name in values if name in near}
-    return interpret(p, values)["x"]
+    return np.broadcast_to(interpret(p, values)["x"], (3, len(rows), f.n))  # rows of constants have no axis of states
 
 
 def _rank(x: Any) -> int:
