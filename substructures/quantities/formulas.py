@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from substructures.errors import TooLarge
-from substructures.expr.program import Formulas, Program
+from substructures.expr.program import Entries, Formulas, Program
 from substructures.part.part import MAX_NODES
 from substructures.quantities import derivatives
-from substructures.quantities.workspace import ID, Entries, Replayed, vector
+from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model
 
 
@@ -17,32 +17,32 @@ def _coriolis(model: Model, max_nodes: int) -> Program:
     products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
     if products > max_nodes:
         raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
-    r, entries = Replayed(model), Entries()
+    r, entries = Workspace(model), Entries()
     for (a, b, c), gamma in r.elements("christoffel").items():
-        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.rate(c, "'")
+        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.velocity_symbol(c)  # Gamma_abc q'^c
     return r.program({"coriolis": Formulas((r.n, r.n), entries)})
 
 
 def _inverse_dynamics(model: Model, _: int) -> Program:
-    r = Replayed(model)
+    r = Workspace(model)
     return r.program({ID: vector(r.inverse_dynamics())})
 
 
 def _kinetic_energy(model: Model, _: int) -> Program:
     """1/2 g_ab q'^a q'^b."""
-    r = Replayed(model)
-    momentum = r.product(r.elements("metric"), "'")
-    twice = r.graph.sum(p * r.rate(a, "'") for (a,), p in momentum.items())
+    r = Workspace(model)
+    momentum = r.times_velocity(r.elements("metric"))  # p_a = g_ab q'^b
+    twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
 
 def _total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
-    r, outputs = Replayed(model), dict[str, Formulas]()
+    r, outputs = Workspace(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
         entries = Entries()
         for (a, i), p in r.elements(f"{kind}_momentum").items():
-            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.rate(a, "'")
+            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.velocity_symbol(a)
         outputs[kind] = Formulas((3,), entries)
     return r.program(outputs)
 

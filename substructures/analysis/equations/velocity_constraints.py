@@ -25,7 +25,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from substructures.analysis.equations.formulation import Formulation
 from substructures.documents import DocumentPart, read_model
 from substructures.documents.fields import Name, Number
 from substructures.errors import InvalidDocument
@@ -33,6 +32,7 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
 from substructures.part.frames import axis_rotation
+from substructures.quantities.workspace import Workspace
 
 FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
@@ -108,8 +108,9 @@ class VelocityRows:
             self.rows.append(row)
 
 
-def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
+def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRows:
     """The rows of all constraints. Raises InvalidDocument, also for a closure of the model that is not among them."""
+    scope = f.scope
     _require_closed(f, constraints)
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
@@ -123,7 +124,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
         elif constraint.frame not in f.model.frames:
             known = ", ".join(f.model.frames[:20])
             message = f"unknown frame '{constraint.frame}'; there are {known}"
-            f.scope.fault(f"{pointer}/frame", "unknown-frame", message)
+            scope.fault(f"{pointer}/frame", "unknown-frame", message)
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
@@ -133,15 +134,15 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
     names = [c.name for c in constraints]
     for i, name in enumerate(names):
         if name in names[:i]:
-            f.scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
-    f.scope.finish()
+            scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
+    scope.finish()
     return result
 
 
 class _Frame:
     """Kinematics of one frame: rotation to the world, origin, U and Omega of every coordinate in its axes."""
 
-    def __init__(self, f: Formulation, kinematics: Mapping[str, Mapping[tuple[int, ...], Expr]], k: int) -> None:
+    def __init__(self, f: Workspace, kinematics: Mapping[str, Mapping[tuple[int, ...], Expr]], k: int) -> None:
         zero = f.graph.zero
 
         def vector(name: str, *index: int) -> Vector:
@@ -154,7 +155,7 @@ class _Frame:
         self.Omega = [vector("Omega", a) for a in range(f.n)]
 
 
-def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
+def _require_closed(f: Workspace, constraints: Sequence[Constraint]) -> None:
     """Every closure of the model is among the constraints; else it would be open."""
     given = {c.name for c in constraints if isinstance(c, Closed)}
     for rows in f.model.closures:
@@ -163,7 +164,7 @@ def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
             raise InvalidDocument.at("/constraints", "open-closure", message)
 
 
-def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:
+def _close(f: Workspace, name: str, pointer: str, result: VelocityRows) -> None:
     names = [(rows.name, row) for rows in f.model.closures for row in rows.rows]
     if name not in {closure for closure, _ in names}:
         known = ", ".join(rows.name for rows in f.model.closures) or "none"
@@ -178,7 +179,7 @@ def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> Non
             result.gaps[f"{name}.{row}"] = residual
 
 
-def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
+def _roll(f: Workspace, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
     radius = f.scope.read(c.radius, f"{pointer}/radius")
     plane = axis_rotation(f.scope, c.normal, f"{pointer}/normal")
     normal = plane[2]
@@ -200,7 +201,7 @@ def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: Veloc
     result.gaps[c.name] = f.graph.zero + dot(normal, frame.c) + dot(n, rho)
 
 
-def linear_row(f: Formulation, text: str, pointer: str) -> list[Expr]:
+def linear_row(f: Workspace, text: str, pointer: str) -> list[Expr]:
     """Coefficients of the velocities in an expression that is linear and homogeneous in them; else a fault is noted."""
     x = f.scope.read(text, pointer)
     rates = [f"{name}'" for name in f.model.coordinates]
