@@ -15,9 +15,9 @@ from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, cholesky_solve, closed_solve
 from substructures.quantities.derivative_directions import direction_values
 from substructures.quantities.derivatives import FD, SINGULAR
+from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.states import States, known_values, read_states, require
 from substructures.quantities.table import (
-    DYNAMICS,
     QUANTITIES,
     REGRESSOR,
     Quantity,

@@ -6,10 +6,15 @@ from collections.abc import Callable
 
 from substructures.errors import TooLarge
 from substructures.expr.program import Entries, Formulas, Program
+from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
 from substructures.quantities import derivatives
+from substructures.quantities.memo import ProgramCache
 from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model
+
+#: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
+DYNAMICS = ("metric", "bias", "forces")
 
 
 def _coriolis(model: Model, max_nodes: int) -> Program:
@@ -57,28 +62,33 @@ _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
 }
 DERIVED = tuple(_FORMULAS)
+CLOSED_DYNAMICS = "closed_dynamics"
 
 
 def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
-    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7).
+    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
     total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
     inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
-    see :mod:`substructures.quantities.derivatives`.
+    see :mod:`substructures.quantities.derivatives`;
+    closed_dynamics: the outputs DYNAMICS and CLOSED of the model, the part that accelerations on closures need.
     Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
     ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
     """
+    if quantity == CLOSED_DYNAMICS:  # no larger than the model
+        return model.program.select([*DYNAMICS, *CLOSED])
     result = _FORMULAS[quantity](model, max_nodes)
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
     return result
 
 
+_programs = ProgramCache()
+
+
 def kept(model: Model, quantity: str) -> Program:
-    """:func:`derived`, once for every model."""
-    if quantity not in model.derived:
-        model.derived[quantity] = derived(model, quantity)
-    return model.derived[quantity]
+    """:func:`derived`, once for equal models as long as it is used. Raises as :func:`derived`."""
+    return _programs.get(model, quantity, lambda: derived(model, quantity))

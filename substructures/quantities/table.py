@@ -11,13 +11,12 @@ from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.derivatives import FD, SingularMetric
-from substructures.quantities.formulas import kept
+from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import KINEMATICS, Model
 
 FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t", "along"))
 MODEL, REGRESSOR = "model", "regressor"
-DYNAMICS = ("metric", "bias", "forces")
 
 
 @dataclass(frozen=True)
@@ -123,13 +122,6 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     return sum(several.get(name, n) for name in quantities)
 
 
-def closed_dynamics(model: Model) -> Program:
-    """What accelerations of a tree with closures are computed from, once for every model."""
-    if "closed_dynamics" not in model.derived:
-        model.derived["closed_dynamics"] = model.program.select([*DYNAMICS, *CLOSED])
-    return model.derived["closed_dynamics"]
-
-
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
     """(source, program, its outputs); no program: no state has a result.
 
@@ -141,7 +133,7 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     for source, names in wanted.items():
         if source == FD and sources.model.closures:
-            yield source, closed_dynamics(sources.model), [*DYNAMICS, *CLOSED]
+            yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
             continue
         try:
             yield source, sources.program(source), sorted(names)
