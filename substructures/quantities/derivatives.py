@@ -8,7 +8,7 @@ as formulas again, for a small multiple of the operations of ID. The direction i
 velocity, acceleration and input, with the same kind and unit and ``d.`` before its name: ``d.arm.q1`` [rad, m],
 ``d.arm.q1'`` [rad/s, m/s], ``d.arm.q1''`` [rad/s^2, m/s^2], ``d.tau.arm.q1`` [N m, N], ``d.arm.u`` for an input u.
 Forward dynamics q'' = FD(q, q', tau) satisfies ID(q, q', FD, tau) = 0, hence g d(FD) = -dID at q'' = FD with dq'' = 0.
-(mathematics.md, section 7: the perturbation equations.)
+(notation.md, section 7: the perturbation equations.)
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ def direction(name: str) -> str:
 
 def _along(r: Workspace, rows: Sequence[Expr], fixed: frozenset[str] = frozenset()) -> list[Expr]:
     """d(row) along the symbols ``d.*``, which are declared; ``fixed`` kinds of symbols are not varied."""
+    # seeds of forward mode: every symbol x moves by its own symbol d.x
     varied = [s for s in r.symbols.values() if s.kind in VARIED - fixed]
     r.symbols |= {direction(s.name): replace(s, name=direction(s.name)) for s in varied}
     return directional(rows, {s.name: r.graph.symbol(direction(s.name)) for s in varied})
@@ -57,6 +58,7 @@ def inverse_dynamics_derivative(model: Model) -> Program:
     value is not finite.
     """
     r = Workspace(model)
+    # ID_a = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a  (notation.md, section 7)
     rows = r.inverse_dynamics()
     return r.program({ID: vector(rows), f"{ID}_derivative": vector(_along(r, rows))})
 
@@ -72,6 +74,7 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
     rows = r.inverse_dynamics()
 
     def matrix(names: Sequence[str]) -> Formulas:
+        # column b: dID_a/dx^b, the derivative along the unit direction of x^b alone
         columns = [directional(rows, {name: r.graph.one}) for name in names]
         return array((r.n, r.n), lambda a, b: columns[b][a])
 
@@ -103,9 +106,11 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     r = Workspace(model)
     factors, pivots = _factors(r, max_nodes)
     found = _accelerations(r, factors)
+    # dID at the symbols q'' with dq'' = 0, then at q'' = FD
     slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
     bindings = {f"{name}''": x for name, x in zip(model.coordinates, found, strict=True)}
     at_found = replay(slopes, r.graph, bindings)["slopes"].entries
+    # g d(q'') = -dID
     result = factors.solve([-at_found.get((a,), r.graph.zero) for a in range(r.n)])
     return r.program({FD: vector(found), "pivots": vector(pivots), f"{FD}_derivative": vector(result)})
 
@@ -120,9 +125,11 @@ def _factors(r: Workspace, max_nodes: int) -> tuple[Factors, list[Expr]]:
         factors = factorised(r.n, metric)
     except ZeroDivisionError:
         raise SingularMetric.at("", "singular-metric", SINGULAR) from None
+    # D_k / |g_kk|: 1 for a coordinate alone, 0 where others leave it no inertia
     return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
 
 
 def _accelerations(r: Workspace, factors: Factors) -> list[Expr]:
-    """g x = -ID at q'' = 0."""
+    """q'' with g q'' = Q - Gamma q' q'."""
+    # ID at q'' = 0 is Gamma_abc q'^b q'^c - Q_a
     return factors.solve([-x for x in r.inverse_dynamics([r.graph.zero] * r.n)])

@@ -24,7 +24,8 @@ def _coriolis(model: Model, max_nodes: int) -> Program:
         raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
     r, entries = Workspace(model), Entries()
     for (a, b, c), gamma in r.elements("christoffel").items():
-        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.velocity_symbol(c)  # Gamma_abc q'^c
+        # C_ab = sum over c of Gamma_abc q'^c  (notation.md, section 7)
+        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.velocity_symbol(c)
     return r.program({"coriolis": Formulas((r.n, r.n), entries)})
 
 
@@ -36,7 +37,8 @@ def _inverse_dynamics(model: Model, _: int) -> Program:
 def _kinetic_energy(model: Model, _: int) -> Program:
     """1/2 g_ab q'^a q'^b."""
     r = Workspace(model)
-    momentum = r.times_velocity(r.elements("metric"))  # p_a = g_ab q'^b
+    # p_a = g_ab q'^b, then 2 T = p_a q'^a
+    momentum = r.times_velocity(r.elements("metric"))
     twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
@@ -47,6 +49,7 @@ def _total_momentum(model: Model, _: int) -> Program:
     for kind in ("linear", "angular"):
         entries = Entries()
         for (a, i), p in r.elements(f"{kind}_momentum").items():
+            # p_i = p_ai q'^a: momenta are linear in the velocities
             entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.velocity_symbol(a)
         outputs[kind] = Formulas((3,), entries)
     return r.program(outputs)
@@ -66,7 +69,7 @@ CLOSED_DYNAMICS = "closed_dynamics"
 
 
 def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
-    """A quantity of DERIVED as a program with an output of that name (mathematics.md, section 7), or CLOSED_DYNAMICS.
+    """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;

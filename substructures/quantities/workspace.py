@@ -33,6 +33,7 @@ class Workspace:
     def __init__(self, model: Model, zero: Iterable[str] = ()) -> None:
         self.model, self.graph, self.n = model, Graph(), model.dof
         self.zero = frozenset(zero)
+        # q^a and q'^a also where no output depends on them
         self.symbols = {symbol.name: symbol for symbol in model.program.symbols}
         for name, joint in zip(model.coordinates, model.joints, strict=True):
             self.symbols[name] = Symbol(name, "coordinate", UNITS[joint])

@@ -10,14 +10,15 @@ from analysis_models import seeds, shipped
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 from scipy.integrate import solve_ivp
 
-from substructures import InvalidDocument, MissingValue, Model
+from substructures import MissingValue, Model
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import GradientRequest, cost_gradient
 from substructures.analysis.control.problem import Cost, initial_state, inputs_of, read_problem
 from substructures.analysis.control.shooting import Shooting
+from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Direction, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 
@@ -130,7 +131,7 @@ def test_adjoint_equations_are_transposed_perturbation_equations() -> None:
     state = {"q": q, "qd": qd, "t": 0.3, "inputs": {"x.u1": 0.4} if "x.u1" in inputs_of(model) else {}}
     along = {"q": dq, "qd": dqd, "inputs": du}
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    answer = evaluate(model, {"quantities": quantities, **state, "along": along})
+    answer = evaluate(model, quantities, **state, along=Direction(**along))
     slope = answer["forward_dynamics_derivative"]
     values: dict[str, Any] = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= dict.fromkeys(inputs_of(model), 0.0) | state["inputs"] | {"t": 0.3, "lambda.0": 1.0}
@@ -154,7 +155,7 @@ def test_multipliers_converge_to_the_costates() -> None:
     """A pendulum with q'' = -a sin q + b u: the continuous adjoint equations integrated to 1e-10."""
     model = shipped("simple-pendulum")
     (q,), (u,) = model.coordinates, inputs_of(model)
-    answer = evaluate(model, {"quantities": ["metric", "gravity"], "q": [0.5]})
+    answer = evaluate(model, ["metric", "gravity"], q=[0.5])
     request: Plain = {
         "controls": [u],
         "cost": {"running": f"{q}^2 + {u}^2", "terminal": f"3*{q}'"},
@@ -214,7 +215,7 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
 )
 def test_refusals(change: Plain, pointer: str, code: str) -> None:
     request = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 4, "q": [0], "cost": {"running": "tau.x.q1^2"}}
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         cost_gradient(shipped("simple-pendulum"), request | change)
     assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
 

@@ -11,7 +11,7 @@ import sympy
 from closed_trees import bricard, closed_entry, four_bar, governor, slider_crank, tree_model
 from random_trees import Plain
 
-from substructures import InvalidDocument, Model
+from substructures import Model
 from substructures.analysis.drawings import draw_root_locus
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import perturbation
@@ -20,6 +20,7 @@ from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.linearise_closed import ClosedLinearisation
 from substructures.analysis.stability.root_locus import root_locus
+from substructures.errors import InvalidInput
 from substructures.expr.program import Program
 
 G = 9.81
@@ -230,6 +231,6 @@ def test_bodies_without_mass_between_others() -> None:
     ],
 )
 def test_faults_have_pointers(change: Plain, pointer: str, code: str) -> None:
-    with pytest.raises(InvalidDocument) as caught:
+    with pytest.raises(InvalidInput) as caught:
         linearise(four_bar(), {"q": [0.7, 0.2, 1.2]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]

@@ -34,7 +34,7 @@ def test_forces_vanish_on_random_trees(number: int) -> None:
     """What is found is an equilibrium by the independent way over evaluate."""
     model = random_model(number, loads=0)
     for e in equilibria(model, {"count": 4}).found:
-        forces = evaluate(model, {"quantities": ["forces"], "q": e.q})["forces"]
+        forces = evaluate(model, ["forces"], q=e.q)["forces"]
         assert np.abs(forces).max() < 1e-8
         assert e.at.is_equilibrium
 

@@ -15,6 +15,7 @@ from substructures.analysis.equations.perturbation import inputs_of, perturbatio
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.vibrations import modes
+from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
 
@@ -23,7 +24,7 @@ STEP = 1e-4
 
 
 def acceleration(model: Model, state: Plain) -> Any:
-    return evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]
+    return evaluate(model, ["forward_dynamics"], **state)["forward_dynamics"]
 
 
 def slope(model: Model, state: Plain, key: str, name: Any) -> Any:
@@ -94,7 +95,7 @@ def test_damping_is_twice_coriolis_less_dampers() -> None:
     model = catalogue_model("ur5")
     x = random_states(np.random.default_rng(2), 1, 6)
     found = linearise(model, {"q": x["q"][0], "qd": x["qd"][0]})
-    coriolis = evaluate(model, {"quantities": ["coriolis"], "q": x["q"][0], "qd": x["qd"][0]})["coriolis"]
+    coriolis = evaluate(model, ["coriolis"], q=x["q"][0], qd=x["qd"][0])["coriolis"]
     np.testing.assert_allclose(found.D, 2 * coriolis, atol=1e-12)
 
 
@@ -188,7 +189,7 @@ def test_a_root_at_zero_is_a_failure_with_advice() -> None:
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         linearise(catalogue_model("double-pendulum"), {"q": [0, 0]} | changes)
     assert error.value.faults[0].pointer == pointer
 

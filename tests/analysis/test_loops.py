@@ -9,8 +9,9 @@ import pytest
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, tree_model
 from random_trees import Plain
 
-from substructures import Definition, InvalidDocument, TreeSpec, couple, derive
+from substructures import Definition, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import analyse_loops
+from substructures.errors import InvalidInput
 
 
 def test_planar_pin_is_redundant_but_harmless() -> None:
@@ -156,7 +157,7 @@ BAD: list[tuple[Plain, str, str]] = [
 
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_requests(change: Plain, pointer: str, code: str) -> None:
-    with pytest.raises(InvalidDocument) as caught:
+    with pytest.raises(InvalidInput) as caught:
         analyse_loops(SLIDER, {"q": [0, 0, 0.18]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 

@@ -7,9 +7,9 @@ import pytest
 from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 
-from substructures import InvalidDocument
 from substructures.analysis.motion.rolling import FORMS, simulate_rolling
 from substructures.analysis.simulate import simulate
+from substructures.errors import InvalidInput
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -157,7 +157,7 @@ BAD: list[tuple[Plain, str, str]] = [
 
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_requests(change: Plain, pointer: str, code: str) -> None:
-    with pytest.raises(InvalidDocument) as caught:
+    with pytest.raises(InvalidInput) as caught:
         simulate_rolling(SLEIGH, {"constraints": [BLADE], "q": [0, 0, 0], "span": [0, 1]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 

@@ -13,6 +13,7 @@ from substructures import InvalidDocument, MissingValue
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
+from substructures.errors import InvalidInput
 
 
 def test_progress_is_told_and_can_cancel() -> None:
@@ -85,7 +86,7 @@ def test_steps_are_limited() -> None:
     ],
 )
 def test_faults_have_pointers(changes: Plain, pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as error:
+    with pytest.raises(InvalidInput) as error:
         simulate(catalogue_model("double-pendulum"), {"q": [0, 0], "span": [0, 1]} | changes)
     assert error.value.faults[0].pointer == pointer
 

@@ -1,4 +1,4 @@
-"""The curvature of the configuration space with the metric g (mathematics.md, section 7).
+"""The curvature of the configuration space with the metric g (notation.md, section 7).
 
 With the Christoffel symbols of the first kind Gamma_abc = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc)
 

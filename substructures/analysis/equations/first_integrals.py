@@ -1,4 +1,4 @@
-"""First integrals of a model as formulas, each with the reason why it is constant (mathematics.md, section 7).
+"""First integrals of a model as formulas, each with the reason why it is constant (notation.md, section 7).
 
 Energy: H' = Q_a q'^a + V' is the zero formula. Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0,
 then p_c = g_cb q'^b. Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero

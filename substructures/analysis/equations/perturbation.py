@@ -1,4 +1,4 @@
-"""Perturbation equations as formulas: M dq'' + D dq' + K dq = F du (mathematics.md, section 7).
+"""Perturbation equations as formulas: M dq'' + D dq' + K dq = F du (notation.md, section 7).
 
 About any q, q', q'', at given inputs and time:
 

@@ -1,4 +1,4 @@
-"""Equations of motion in quasi-velocities: Voronets and Boltzmann-Hamel (mathematics.md, section 7), as formulas.
+"""Equations of motion in quasi-velocities: Voronets and Boltzmann-Hamel (notation.md, section 7), as formulas.
 
 With p quasi-velocities v and m constraints, Y q' = (v, 0): the first p rows of Y define v, the others are B. The
 columns of Y^-1 are T (q' = T v) and S (B S = 1). Both forms are g* v' + bias = forces with g* = T^T g T:

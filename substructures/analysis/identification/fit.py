@@ -161,8 +161,8 @@ def _forces(request: Mapping[str, Any], data: _Data) -> Array:
 def _known(model: Model, request: Mapping[str, Any], data: _Data) -> Array:
     """Inverse dynamics of the model without its inertial forces: less Y_B beta of its own values."""
     given = (request.get("parameters") or {}).items()
-    common = {"q": data.q, "qd": data.qd, "qdd": data.qdd, "quantities": ["inverse_dynamics"]}
-    answer = evaluate(model, {**common, "parameters": {name: x for name, x in given if name in model.parameters}})
+    own = {name: x for name, x in given if name in model.parameters}
+    answer = evaluate(model, "inverse_dynamics", data.q, data.qd, data.qdd, parameters=own)
     inertial = np.einsum("nab,nb->na", data.outputs[REGRESSOR], data.outputs[OWN])
     return np.asarray(answer["inverse_dynamics"] - inertial, dtype=np.float64)
 
