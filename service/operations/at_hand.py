@@ -41,7 +41,7 @@ class AtHand:
 
 
 def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
-    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.answer`."""
+    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.whole`."""
     if body.tell() > BODY:
         return None
     data = read_json(body.reader().read())
@@ -50,7 +50,7 @@ def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
     if found is None or not found.is_ready(store):
         return None
     request = EvaluationRequest.read(data)
-    return found.evaluation.answer([request], JSON) if longest(request.arguments()) == 1 else None
+    return found.evaluation.whole(request, JSON) if longest(request.arguments()) == 1 else None
 
 
 def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:

@@ -68,7 +68,10 @@ class TreeEvaluation:
         """
         if wanted == arrow.MEDIA_TYPE:
             return streamed(self._arrow(iter(requests)), wanted)
-        request = batches.joined(requests, self.limits)
+        return self.whole(batches.joined(requests, self.limits), wanted)
+
+    def whole(self, request: EvaluationRequest, wanted: str) -> Answer | Stream:
+        """The answer to one request in one piece, as JSON or npz. Raises as :meth:`answer`."""
         arguments = request.arguments()
         evaluations.check_size(self.sources, request.quantities, longest(arguments), self.limits)
         result = self._evaluated(arguments)

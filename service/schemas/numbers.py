@@ -26,13 +26,18 @@ _NEEDED = {
 }
 
 
+def _values(description: str | None = None) -> Any:
+    """An empty object by default, made anew: pydantic would copy one, which takes longer than all the rest."""
+    return Field(default_factory=dict, description=description, json_schema_extra={"default": {}})
+
+
 class Direction(Shape):
     """The direction of a derivative, zero where nothing is given; one row for all states, or one for each."""
 
     q: States = None
     qd: States = None
     qdd: States = Field(None, description="of inverse dynamics")
-    inputs: Values = Field({})
+    inputs: Values = _values()
 
 
 def _needs_states(schema: dict[str, Any]) -> None:
@@ -53,11 +58,11 @@ class EvaluationRequest(Shape):
     model_config = ConfigDict(extra="forbid", json_schema_extra=_needs_states)
 
     quantities: Annotated[list[str], SkipValidation]
-    parameters: Values = Field({}, description="values in place of defaults; one, or one for every state")
+    parameters: Values = _values("values in place of defaults; one, or one for every state")
     q: States = Field(None, description="(n,), (N, n) or columns by name")
     qd: States = None
     qdd: States = None
-    inputs: Values = Field({}, description="tau.<coordinate> (N m or N) and inputs of loads")
+    inputs: Values = _values("tau.<coordinate> (N m or N) and inputs of loads")
     t: Annotated[Column, SkipValidation] = Field(0, description="s")
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
 
@@ -67,7 +72,7 @@ class EvaluationRequest(Shape):
 
         Raises InvalidDocument for fields that are missing or unknown, with the faults of the quantities.
         """
-        if not isinstance(data, Mapping):
+        if not isinstance(data, dict):
             raise InvalidDocument.at("", "object-expected", "expected a JSON object")
         try:
             request = cls.model_validate(data)
