@@ -119,13 +119,13 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         """The work of a request without HTTP: npz written and read, states evaluated, npz written and read."""
         sent = b"".join(write_npz({"q": q}).pieces)
         given = {"quantities": quantities, **read_npz(io.BytesIO(sent), len(sent))}
-        found = evaluate(model, given, engine=one_thread)
+        found = evaluate(model, **given, evaluator=one_thread)
         answer = b"".join(write_npz({name: found[name] for name in quantities}).pieces)
         view_npz(np.frombuffer(answer, np.uint8))
 
     ways: dict[str, Callable[[], Any]] = {
-        "in process, one thread": lambda: evaluate(model, request, engine=one_thread),
-        "in process, all threads": lambda: evaluate(model, request, engine=engine),
+        "in process, one thread": lambda: evaluate(model, **request, evaluator=one_thread),
+        "in process, all threads": lambda: evaluate(model, **request, evaluator=engine),
         "npz": lambda: client.evaluate("cell0@1", quantities=quantities, q=q),
         "Arrow": lambda: list(client.evaluate_batches("cell0@1", [{"q": q}], quantities=quantities)),
     }

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from substructures.quantities.evaluation import Evaluation
+
 Plain = dict[str, Any]
 Array = Any
 
@@ -71,12 +73,12 @@ def inertia_of(body: Plain) -> tuple[float, Array, Array]:
 class Moving:
     """Kinematics of all frames (evaluated) with access by body name; velocities follow from U and Omega."""
 
-    answer: Plain
+    answer: Evaluation
     qd: Array
 
     def _at(self, body: str) -> tuple[Array, Array, Array, Array]:
         k = self.answer["kinematics"]
-        names = [name.split(".")[1] for name in self.answer["frames"]]
+        names = [name.split(".")[1] for name in self.answer.frames or ()]
         f = names.index(body)
         return k["position"][:, f], k["rotation"][:, f], k["U"][:, f], k["Omega"][:, f]
 

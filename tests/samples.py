@@ -8,6 +8,7 @@ import numpy as np
 from random_trees import Kind, Plain, random_definition, random_states, with_parameters
 
 from substructures import Model
+from substructures.quantities.evaluation import Evaluation
 
 QUANTITIES = ["metric", "christoffel", "forces", "gravity", "potential_energy", "kinematics", "momentum"]
 SEEDS = range(8)
@@ -22,7 +23,7 @@ def pair(seed: int, share: float) -> tuple[Plain, Plain]:
     return definition, with_parameters(rng, definition, share)
 
 
-def flat(answer: Plain) -> dict[str, Any]:
+def flat(answer: Evaluation) -> dict[str, Any]:
     """Arrays by name."""
     result = {}
     for name in QUANTITIES:

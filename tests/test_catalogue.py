@@ -103,6 +103,6 @@ def test_metric_is_positive_definite_at_the_default_values(part: Part) -> None:
         assert model.coordinates == ()
         return
     q = np.random.default_rng(5).uniform(-1, 1, (3, part.dof)).tolist()
-    answer = evaluate(model, {"quantities": ["metric", "forces"], "q": q, "qd": q})
+    answer = evaluate(model, ["metric", "forces"], q=q, qd=q)
     assert np.all(np.linalg.eigvalsh(np.array(answer["metric"])) > 0)
     assert np.isfinite(np.array(answer["forces"])).all()

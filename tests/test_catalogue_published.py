@@ -69,11 +69,9 @@ def test_published_gravity(name: str) -> None:
         q = {c: float(rng.uniform(-3, 3)) for c in known["coordinates"]}
         answer = evaluate(
             model,
-            {
-                "quantities": ["gravity"],
-                "q": [q[c.removeprefix("x.")] for c in model.coordinates],
-                "parameters": {(p if p == "g" else f"x.{p}"): v for p, v in values.items()},
-            },
+            ["gravity"],
+            q=[q[c.removeprefix("x.")] for c in model.coordinates],
+            parameters={(p if p == "g" else f"x.{p}"): v for p, v in values.items()},
         )
         expected = [value(text, values | q) for text in known["gravity"]]
         np.testing.assert_allclose(answer["gravity"], expected, rtol=1e-12, atol=1e-12)
@@ -88,7 +86,7 @@ def test_puma_560_as_published() -> None:
         "qd": known["qd"],
         "qdd": known["qdd"],
     }
-    answer = evaluate(model, request)
+    answer = evaluate(model, **request)
     close = {"rtol": 0, "atol": known["tolerance"]}
     np.testing.assert_allclose(answer["metric"], known["metric"], **close)
     np.testing.assert_allclose(answer["coriolis"], known["coriolis"], **close)
@@ -102,7 +100,7 @@ def test_robots_as_published(case: dict[str, Any]) -> None:
     """The figures in the frames they were published in, through another engine, and in the frames of the entry."""
     model = mounted(("x", case["entry"], "world"))
     request = {key: case[key] for key in ("q", "qd")} | {"quantities": ["metric", "bias", "gravity"]}
-    answer = evaluate(model, request | {"parameters": {f"x.{name}": v for name, v in case["parameters"].items()}})
+    answer = evaluate(model, **(request | {"parameters": {f"x.{name}": v for name, v in case["parameters"].items()}}))
     for quantity in ("metric", "bias", "gravity"):
         np.testing.assert_allclose(answer[quantity], case[quantity], rtol=1e-10, atol=1e-11)
 
@@ -116,7 +114,7 @@ def test_andrews_squeezer_starts_as_published() -> None:
     place = [model.coordinates.index(f"x.{c}") for c in order]
     q = np.zeros(7)
     q[place] = known["start"]
-    answer = evaluate(model, {"quantities": ["metric", "forces"], "q": q.tolist(), "qd": [0.0] * 7})
+    answer = evaluate(model, ["metric", "forces"], q=q.tolist(), qd=[0.0] * 7)
     metric = np.array(answer["metric"])[np.ix_(place, place)]
     forces = np.array(answer["forces"])[place]
 
@@ -136,7 +134,7 @@ def test_the_limbs_make_a_humanoid() -> None:
     model = mounted(*HUMANOID)
     assert len(model.coordinates) == 34
     q = np.random.default_rng(2).uniform(-0.5, 0.5, 34)
-    answer = evaluate(model, {"quantities": ["metric", "gravity"], "q": q.tolist()})
+    answer = evaluate(model, ["metric", "gravity"], q=q.tolist())
     metric = np.array(answer["metric"])
     assert np.all(np.linalg.eigvalsh(metric) > 0)
     # the three translations carry the whole mass: the fractions of the segments add up to one
@@ -154,7 +152,7 @@ def test_four_legs_make_a_quadruped() -> None:
     parts = {i["name"]: derive(Definition.read(load(i["substructure"]))) for i in instances}
     model = couple(TreeSpec.read({"name": "quadruped", "gravity": [0, 0, 0], "instances": instances}), parts)
     assert len(model.coordinates) == 18
-    metric = np.array(evaluate(model, {"quantities": ["metric"], "q": [0.0] * 18})["metric"])
+    metric = np.array(evaluate(model, ["metric"], q=[0.0] * 18)["metric"])
     legs = [metric[np.ix_(i, i)] for i in (range(6 + 3 * k, 9 + 3 * k) for k in range(4))]
     mirror = np.diag([-1.0, 1, 1])
     np.testing.assert_allclose(legs[0], mirror @ legs[1] @ mirror, rtol=1e-12, atol=1e-15)

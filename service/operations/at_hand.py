@@ -6,12 +6,13 @@ which leaves behind here what the next request of the same kind needs. Pinned tr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from service.answers import JSON, Answer, Stream
-from service.operations.exchange import Evaluation
+from service.operations.exchange import TreeEvaluation
+from service.schemas.numbers import EvaluationRequest
 from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
@@ -27,7 +28,7 @@ OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds
 class AtHand:
     """An evaluation with the programs it takes by source, and their outputs."""
 
-    evaluation: Evaluation
+    evaluation: TreeEvaluation
     programs: Mapping[str, tuple[Program, list[str]]]
 
     def is_ready(self, store: Store) -> bool:
@@ -40,19 +41,21 @@ class AtHand:
 
 
 def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
-    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`Evaluation.answer`."""
+    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.whole`."""
     if body.tell() > BODY:
         return None
-    request = read_json(body.reader().read())
-    found: AtHand | None = store.caches.evaluations.get(_key(ref, request))
-    if found is None or longest(request) > 1 or not found.is_ready(store):
+    data = read_json(body.reader().read())
+    names = data.get("quantities") if isinstance(data, Mapping) else None
+    found: AtHand | None = store.caches.evaluations.get(_key(ref, names)) if isinstance(names, list) else None
+    if found is None or not found.is_ready(store):
         return None
-    return found.evaluation.answer([request], JSON)
+    request = EvaluationRequest.read(data)
+    return found.evaluation.whole(request, JSON) if longest(request.arguments()) == 1 else None
 
 
-def remember(store: Store, ref: str, request: Any, evaluation: Evaluation) -> None:
+def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:
     """Keep what answers the same quantities of a pinned tree for another state, if that is short work."""
-    sources, names = evaluation.sources, request["quantities"]
+    sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
     if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures:
         return
@@ -60,9 +63,8 @@ def remember(store: Store, ref: str, request: Any, evaluation: Evaluation) -> No
     at_hand = Sources(sources.model, lambda _, source: programs[source][0])  # nothing is derived anew
     found = AtHand(replace(evaluation, sources=at_hand), programs)
     if found.is_ready(store):
-        store.caches.evaluations.put(_key(ref, request), found)
+        store.caches.evaluations.put(_key(ref, names), found)
 
 
-def _key(ref: str, request: Any) -> tuple[str, ...]:
-    names = request.get("quantities") if isinstance(request, Mapping) else None
-    return (ref, *map(str, names)) if isinstance(names, list) else (ref,)
+def _key(ref: str, quantities: Iterable[Any]) -> tuple[str, ...]:
+    return (ref, *map(str, quantities))

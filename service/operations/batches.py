@@ -9,13 +9,14 @@ from typing import IO, Any
 import numpy as np
 
 from service.operations import evaluations
+from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from substructures.array import Array
 from substructures.documents import pointer_step, read_json
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.formats import arrow
 from substructures.formats.arrays import flat, read_npz
-from substructures.formats.columns import ColumnRequest, has_rows, request_of
+from substructures.formats.columns import has_rows, request_of
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.states import numeric, read_states
 
@@ -23,16 +24,17 @@ PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
 _CONSTANTS = ("quantities", "parameters", "inputs", "along", "t")
 
-Evaluate = Callable[[ColumnRequest], Mapping[str, Any]]
+Evaluate = Callable[[EvaluationRequest], Mapping[str, Any]]
 
 
-def npz_request(file: IO[bytes], limits: Limits) -> dict[str, Any]:
+def npz_request(file: IO[bytes], limits: Limits) -> EvaluationRequest:
     """The request in an npz file: ``q, qd, qdd, t, quantities``, ``inputs.<name>``, ``parameters.<name>``, ..."""
     arrays = read_npz(file, limits.binary_bytes)
-    return request_of({}, {name: a.tolist() if a.dtype.kind == "U" else a for name, a in arrays.items()})
+    columns = {name: a.tolist() if a.dtype.kind == "U" else a for name, a in arrays.items()}
+    return EvaluationRequest.read(request_of({}, columns))
 
 
-def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
+def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[EvaluationRequest]:
     """One request for each record batch: arrays are columns, the rest JSON in the metadata of the schema."""
     reader, states = arrow.Reader(file, limits.binary_bytes), 0
     constants = {name: read_json(reader.metadata[name]) for name in _CONSTANTS if name in reader.metadata}
@@ -42,12 +44,12 @@ def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[dict[str, Any]]:
         if states > limits.stream_states:
             raise TooLarge("the number of states", states, limits.stream_states)
         if count:
-            yield request_of(constants, columns)
+            yield EvaluationRequest.read(request_of(constants, columns))
     if not states:
         raise InvalidDocument.at("/q", "missing", "the stream has no states")
 
 
-def joined(requests: Iterable[ColumnRequest], limits: Limits) -> ColumnRequest:
+def joined(requests: Iterable[EvaluationRequest], limits: Limits) -> EvaluationRequest:
     """One request of all record batches, for an answer in one piece. Raises TooLarge."""
     kept, size = [], 0
     for request in requests:
@@ -58,31 +60,29 @@ def joined(requests: Iterable[ColumnRequest], limits: Limits) -> ColumnRequest:
     if len(kept) == 1:
         return kept[0]
     batches = [_arrays(request) for request in kept]
-    return request_of(
-        {}, flat(kept[0]) | {name: np.concatenate([each[name] for each in batches]) for name in batches[0]}
-    )
+    columns = {name: np.concatenate([each[name] for each in batches]) for name in batches[0]}
+    return EvaluationRequest.read(request_of({}, flat(kept[0].given()) | columns))
 
 
-def _arrays(request: Any) -> dict[str, Array]:
-    columns = flat(request) if isinstance(request, Mapping) else {}
-    return {name: column for name, column in columns.items() if isinstance(column, np.ndarray)}
+def _arrays(request: EvaluationRequest) -> dict[str, Array]:
+    return {name: column for name, column in flat(request.given()).items() if isinstance(column, np.ndarray)}
 
 
-def split(sources: Sources, request: ColumnRequest, limits: Limits) -> Iterable[ColumnRequest]:
+def split(sources: Sources, request: EvaluationRequest, limits: Limits) -> Iterable[EvaluationRequest]:
     """Check the numbers of a request, and cut it into parts whose results are of moderate size and have a leading axis
-    also for a single state. Raises InvalidDocument.
+    also for a single state. Raises InvalidInput.
     """
-    states = read_states(sources.model, request, limits.states)
-    request = {**request, "q": states.q}
+    states = read_states(sources.model, request.arguments(), limits.states)
+    given = {**request.given(), "q": states.q}
     if states.single:
-        return [request]
-    count, size = states.count, max(1, PART // evaluations.bytes_per_state(sources, request))
-    fields = {name: _numbers(value, pointer_step(name)) for name, value in request.items() if name != "quantities"}
+        return [EvaluationRequest.read(given)]
+    count, size = states.count, max(1, PART // evaluations.bytes_per_state(sources, request.quantities))
+    fields = {name: _numbers(value, pointer_step(name)) for name, value in given.items() if name != "quantities"}
     if not set(_lengths(fields, "")) <= {1, count}:  # the evaluation says which one is wrong
-        return [request]
-    quantities = {"quantities": request.get("quantities")}
-    starts = range(0, max(1, count), size)
-    return (_cut(fields, slice(i, i + size), count, "") | quantities for i in starts)
+        return [EvaluationRequest.read(given)]
+    quantities = {"quantities": request.quantities}
+    parts = (_cut(fields, slice(i, i + size), count, "") for i in range(0, max(1, count), size))
+    return (EvaluationRequest.read(part | quantities) for part in parts)
 
 
 def _numbers(value: Any, pointer: str) -> Any:
@@ -117,7 +117,7 @@ def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
 
 
 def as_arrow(
-    evaluate: Evaluate, cuts: Iterable[Iterable[ColumnRequest]], quantities: Iterable[str]
+    evaluate: Evaluate, cuts: Iterable[Iterable[EvaluationRequest]], quantities: Iterable[str]
 ) -> Iterator[memoryview | bytes]:
     """The answer as an Arrow stream: a record batch for every part, null where a state has no result."""
     names = list(dict.fromkeys(quantities))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -11,12 +11,13 @@ from service.answers import JSON, Answer, Stream, json_answer, streamed
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
 from service.refusals import Refused
+from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
 from substructures.formats import arrays, arrow
-from substructures.formats.columns import ColumnRequest
-from substructures.quantities.evaluation import Evaluator, Sources, evaluate
+from substructures.quantities.evaluation import Evaluation, Evaluator, Sources, evaluate
+from substructures.quantities.states import longest
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 _KNOWN = ", ".join(MEDIA_TYPES)
@@ -38,7 +39,7 @@ def _matches(pattern: str, media: str) -> bool:
     return media in MEDIA_TYPES and pattern in ("*/*", "application/*", media)
 
 
-def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
+def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[EvaluationRequest]:
     """The request, or the requests for one batch of states after the other. Raises InvalidDocument, Refused 415."""
     file = body.reader()
     if sent == arrays.MEDIA_TYPE:
@@ -48,41 +49,55 @@ def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Any]:
             raise Refused(415, "arrow-not-installed", _EXTRA)
         return batches.arrow_requests(file, limits)
     if sent == JSON:
-        return [read_json(file.read())]
+        return [EvaluationRequest.read(read_json(file.read()))]
     raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
 
 
 @dataclass(frozen=True, slots=True)
-class Evaluation:
+class TreeEvaluation:
     """Evaluates a tree in the format wanted."""
 
     sources: Sources
     digest: str
     limits: Limits
-    engine: Evaluator
+    evaluator: Evaluator
 
-    def answer(self, requests: Iterable[Any], wanted: str) -> Answer | Stream:
-        """The answer to requests. Raises InvalidDocument, MissingValue, TooLarge, all before the first byte is sent
+    def answer(self, requests: Iterable[EvaluationRequest], wanted: str) -> Answer | Stream:
+        """The answer to requests. Raises InvalidInput, MissingValue, TooLarge, all before the first byte is sent
         unless the requests come one by one.
         """
         if wanted == arrow.MEDIA_TYPE:
             return streamed(self._arrow(iter(requests)), wanted)
-        request = batches.joined(requests, self.limits)
-        evaluations.check_size(self.sources, request, self.limits)
-        if wanted == arrays.MEDIA_TYPE:
-            file = arrays.as_npz(self._evaluated(request))
-            return Stream(iter(file.pieces), {"Content-Type": wanted, "Content-Length": str(file.size)})
-        return json_answer(evaluations.as_json(self._evaluated(request), request))
+        return self.whole(batches.joined(requests, self.limits), wanted)
 
-    def _arrow(self, requests: Iterator[Any]) -> Iterator[memoryview | bytes]:
+    def whole(self, request: EvaluationRequest, wanted: str) -> Answer | Stream:
+        """The answer to one request in one piece, as JSON or npz. Raises as :meth:`answer`."""
+        arguments = request.arguments()
+        evaluations.check_size(self.sources, request.quantities, longest(arguments), self.limits)
+        result = self._evaluated(arguments)
+        if wanted == arrays.MEDIA_TYPE:
+            file = arrays.as_npz(result.plain(self.digest))
+            return Stream(iter(file.pieces), {"Content-Type": wanted, "Content-Length": str(file.size)})
+        return json_answer(evaluations.as_json(result, self.digest))
+
+    def _arrow(self, requests: Iterator[EvaluationRequest]) -> Iterator[memoryview | bytes]:
         first = next(requests)
         cuts = chain([self._cut(first)], map(self._cut, requests))
-        return batches.as_arrow(self._evaluated, cuts, first.get("quantities", ()))
+        return batches.as_arrow(self._plain, cuts, first.quantities)
 
-    def _cut(self, request: Any) -> Iterable[ColumnRequest]:
-        evaluations.check_size(self.sources, request, self.limits, streamed=True)
+    def _cut(self, request: EvaluationRequest) -> Iterable[EvaluationRequest]:
+        states = longest(request.arguments())
+        evaluations.check_size(self.sources, request.quantities, states, self.limits, streamed=True)
         return batches.split(self.sources, request, self.limits)
 
-    def _evaluated(self, request: ColumnRequest) -> dict[str, Any]:
-        answer = evaluate(self.sources.model, request, self.limits.states, self.engine, self.sources)
-        return {**answer, "digest": self.digest}
+    def _plain(self, request: EvaluationRequest) -> dict[str, Any]:
+        return self._evaluated(request.arguments()).plain(self.digest)
+
+    def _evaluated(self, arguments: Mapping[str, Any]) -> Evaluation:
+        return evaluate(
+            self.sources.model,
+            **arguments,
+            limit=self.limits.states,
+            evaluator=self.evaluator,
+            sources=self.sources,
+        )

@@ -74,7 +74,7 @@ def prepare_one(
     place = f"/items/0{step}"
     try:
         return prepare(store, {"kind": kind, "items": [item]}, members)
-    except (InvalidDocument, Refused) as error:
+    except (InvalidInput, Refused) as error:
         raise InvalidDocument(Fault(f.pointer.removeprefix(place), f.code, f.message) for f in error.faults) from None
 
 

@@ -17,10 +17,11 @@ from service.jobs.kinds.evaluate import states_per_item
 from service.operations import jobs
 from service.queries.trees import Tree
 from service.queries.uploads import put_uploads
+from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from service.store import Store
 from substructures.array import Array
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument, InvalidInput
 from substructures.formats.arrays import flat, write_npz
 from substructures.formats.columns import ColumnRequest, parted, pointer_of, request_of
 from substructures.quantities.evaluation import Sources, check
@@ -40,7 +41,7 @@ class _Chunk:
 
 
 def prepare(
-    store: Store, tree: Tree, sources: Sources, requests: Iterable[ColumnRequest], form: str, principal: str
+    store: Store, tree: Tree, sources: Sources, requests: Iterable[EvaluationRequest], form: str, principal: str
 ) -> jobs.JobSubmission:
     """Store the states of requests (one, or one for each record batch) and resolve the items that evaluate them.
 
@@ -74,13 +75,13 @@ def _write(store: Store, contents: dict[str, bytes], items: int, principal: str)
     contents.clear()
 
 
-def _chunks(sources: Sources, requests: Iterable[ColumnRequest], limits: Limits) -> Iterator[_Chunk]:
+def _chunks(sources: Sources, requests: Iterable[EvaluationRequest], limits: Limits) -> Iterator[_Chunk]:
     """Chunks of equal size, however the states arrive."""
     model, start, carried = sources.model, 0, dict[str, Array]()
     size, constants, single = 0, dict[str, Any](), False
     for request in requests:
         rows, constants, single = _parted(sources, request, start + _length(carried))
-        size = size or states_per_item(constants, model.dof, len(model.frames), limits)
+        size = size or states_per_item(request.quantities, model.dof, len(model.frames), limits)
         carried = {name: np.concatenate([carried[name], x]) if carried else x for name, x in rows.items()}
         for stop in range(size, _length(carried), size):
             part = {name: x[stop - size : stop] for name, x in carried.items()}
@@ -98,17 +99,17 @@ def _length(rows: Mapping[str, Array]) -> int:
     return len(next(iter(rows.values()))) if rows else 0
 
 
-def _parted(sources: Sources, request: ColumnRequest, first: int) -> tuple[dict[str, Array], dict[str, Any], bool]:
+def _parted(sources: Sources, request: EvaluationRequest, first: int) -> tuple[dict[str, Array], dict[str, Any], bool]:
     """The columns with a row for every state, what is the same for all, and whether it is one state without an axis.
 
     ``first``: how many states came before.
     """
-    rows, rest = parted(flat(request))
+    rows, rest = parted(flat(request.given()))
     count = _length(rows) if rows else 1
     try:
-        states = check(sources, request)
-    except InvalidDocument as error:
-        raise InvalidDocument(_moved(fault, rows, first) for fault in error.faults) from None
+        states = check(sources, **request.arguments())
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: _moved(pointer, rows, first)) from None
     if states.count != count:
         message = f"{states.count:,} values in the metadata where there are {count:,} states"
         raise InvalidDocument.at("", "wrong-length", message)
@@ -116,10 +117,10 @@ def _parted(sources: Sources, request: ColumnRequest, first: int) -> tuple[dict[
     return rows, request_of({}, constants), states.single
 
 
-def _moved(fault: Fault, rows: Iterable[str], first: int) -> Fault:
-    """The fault with the number of the state among all that were sent."""
+def _moved(pointer: str, rows: Iterable[str], first: int) -> str:
+    """The pointer with the number of the state among all that were sent."""
     for place in map(pointer_of, rows):
-        index, *rest = fault.pointer.removeprefix(f"{place}/").split("/")
-        if fault.pointer.startswith(f"{place}/") and index.isdigit():
-            return Fault("/".join([place, str(int(index) + first), *rest]), fault.code, fault.message)
-    return fault
+        index, *rest = pointer.removeprefix(f"{place}/").split("/")
+        if pointer.startswith(f"{place}/") and index.isdigit():
+            return "/".join([place, str(int(index) + first), *rest])
+    return pointer

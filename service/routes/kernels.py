@@ -12,9 +12,8 @@ from service.http.requests import JsonBody, StoreOf, needs
 from service.operations import trees
 from service.operations.sources import sources_of
 from service.routes.bodies import body_of
-from service.schemas.numbers import KernelsView
+from service.schemas.numbers import EvaluationRequest, KernelsView
 from service.views.resources import dump
-from substructures.errors import InvalidDocument
 from substructures.quantities.evaluation import read_quantities, steps
 
 router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
@@ -38,10 +37,9 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Res
         model = store.model(connection, tree)
 
     def work() -> Answer:
-        if not isinstance(body, dict):
-            raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+        quantities = read_quantities(EvaluationRequest.read(body).quantities)  # also the body of an evaluation
         rows = []
-        for source, program, names in steps(sources_of(store, tree, model), read_quantities(body)):
+        for source, program, names in steps(sources_of(store, tree, model), quantities):
             if program is not None:
                 start = perf_counter()
                 kernel, is_new = store.kernels.compiled(program, names)

@@ -13,7 +13,7 @@ from service.http.requests import StoreOf, media_type, needs
 from service.http.responses import conditional, response_of
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
-from service.operations.exchange import Evaluation, choose_media_type, read_requests
+from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, sources_of
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
@@ -64,7 +64,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
-    evaluation = Evaluation(sources_of(store, tree, model), tree.digest, limits, engine_of(store, tree, model))
+    evaluation = TreeEvaluation(sources_of(store, tree, model), tree.digest, limits, engine_of(store, tree, model))
 
     def work() -> Answer | Stream:
         requests = read_requests(body, sent, limits)
@@ -79,7 +79,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
         requests, form = read_requests(body, sent, limits), "arrow" if wanted == ARROW else "npz"
         if sent == JSON:
             (given,) = requests
-            return deferred(act, "evaluate", {"tree": ref, "request": given, "format": form}, "/request")()
+            return deferred(act, "evaluate", {"tree": ref, "request": given.given(), "format": form}, "/request")()
         submission = uploads.prepare(store, tree, evaluation.sources, requests, form, act.principal)
         return committed(store, submission, act.principal)
 

@@ -1,40 +1,128 @@
-"""Shapes of evaluations, kernels and analyses, for OpenAPI; units are in the descriptions."""
+"""Requests and answers of evaluations, kernels and analyses; units are in the descriptions.
+
+Requests for evaluations are read here, whatever format they came in: fields are checked, and the numbers stay as they
+came (lists of exact numbers, or arrays of any size), because the science looks at every one of them anyway.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError
 
 from service.schemas.shapes import Digest, Shape
+from substructures.documents import pointer_step
+from substructures.errors import Fault, InvalidDocument, InvalidInput
+from substructures.quantities import derivative_directions
+from substructures.quantities.evaluation import read_quantities
 
 Column = float | list[float]
+Values = Annotated[dict[str, Column], SkipValidation]
+States = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation]
+_NEEDED = {
+    "quantities": "a list of quantities is needed",
+    "along": "the direction 'along' is needed: q, qd, qdd and inputs",
+}
 
 
-class Direction(BaseModel):
+def _values(description: str | None = None) -> Any:
+    """An empty object by default, made anew: pydantic would copy one, which takes longer than all the rest."""
+    return Field(default_factory=dict, description=description, json_schema_extra={"default": {}})
+
+
+class Direction(Shape):
     """The direction of a derivative, zero where nothing is given; one row for all states, or one for each."""
 
-    q: list[float] | list[list[float]] | dict[str, Column] | None = None
-    qd: list[float] | list[list[float]] | dict[str, Column] | None = None
-    qdd: list[float] | list[list[float]] | dict[str, Column] | None = Field(None, description="of inverse dynamics")
-    inputs: dict[str, Column] = {}
+    q: States = None
+    qd: States = None
+    qdd: States = Field(None, description="of inverse dynamics")
+    inputs: Values = _values()
 
 
-class EvaluationRequest(BaseModel):
+def _needs_states(schema: dict[str, Any]) -> None:
+    """Trees have coordinates; where a request does without, it goes with a grid or a sample."""
+    q = schema["properties"]["q"]
+    q["anyOf"].remove({"type": "null"})
+    del q["default"]
+    schema["required"].append("q")
+
+
+class EvaluationRequest(Shape):
     """States to evaluate; SI units, angles in rad.
 
     ``forward_dynamics`` of a tree with closures are the accelerations on them, in states that meet them; all other
     quantities are those of the tree without its closures (``inverse_dynamics``: what actuators and closures exert).
     """
 
-    quantities: list[str]
-    parameters: dict[str, Column] = Field({}, description="values in place of defaults; one, or one for every state")
-    q: list[float] | list[list[float]] | dict[str, Column] = Field(description="(n,), (N, n) or columns by name")
-    qd: list[float] | list[list[float]] | dict[str, Column] | None = None
-    qdd: list[float] | list[list[float]] | dict[str, Column] | None = None
-    inputs: dict[str, Column] = Field({}, description="tau.<coordinate> (N m or N) and inputs of loads")
-    t: Column = Field(0, description="s")
+    model_config = ConfigDict(extra="forbid", json_schema_extra=_needs_states)
+
+    quantities: Annotated[list[str], SkipValidation]
+    parameters: Values = _values("values in place of defaults; one, or one for every state")
+    q: States = Field(None, description="(n,), (N, n) or columns by name")
+    qd: States = None
+    qdd: States = None
+    inputs: Values = _values("tau.<coordinate> (N m or N) and inputs of loads")
+    t: Annotated[Column, SkipValidation] = Field(0, description="s")
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
+
+    @classmethod
+    def read(cls, data: Any) -> EvaluationRequest:
+        """From plain data, in which numbers may be arrays.
+
+        Raises InvalidDocument for fields that are missing or unknown, with the faults of the quantities.
+        """
+        if not isinstance(data, dict):
+            raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+        try:
+            request = cls.model_validate(data)
+        except ValidationError as error:
+            raise InvalidDocument(_faults(error, data)) from None
+        if not isinstance(request.quantities, list | tuple):
+            raise InvalidDocument.at("/quantities", "missing", _NEEDED["quantities"])
+        return request
+
+    def given(self) -> dict[str, Any]:
+        """The fields that were given, as plain data and arrays."""
+        found = {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
+        if self.along is not None:
+            along = self.along
+            found["along"] = {
+                name: getattr(along, name) for name in Direction.model_fields if name in along.model_fields_set
+            }
+        return found
+
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of :func:`substructures.quantities.evaluation.evaluate` by name."""
+        along = self.along
+        return {
+            "quantities": self.quantities,
+            "q": self.q,
+            "qd": self.qd,
+            "qdd": self.qdd,
+            "inputs": self.inputs,
+            "parameters": self.parameters,
+            "t": self.t,
+            "along": None
+            if along is None
+            else derivative_directions.Direction(along.q, along.qd, along.qdd, along.inputs),
+        }
+
+
+def _faults(error: ValidationError, data: Mapping[str, Any]) -> list[Fault]:
+    """What is wrong with the fields, then with the quantities."""
+    faults = []
+    for found in error.errors(include_url=False, include_context=False, include_input=False):
+        pointer, name = "".join(map(pointer_step, found["loc"])), str(found["loc"][-1])
+        if found["type"] == "extra_forbidden":
+            faults.append(Fault(pointer, "unknown-field", f"unknown field '{name[:80]}'"))
+        elif name != "quantities":
+            faults.append(Fault(pointer, "missing", _NEEDED.get(name, found["msg"])))
+    try:
+        read_quantities(given if isinstance(given := data.get("quantities"), list) else ())
+    except InvalidInput as wrong:
+        faults += wrong.faults
+    return faults
 
 
 class EvaluationResult(BaseModel):

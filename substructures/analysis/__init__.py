@@ -17,6 +17,6 @@ motion           ``problem``: what a motion is computed from (``signals``, ``eve
                  ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``; ``judges``
                  and ``trajectory``: checks and results; ``parameter_sensitivity``; ``writers``: trajectories as files
 equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule);
-                 ``perturbation``, ``curvature``, ``routh``; ``formulas``, ``formulation``: a model in a new graph
+                 ``perturbation``, ``curvature``, ``routh``; ``formulas``: a model in a new graph
 ===============  ===================================================================================================
 """

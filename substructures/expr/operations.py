@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -54,17 +54,26 @@ class Output:
     def expanded(self) -> Iterable[tuple[tuple[int, ...], int, int]]:
         """(index, entry, sign) of every non-zero element, dependent ones included."""
         for index, entry in zip(self.index, self.entries, strict=True):
-            yield index, entry, 1
-            if self.symmetry == "symmetric" and index[0] != index[1]:
-                yield (index[1], index[0]), entry, 1
-            elif self.symmetry == "christoffel":
-                a, b, c = index
-                if b != c:
-                    yield (a, c, b), entry, 1
-                if b <= a:
-                    yield (c, b, a), entry, -1
-                    if a != b:
-                        yield (c, a, b), entry, -1
+            for image, sign in images(index, self.symmetry):
+                yield image, entry, sign
+
+
+def images(index: tuple[int, ...], symmetry: str) -> Sequence[tuple[tuple[int, ...], int]]:
+    """(index, sign) of every element that an independent one determines by a symmetry, itself first."""
+    if symmetry == "symmetric":
+        a, b = index
+        return ((index, 1), ((b, a), 1)) if a != b else ((index, 1),)
+    if symmetry != "christoffel":
+        return ((index, 1),)
+    a, b, c = index
+    found = [(index, 1)]
+    if b != c:
+        found.append(((a, c, b), 1))
+    if b <= a:
+        found.append(((c, b, a), -1))
+        if a != b:
+            found.append(((c, a, b), -1))
+    return found
 
 
 def operands(operation: Operation) -> tuple[int, ...]:

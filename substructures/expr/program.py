@@ -30,6 +30,7 @@ from substructures.expr.operations import (
     Operation,
     Output,
     Symbol,
+    images,
     operands,
     read_parts,
 )
@@ -41,6 +42,7 @@ __all__ = [
     "KINDS",
     "SYMMETRIES",
     "VERSION",
+    "Entries",
     "Formulas",
     "Operation",
     "Output",
@@ -173,6 +175,10 @@ def _moved(output: Output, new: Mapping[int, int]) -> Output:
     return Output(output.shape, output.index, tuple(new[i] for i in output.entries), output.symmetry)
 
 
+#: expressions by index
+Entries = dict[tuple[int, ...], Expr]
+
+
 @dataclass(frozen=True, slots=True)
 class Formulas:
     """An output outside of a program: scalars by index, an element without one is zero.
@@ -184,6 +190,11 @@ class Formulas:
     shape: tuple[int, ...]
     entries: Mapping[tuple[int, ...], Any]
     symmetry: str = "none"
+
+    def expanded(self) -> dict[tuple[int, ...], Expr | int]:
+        """All elements by index, those that follow from the symmetry (:class:`Output`) included."""
+        pairs = ((x, image, sign) for i, x in self.entries.items() for image, sign in images(i, self.symmetry))
+        return {image: x if sign > 0 else -x for x, image, sign in pairs}
 
 
 def array(shape: tuple[int, ...], value: Callable[..., Any]) -> Formulas:

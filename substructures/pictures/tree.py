@@ -74,8 +74,7 @@ def _middle(limits: Any, slides: bool) -> float:
 
 def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _Scene:
     missing = {name: 1.0 for name, p in model.parameters.items() if p["value"] is None}
-    request = {"quantities": ["kinematics"], "q": q, "parameters": missing}
-    kinematics = evaluate(model, request)["kinematics"]
+    kinematics = evaluate(model, "kinematics", q, parameters=missing)["kinematics"]
     index = {name: i for i, name in enumerate(model.frames)}
     position = {name: np.nan_to_num(kinematics["position"][i]) for name, i in index.items()}
     rotation = {name: np.nan_to_num(kinematics["rotation"][i]) for name, i in index.items()}

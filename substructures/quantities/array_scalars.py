@@ -19,6 +19,8 @@ class Lanes:
     def __init__(self, array: Array) -> None:
         self.array = array
 
+    # x + 0 = x, x 0 = 0 and x 1 = x hold exactly, so no array is made for them
+
     def __add__(self, other: Any) -> Lanes:
         if type(other) is Lanes:
             return Lanes(self.array + other.array)
@@ -67,6 +69,7 @@ class Supports:
 
     def __init__(self, program: Program) -> None:
         masks = [0] * len(program)
+        # an operation depends on what its operands depend on; bit k stands for symbol k
         for i, operation in enumerate(program.operations):
             if operation[0] == "sym":
                 masks[i] = 1 << operation[1]

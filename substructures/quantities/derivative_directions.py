@@ -2,51 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from substructures.documents import escape
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidArgument, InvalidInput
 from substructures.quantities.derivatives import direction
-from substructures.quantities.states import States, given_values, input_names, read_states
+from substructures.quantities.states import StateInput, States, ValueInput, given_values, input_names, read_states
 from substructures.tree.model import Model
 
+#: what follows the name of a coordinate in that of its position, velocity and acceleration
 PRIMES = {"q": "", "qd": "'", "qdd": "''"}
 
 
-def direction_values(model: Model, along: Any, states: States) -> dict[str, Any]:
-    """Values of all symbols of a direction; zero where nothing is given.
+@dataclass(frozen=True)
+class Direction:
+    """The direction (dq, dq', dq'', dtau) of a derivative; what is not given is zero.
 
-    ``along``: ``q``, ``qd``, ``qdd`` in the shapes of a request, one row for all states or one for each, and ``inputs``
-    by name. Raises InvalidDocument with pointers ``/along/...``.
+    ``q``, ``qd``, ``qdd``: (n,) for all states, (N, n), or by coordinate name; ``inputs``: by name, a number or (N,).
     """
-    if not isinstance(along, Mapping):
-        raise InvalidDocument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
-    unknown = [key for key in along if key not in (*PRIMES, "inputs")]
-    if unknown:
-        faults = (Fault(f"/along/{escape(k)}", "unknown-field", f"unknown field '{str(k)[:80]}'") for k in unknown)
-        raise InvalidDocument(faults)
+
+    q: StateInput | None = None
+    qd: StateInput | None = None
+    qdd: StateInput | None = None
+    inputs: ValueInput | None = None
+
+
+def direction_values(model: Model, along: Direction | None, states: States) -> dict[str, Any]:
+    """Values of all symbols ``d.*``; zero where nothing is given. Raises InvalidArgument (``/along/...``)."""
+    if along is None:
+        raise InvalidArgument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
     count = states.count
     values: dict[str, Any] = {direction(name): 0.0 for name in input_names(model)}
     for field, primes in PRIMES.items():
-        values |= {direction(name + primes): x for name, x in _columns(model, along, field, count).items()}
-    given = given_values(along.get("inputs"), "inputs", "/along/inputs", count, input_names(model))
+        # dq, dq', dq'' are the symbols d.arm.q1, d.arm.q1', d.arm.q1''
+        columns = _columns(model, getattr(along, field), field, count)
+        values |= {direction(name + primes): x for name, x in columns.items()}
+    # dtau of actuators, du of loads
+    given = given_values(along.inputs, "inputs", "/along/inputs", count, input_names(model))
     return values | {direction(name): x for name, x in given.items()}
 
 
-def _columns(model: Model, along: Mapping[str, Any], field: str, count: int) -> dict[str, Any]:
-    """A direction of the states by coordinate, read like the states of a request."""
-    given = along.get(field)
+def _columns(model: Model, given: StateInput | None, field: str, count: int) -> dict[str, Any]:
+    """A direction of the states by coordinate, read like states."""
     if given is None or not model.dof:
         return dict.fromkeys(model.coordinates, 0.0)
     try:
         x = read_states(model, {"q": given}, None).q
-    except InvalidDocument as error:
-        faults = [replace(f, pointer=f"/along/{field}" + f.pointer.removeprefix("/q")) for f in error.faults]
-        raise InvalidDocument(faults) from None
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: f"/along/{field}" + pointer.removeprefix("/q")) from None
     if len(x) not in (1, count):
-        raise InvalidDocument.at(f"/along/{field}", "wrong-length", f"{len(x)} directions for {count} states")
+        raise InvalidArgument.at(f"/along/{field}", "wrong-length", f"{len(x)} directions for {count} states")
     return dict(zip(model.coordinates, np.broadcast_to(x, (count, model.dof)).T, strict=True))

@@ -23,7 +23,7 @@ from substructures.expr.program import Formulas, Program, array
 from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
 from substructures.part.part import MAX_NODES
-from substructures.quantities.workspace import ID, Replayed, vector
+from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model, require_open
 
 FD = "forward_dynamics"
@@ -42,8 +42,9 @@ def direction(name: str) -> str:
     return f"d.{name}"
 
 
-def _along(r: Replayed, rows: Sequence[Expr], fixed: frozenset[str] = frozenset()) -> list[Expr]:
+def _along(r: Workspace, rows: Sequence[Expr], fixed: frozenset[str] = frozenset()) -> list[Expr]:
     """d(row) along the symbols ``d.*``, which are declared; ``fixed`` kinds of symbols are not varied."""
+    # seeds of forward mode: every symbol x moves by its own symbol d.x
     varied = [s for s in r.symbols.values() if s.kind in VARIED - fixed]
     r.symbols |= {direction(s.name): replace(s, name=direction(s.name)) for s in varied}
     return directional(rows, {s.name: r.graph.symbol(direction(s.name)) for s in varied})
@@ -56,7 +57,8 @@ def inverse_dynamics_derivative(model: Model) -> Program:
     of the module's table (only those appear that the dynamics depend on). Where a load has an infinite derivative its
     value is not finite.
     """
-    r = Replayed(model)
+    r = Workspace(model)
+    # ID_a = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a  (notation.md, section 7)
     rows = r.inverse_dynamics()
     return r.program({ID: vector(rows), f"{ID}_derivative": vector(_along(r, rows))})
 
@@ -68,10 +70,11 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
     ``inverse_dynamics_qd`` (n, n): dID_a/dq'^b = 2 Gamma_abc q'^c - dQ_a/dq'^b, both at [a, b]. The derivative by q''
     is the metric. One walk for every column, each over what depends on it.
     """
-    r = Replayed(model)
+    r = Workspace(model)
     rows = r.inverse_dynamics()
 
     def matrix(names: Sequence[str]) -> Formulas:
+        # column b: dID_a/dx^b, the derivative along the unit direction of x^b alone
         columns = [directional(rows, {name: r.graph.one}) for name in names]
         return array((r.n, r.n), lambda a, b: columns[b][a])
 
@@ -88,7 +91,7 @@ def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
     accelerations, InvalidDocument for closures.
     """
     require_open(model.closures, BY_STATE)
-    r = Replayed(model)
+    r = Workspace(model)
     factors, pivots = _factors(r, max_nodes)
     return r.program({FD: vector(_accelerations(r, factors)), "pivots": vector(pivots)})
 
@@ -100,17 +103,19 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     coordinates, velocities and inputs. Raises as forward_dynamics.
     """
     require_open(model.closures, "use linearisations")
-    r = Replayed(model)
+    r = Workspace(model)
     factors, pivots = _factors(r, max_nodes)
     found = _accelerations(r, factors)
+    # dID at the symbols q'' with dq'' = 0, then at q'' = FD
     slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
     bindings = {f"{name}''": x for name, x in zip(model.coordinates, found, strict=True)}
     at_found = replay(slopes, r.graph, bindings)["slopes"].entries
+    # g d(q'') = -dID
     result = factors.solve([-at_found.get((a,), r.graph.zero) for a in range(r.n)])
     return r.program({FD: vector(found), "pivots": vector(pivots), f"{FD}_derivative": vector(result)})
 
 
-def _factors(r: Replayed, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
+def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
     """L and D of the metric, and D_k / |g_kk|."""
     size = factor_operations(r.n, r.model.program.outputs["metric"].index)
     if size > max_nodes:
@@ -120,9 +125,11 @@ def _factors(r: Replayed, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
         factors = factorised(r.n, metric)
     except ZeroDivisionError:
         raise SingularMetric.at("", "singular-metric", SINGULAR) from None
+    # D_k / |g_kk|: 1 for a coordinate alone, 0 where others leave it no inertia
     return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
 
 
-def _accelerations(r: Replayed, factors: Factors[Expr]) -> list[Expr]:
-    """g x = -ID at q'' = 0."""
+def _accelerations(r: Workspace, factors: Factors[Expr]) -> list[Expr]:
+    """q'' with g q'' = Q - Gamma q' q'."""
+    # ID at q'' = 0 is Gamma_abc q'^b q'^c - Q_a
     return factors.solve([-x for x in r.inverse_dynamics([r.graph.zero] * r.n)])

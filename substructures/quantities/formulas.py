@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from substructures.errors import TooLarge
-from substructures.expr.program import Formulas, Program
+from substructures.expr.program import Entries, Formulas, Program
+from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
 from substructures.quantities import derivatives
-from substructures.quantities.workspace import ID, Entries, Replayed, vector
+from substructures.quantities.memo import ProgramCache
+from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model
+
+#: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
+DYNAMICS = ("metric", "bias", "forces")
 
 
 def _coriolis(model: Model, max_nodes: int) -> Program:
@@ -17,32 +22,35 @@ def _coriolis(model: Model, max_nodes: int) -> Program:
     products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
     if products > max_nodes:
         raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
-    r, entries = Replayed(model), Entries()
+    r, entries = Workspace(model), Entries()
     for (a, b, c), gamma in r.elements("christoffel").items():
-        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.rate(c, "'")
+        # C_ab = sum over c of Gamma_abc q'^c  (notation.md, section 7)
+        entries[a, b] = entries.get((a, b), r.graph.zero) + gamma * r.velocity_symbol(c)
     return r.program({"coriolis": Formulas((r.n, r.n), entries)})
 
 
 def _inverse_dynamics(model: Model, _: int) -> Program:
-    r = Replayed(model)
+    r = Workspace(model)
     return r.program({ID: vector(r.inverse_dynamics())})
 
 
 def _kinetic_energy(model: Model, _: int) -> Program:
     """1/2 g_ab q'^a q'^b."""
-    r = Replayed(model)
-    momentum = r.product(r.elements("metric"), "'")
-    twice = r.graph.sum(p * r.rate(a, "'") for (a,), p in momentum.items())
+    r = Workspace(model)
+    # p_a = g_ab q'^b, then 2 T = p_a q'^a
+    momentum = r.times_velocity(r.elements("metric"))
+    twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
 
 def _total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
-    r, outputs = Replayed(model), dict[str, Formulas]()
+    r, outputs = Workspace(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
         entries = Entries()
         for (a, i), p in r.elements(f"{kind}_momentum").items():
-            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.rate(a, "'")
+            # p_i = p_ai q'^a: momenta are linear in the velocities
+            entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.velocity_symbol(a)
         outputs[kind] = Formulas((3,), entries)
     return r.program(outputs)
 
@@ -57,28 +65,33 @@ _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
 }
 DERIVED = tuple(_FORMULAS)
+CLOSED_DYNAMICS = "closed_dynamics"
 
 
 def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
-    """A quantity of DERIVED as a program with an output of that name (notation.md, section 7).
+    """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
     total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
     inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
-    see :mod:`substructures.quantities.derivatives`.
+    see :mod:`substructures.quantities.derivatives`;
+    closed_dynamics: the outputs DYNAMICS and CLOSED of the model, the part that accelerations on closures need.
     Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
     ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
     """
+    if quantity == CLOSED_DYNAMICS:  # no larger than the model
+        return model.program.select([*DYNAMICS, *CLOSED])
     result = _FORMULAS[quantity](model, max_nodes)
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
     return result
 
 
+_programs = ProgramCache()
+
+
 def kept(model: Model, quantity: str) -> Program:
-    """:func:`derived`, once for every model."""
-    if quantity not in model.derived:
-        model.derived[quantity] = derived(model, quantity)
-    return model.derived[quantity]
+    """:func:`derived`, once for equal models as long as it is used. Raises as :func:`derived`."""
+    return _programs.get(model, quantity, lambda: derived(model, quantity))

@@ -81,6 +81,7 @@ class NumericTree:
         self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)
         self._constants = self._constant_program()
         # where nothing is given: parameters have their defaults, inputs, velocities and accelerations are zero
+        # tau = 0, t = 0, q' = q'' = 0
         self._rest = {name: 0.0 for name, s in self.assembly.scope.symbols.items() if s.kind == "input"} | {"t": 0.0}
         defaults = {name: p["value"] for name, p in self.assembly.parameters.items() if p["value"] is not None}
         self._rest |= {name: default_number(value) for name, value in defaults.items()}
@@ -140,6 +141,7 @@ class NumericTree:
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
         mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]))
+        # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))

@@ -21,8 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.array import Array
-from substructures.errors import InvalidDocument, TooLarge
+from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import Inertia, pairing
@@ -33,7 +32,8 @@ from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.topology import BASE
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
+from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
@@ -73,19 +73,36 @@ class RegressorModel:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     closures: tuple[ClosureRows, ...] = ()
 
-    def evaluate(self, request: Mapping[str, Any], limit: int | None = None) -> dict[str, Array]:
+    def evaluate(
+        self,
+        q: StateInput | None,
+        qd: StateInput | None = None,
+        qdd: StateInput | None = None,
+        *,
+        parameters: ValueInput | None = None,
+        limit: int | None = None,
+    ) -> Evaluation:
         """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
 
-        ``request``: q, qd, qdd and parameters as for ``substructures.quantities.evaluation``; the axis N is dropped for
-        one state with ``q`` (n,). Raises InvalidDocument (with pointers; ``qdd`` is needed) and MissingValue.
+        Arguments as for :func:`substructures.quantities.evaluation.evaluate`; the axis N is dropped for one state with
+        ``q`` (n,). Raises InvalidArgument (``qdd`` is needed) and MissingValue.
         """
         model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {})
-        states = read_states(model, request, limit)
+        given = {"q": q, "qd": qd, "qdd": qdd, "parameters": parameters}
+        states = read_states(model, given, limit)
         if states.qdd is None and model.dof:
-            raise InvalidDocument.at("/qdd", "missing", "the regressor needs accelerations 'qdd'")
-        values = symbol_values(model, request, states, OUTPUTS)
+            raise InvalidArgument.at("/qdd", "missing", "the regressor needs accelerations 'qdd'")
+        values = symbol_values(model, given, states, OUTPUTS)
         results = interpret_in_blocks(self.program, values, OUTPUTS, states.count)
-        return {name: x[0] if states.single else x for name, x in results.items()}
+        return Evaluation(
+            self.coordinates,
+            states.count,
+            self.program.digest,
+            {name: x[0] if states.single else x for name, x in results.items()},
+            failures_of(results, lambda _: "the result is not finite"),
+            columns=ParameterColumns(self.names, self.units),
+            single=states.single,
+        )
 
 
 @dataclass(frozen=True)
@@ -112,6 +129,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         Y: dict[tuple[int, ...], Scalar] = {
             (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
         }
+        # pi = (m, s, J) of every link, so that Y pi = g q'' + Gamma q' q' - Q(gravity)
         pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
@@ -139,8 +157,10 @@ def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, MountedPart]]:
 def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, Scalar]]]]:
     """(i, [(a, Y_ai)]): virtual power of the load of every parameter put to one."""
     for i in range(10):
+        # pi_j = delta_ij: m, then s = (sx, sy, sz), then J = (xx, yy, zz, xy, xz, yz)
         m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (int(i == j) for j in range(10))
         load = inertial_load(link.motion, Inertia(m, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
+        # Y_ai = U_ka . f_i + Omega_ka . n_i
         yield i, [(a, pairing(twist, load.f, load.n)) for a, twist in link.columns.items()]
 
 
@@ -165,7 +185,9 @@ def _link(name: str, here: PlacedPart, frame: int, own: PartOutputs, motions: Ma
     """Inertia, motion and partial velocities of a carrier, in the frame of the body it is named by."""
     link = here.frame_link(frame)
     E, r = here.outputs.matrix("frame.E", frame), here.outputs.vector("frame.position", frame)
+    # from the origin and axes of the link's own frame L(c) to those of the body it is named by
     inertia = own.own_inertia(link.parent).shifted(negate(r)).turned_back(constant_rotation(transpose(E)))
+    # U and Omega of B by coordinate (notation.md, section 3)
     columns = here.columns_beyond(link)
     return _Link(name, inertia, motions[link.parent].at(from_body(here.links, link), link.rotation), columns)
 

@@ -1,4 +1,8 @@
-"""States and values of a request as arrays: shapes, names and numbers are checked, faults carry pointers."""
+"""States and values as arrays: shapes, names and numbers are checked, faults have pointers.
+
+Arguments are given by name, as in the call ``evaluate(model, quantities, q=..., parameters=...)``: ``q, qd, qdd, t,
+inputs, parameters``. What is wrong with one is an InvalidArgument, whose pointer starts with the name.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +13,24 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidDocument, MissingValue, listed
+from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, listed
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import ExpressionError, parse
 from substructures.expr.program import Program, array, program
 from substructures.part.scope import no_names
 from substructures.tree.model import Model
+
+#: states: (n,), (N, n), or by coordinate name a number or (N,) numbers
+StateInput = ArrayLike | Mapping[str, ArrayLike]
+#: by name: one number, or (N,), one for every state
+ValueInput = Mapping[str, ArrayLike]
+#: arguments by name
+Arguments = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -34,37 +46,38 @@ class States:
     single: bool
 
 
-def read_states(model: Model, request: Mapping[str, Any], limit: int | None) -> States:
-    """q, qd, qdd of a request. One q holds for all velocities, times, inputs, ... Raises InvalidDocument."""
-    q = _state(model, request.get("q"), "q")
+def read_states(model: Model, given: Arguments, limit: int | None) -> States:
+    """q, qd, qdd of arguments. One q holds for all velocities, times, inputs, ... Raises InvalidArgument."""
+    q = _state(model, given.get("q"), "q")
     if q is None:
         if model.dof:
-            raise InvalidDocument.at("/q", "missing", "states 'q' are needed")
+            raise InvalidArgument.at("/q", "missing", "states 'q' are needed")
         q = np.zeros((1, 0)), True
-    count = longest(request) if len(q[0]) == 1 else len(q[0])
+    # one q stands for as many states as anything else has
+    count = longest(given) if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
-        raise InvalidDocument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
+        raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
     others = []
     for name in ("qd", "qdd"):
-        given = _state(model, request.get(name), name)
-        if given is not None and len(given[0]) not in (1, count):
-            message = f"{len(given[0])} states where there are {count}"
-            raise InvalidDocument.at(f"/{name}", "wrong-length", message)
-        others.append(None if given is None else given[0])
+        found = _state(model, given.get(name), name)
+        if found is not None and len(found[0]) not in (1, count):
+            message = f"{len(found[0])} states where there are {count}"
+            raise InvalidArgument.at(f"/{name}", "wrong-length", message)
+        others.append(None if found is None else found[0])
     qd = np.zeros((1, model.dof)) if others[0] is None else others[0]
     return States(q[0], qd, others[1], count, q[1] and count == 1)
 
 
-def longest(request: Mapping[str, Any]) -> int:
+def longest(given: Arguments) -> int:
     """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
-    lengths = [1, _entries(request.get("t"))]
+    lengths = [1, _entries(given.get("t"))]
     for name in ("q", "qd", "qdd"):
-        given = request.get(name)
-        if isinstance(given, list | tuple | np.ndarray) and _entries(given) and _entries(given[0]):
-            lengths.append(len(given))
+        rows = given.get(name)
+        if isinstance(rows, list | tuple | np.ndarray) and _entries(rows) and _entries(rows[0]):
+            lengths.append(len(rows))
     for name in ("q", "qd", "qdd", "inputs", "parameters"):
-        given = request.get(name)
-        lengths += map(_entries, given.values()) if isinstance(given, Mapping) else ()
+        columns = given.get(name)
+        lengths += map(_entries, columns.values()) if isinstance(columns, Mapping) else ()
     return max(lengths)
 
 
@@ -82,7 +95,7 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
     values = numeric(given, f"/{name}")
     if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
         expected = f"(N, {model.dof}) or ({model.dof},)"
-        raise InvalidDocument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")
+        raise InvalidArgument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")
     return np.atleast_2d(values), values.ndim == 1
 
 
@@ -97,18 +110,19 @@ def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
         Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in model.coordinates if c not in given
     ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
+    # columns by coordinate, in the order of the model: (N,) each, or numbers
     columns = {c: numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates}
     for c, column in columns.items():
         first = columns[model.coordinates[0]]
         if column.shape != first.shape:
             message = f"shape {column.shape} found, but {first.shape} of '{model.coordinates[0]}'"
-            raise InvalidDocument.at(f"/{name}/{escape(c)}", "wrong-length", message)
+            raise InvalidArgument.at(f"/{name}/{escape(c)}", "wrong-length", message)
     return np.stack(list(columns.values()), axis=-1) if columns else np.zeros((1, 0))
 
 
 def numeric(given: Any, pointer: str) -> Array:
-    """A finite array of doubles from nested lists of numbers. Raises InvalidDocument with the first fault's place."""
+    """A finite array of doubles from nested lists of numbers. Raises InvalidArgument with the first fault's place."""
     if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
         values = given.astype(np.float64, copy=False)
     else:
@@ -116,10 +130,10 @@ def numeric(given: Any, pointer: str) -> Array:
         try:
             values = np.asarray(given, dtype=np.float64)
         except (ValueError, TypeError, OverflowError):
-            raise InvalidDocument.at(pointer, "wrong-length", "a rectangular array of numbers is needed") from None
+            raise InvalidArgument.at(pointer, "wrong-length", "a rectangular array of numbers is needed") from None
     if not np.isfinite(values).all():
         where = "".join(f"/{int(i)}" for i in np.argwhere(~np.isfinite(values))[0])
-        raise InvalidDocument.at(pointer + where, "number-not-finite", "the number is not finite")
+        raise InvalidArgument.at(pointer + where, "number-not-finite", "the number is not finite")
     return values
 
 
@@ -129,36 +143,37 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
             if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
                 _check_numbers(x, f"{pointer}/{i}", depth + 1)
     elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
-        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
+        raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
 
 
-def symbol_values(model: Model, request: Mapping[str, Any], states: States, needs: Iterable[str]) -> dict[str, Any]:
-    """Values of all symbols that the needed outputs of the model depend on. Raises InvalidDocument, MissingValue."""
-    values = known_values(model, request, states, model.parameters)
+def symbol_values(model: Model, given: Arguments, states: States, needs: Iterable[str]) -> dict[str, Any]:
+    """Values of all symbols that the needed outputs of the model depend on. Raises InvalidArgument, MissingValue."""
+    values = known_values(model, given, states, model.parameters)
     require(model.program, needs, values)
     return values
 
 
 def known_values(
-    model: Model, request: Mapping[str, Any], states: States, parameters: Mapping[str, Mapping[str, Any]]
+    model: Model, given: Arguments, states: States, parameters: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, Any]:
     """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
-    a value in the request. Raises InvalidDocument.
+    a value among the arguments. Raises InvalidArgument.
     """
     count = states.count
     values: dict[str, Any] = {}
+    # q^a, q'^a, q''^a are the symbols arm.q1, arm.q1', arm.q1''
     for primes, columns in (("", states.q), ("'", states.qd), ("''", states.qdd)):
         if columns is not None:
             rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
             values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
-    t = numeric(0 if request.get("t") is None else request["t"], "/t")
+    t = numeric(0 if given.get("t") is None else given["t"], "/t")
     values["t"] = _per_state(t, count, "/t")
     inputs = input_names(model)
     values |= dict.fromkeys(inputs, 0.0)
     # default values, correctly rounded
     values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
-    values |= _given(request, "inputs", count, inputs)
-    values |= _given(request, "parameters", count, parameters)
+    values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs)
+    values |= given_values(given.get("parameters"), "parameters", "/parameters", count, parameters)
     return values
 
 
@@ -175,20 +190,16 @@ def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -
             raise MissingValue(name)
 
 
-def _given(request: Mapping[str, Any], field: str, count: int, known: Collection[str]) -> dict[str, Any]:
-    return given_values(request.get(field), field, f"/{field}", count, known)
-
-
 def given_values(given: Any, field: str, place: str, count: int, known: Collection[str]) -> dict[str, Any]:
     """Numbers by name, one or one for every state; ``field``: what they are, ``place``: pointer to the object."""
     if not isinstance(given or {}, Mapping):
-        raise InvalidDocument.at(place, "object-expected", "an object of numbers by name is needed")
+        raise InvalidArgument.at(place, "object-expected", "an object of numbers by name is needed")
     result = {}
     for name, value in (given or {}).items():
         pointer = f"{place}/{escape(name)}"
         if name not in known:
             message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
-            raise InvalidDocument.at(pointer, f"unknown-{field[:-1]}", message)
+            raise InvalidArgument.at(pointer, f"unknown-{field[:-1]}", message)
         result[name] = _per_state(numeric(value, pointer), count, pointer)
     return result
 
@@ -196,7 +207,7 @@ def given_values(given: Any, field: str, place: str, count: int, known: Collecti
 def _per_state(values: Array, count: int, pointer: str) -> Array:
     if values.ndim > 1 or (values.ndim == 1 and len(values) not in (1, count)):
         message = f"one number, or one for each of the {count} states is needed, found shape {values.shape}"
-        raise InvalidDocument.at(pointer, "wrong-length", message)
+        raise InvalidArgument.at(pointer, "wrong-length", message)
     return values
 
 

@@ -1,4 +1,4 @@
-"""Which programs the quantities of an evaluation come from (the HTTP contract, section 4)."""
+"""Which programs the quantities of an evaluation come from, and what they cost."""
 
 from __future__ import annotations
 
@@ -7,27 +7,25 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.derivatives import FD, SingularMetric
-from substructures.quantities.formulas import kept
+from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import KINEMATICS, Model
 
-FIELDS = frozenset(("quantities", "parameters", "q", "qd", "qdd", "inputs", "t", "along"))
 MODEL, REGRESSOR = "model", "regressor"
-DYNAMICS = ("metric", "bias", "forces")
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of the contract: outputs of the program ``source``, one array or several by ``fields``."""
+    """A quantity: outputs of the program ``source``, one array or several by ``fields``."""
 
     source: str
     outputs: tuple[str, ...]
     fields: tuple[str, ...] = ()
-    requires: tuple[str, ...] = ()  #: fields of the request
+    requires: tuple[str, ...] = ()  #: arguments that it needs
     pivots: tuple[str, ...] = ()  #: the output that tells whether the metric could be inverted
 
 
@@ -52,6 +50,7 @@ QUANTITIES: dict[str, Quantity] = {
     **_outputs(REGRESSOR, "regressor", requires=("qdd",)),
     **_outputs(REGRESSOR, "inertial_parameters"),
 }
+_KNOWN = ", ".join(QUANTITIES)
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class Sources:
     regressor: Callable[[], RegressorModel] | None = None
 
     def program(self, source: str) -> Program:
-        """The program of this name. Raises TooLarge, InvalidDocument."""
+        """The program of this name. Raises TooLarge, and InvalidInput for closures and trees without their parts."""
         if source == MODEL:
             return self.model.program
         return self.columns().program if source == REGRESSOR else self.derive(self.model, source)
@@ -75,7 +74,7 @@ class Sources:
     def columns(self) -> RegressorModel:
         """The regressor with the names of its columns."""
         if self.regressor is None:
-            raise InvalidDocument.at("/quantities", "needs-parts", "the regressor needs the parts of the tree")
+            raise InvalidArgument.at("/quantities", "needs-parts", "the regressor needs the parts of the tree")
         return self.regressor()
 
     def parameters(self, names: Sequence[str]) -> Mapping[str, Mapping[str, Any]]:
@@ -85,21 +84,18 @@ class Sources:
         return self.model.parameters
 
 
-def read_quantities(request: Mapping[str, Any]) -> list[str]:
-    """The quantities of a request. Raises InvalidDocument for unknown ones, and for unknown fields."""
-    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key}'") for key in request if key not in FIELDS]
-    names = request.get("quantities")
+def read_quantities(quantities: str | Sequence[str]) -> list[str]:
+    """The names of quantities, each once. Raises InvalidArgument (``/quantities/i``) for unknown ones, and for none."""
+    names = [quantities] if isinstance(quantities, str) else quantities
     if not isinstance(names, (list, tuple)) or not names:
-        faults.append(Fault("/quantities", "missing", "a list of quantities is needed"))
-        names = []
-    for i, name in enumerate(names):
-        if not isinstance(name, str) or name not in QUANTITIES:
-            known = ", ".join(QUANTITIES)
-            faults.append(
-                Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {known}")
-            )
+        raise InvalidArgument.at("/quantities", "missing", "a list of quantities is needed")
+    faults = [
+        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {_KNOWN}")
+        for i, name in enumerate(names)
+        if not isinstance(name, str) or name not in QUANTITIES
+    ]
     if faults:
-        raise InvalidDocument(faults)
+        raise InvalidArgument(faults)
     return list(dict.fromkeys(names))
 
 
@@ -108,6 +104,7 @@ def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
     operations = numbers = 0
     n = sources.model.dof
     for source, program, names in steps(sources, quantities):
+        # without a program the answer is one row of NaN by coordinate
         shapes = {} if program is None else {name: program.outputs[name].shape for name in names}
         chosen = [q for q in dict.fromkeys(quantities) if QUANTITIES[q].source == source]
         numbers += sum(prod(shapes.get(name, (n,))) for q in chosen for name in QUANTITIES[q].outputs)
@@ -118,16 +115,10 @@ def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
 def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     """At most so many numbers of the answer for one state; known without the formulas."""
     n, columns = max(1, dof), 10 * frames
+    # position 3 and rotation 9 of every frame, U and Omega 3 each for every frame and coordinate; ten parameters a link
     several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
     several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6}
     return sum(several.get(name, n) for name in quantities)
-
-
-def closed_dynamics(model: Model) -> Program:
-    """What accelerations of a tree with closures are computed from, once for every model."""
-    if "closed_dynamics" not in model.derived:
-        model.derived["closed_dynamics"] = model.program.select([*DYNAMICS, *CLOSED])
-    return model.derived["closed_dynamics"]
 
 
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
@@ -141,7 +132,7 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     for source, names in wanted.items():
         if source == FD and sources.model.closures:
-            yield source, closed_dynamics(sources.model), [*DYNAMICS, *CLOSED]
+            yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
             continue
         try:
             yield source, sources.program(source), sorted(names)

@@ -1,70 +1,143 @@
-"""Outputs of a model in a new graph, to form further formulas from them."""
+"""A model in a graph of its own, where further formulas are built from its outputs.
+
+Symbols of the model keep their names: q^a is ``arm.q1``, q'^a ``arm.q1'`` and q''^a ``arm.q1''``. The order in which
+nodes are made is the order of operations of the programs that come out, hence part of their digests: so outputs are
+replayed and symbols become nodes when they are first asked for.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
+from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, Output, Program, Symbol, array, program
+from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
-from substructures.tree.model import Model
+from substructures.part.scope import Scope
+from substructures.tree.model import KINEMATICS, Model
 
-LENGTH = {"R": "rad", "P": "m"}
+#: of coordinates by the letter of their joint
+UNITS = {"R": "rad", "P": "m"}
 ID = "inverse_dynamics"
-Entries = dict[tuple[int, ...], Expr]
 
 
-class Replayed:
-    """A model in a graph of its own, and symbols for velocities and accelerations."""
+class Workspace:
+    """Graph, symbols and outputs of a model.
 
-    def __init__(self, model: Model) -> None:
+    ``zero``: symbols that are put to 0. ``symbols``: descriptions by name, to which whoever makes more symbols adds
+    theirs.
+    """
+
+    def __init__(self, model: Model, zero: Iterable[str] = ()) -> None:
         self.model, self.graph, self.n = model, Graph(), model.dof
+        self.zero = frozenset(zero)
+        # q^a and q'^a also where no output depends on them
         self.symbols = {symbol.name: symbol for symbol in model.program.symbols}
+        for name, joint in zip(model.coordinates, model.joints, strict=True):
+            self.symbols[name] = Symbol(name, "coordinate", UNITS[joint])
+            self.symbols[f"{name}'"] = Symbol(f"{name}'", "velocity", f"{UNITS[joint]}/s")
+        self._found: dict[str, Entries] = {}
+
+    @cached_property
+    def scope(self) -> Scope:
+        """What expressions may name: coordinates, velocities, parameters and the time, but no inputs."""
+        scope, model = Scope(self.graph, symbols=self.symbols), self.model
+        for s in model.program.symbols:
+            if s.kind != "input":
+                scope.declare(s.name, s.kind, s.unit)
+        for name, joint in zip(model.coordinates, model.joints, strict=True):
+            scope.declare(name, "coordinate", UNITS[joint])
+            scope.declare(f"{name}'", "velocity", f"{UNITS[joint]}/s")
+        for name, parameter in model.parameters.items():
+            scope.declare(name, "parameter", str(parameter.get("unit", "")))
+        return scope
 
     def independent(self, name: str, bindings: Mapping[str, Expr] | None = None) -> Entries:
-        """The stored elements of an output; ``bindings``: expressions in place of symbols."""
-        found = replay(self.model.program, self.graph, bindings or {}, [name])[name]
-        return {index: x for index, x in found.entries.items() if isinstance(x, Expr)}
+        """The stored elements of an output by index; ``bindings``: expressions in place of symbols.
 
-    def elements(self, name: str, bindings: Mapping[str, Expr] | None = None) -> Entries:
-        """All non-zero elements of an output."""
-        stored, values = self.model.program.outputs[name], list(self.independent(name, bindings).values())
-        numbered = Output(stored.shape, stored.index, tuple(range(len(values))), stored.symmetry)
-        return {index: values[k] if sign > 0 else -values[k] for index, k, sign in numbered.expanded()}
+        Raises InvalidDocument (``division-by-zero``) when a formula divides by one of the symbols ``zero``.
+        """
+        found = self._replayed([name], bindings)[name].entries
+        return {index: x for index, x in found.items() if isinstance(x, Expr)}
 
-    def rate(self, a: int, primes: str) -> Expr:
-        """q'^a or q''^a."""
-        name = self.model.coordinates[a] + primes
-        kind = "velocity" if primes == "'" else "acceleration"
-        unit = LENGTH[self.model.joints[a]] + ("/s" if primes == "'" else "/s^2")
-        self.symbols[name] = Symbol(name, kind, unit)
+    def outputs(self, names: Sequence[str], bindings: Mapping[str, Expr] | None = None) -> dict[str, Entries]:
+        """All non-zero elements of several outputs, those that follow from a symmetry included. Raises as
+        :meth:`independent`.
+        """
+        found = self._replayed(names, bindings)
+        return {name: _non_zero(found[name]) for name in names}
+
+    def elements(self, name: str) -> Entries:
+        """All non-zero elements of one output, which is replayed once. Raises as :meth:`independent`."""
+        if name not in self._found:
+            self._found[name] = self.outputs([name])[name]
+        return self._found[name]
+
+    def kinematics(self) -> dict[str, Entries]:
+        """Position, rotation, U and Omega of all frames."""
+        return self.outputs(KINEMATICS)
+
+    def vector(self, name: str) -> list[Expr]:
+        """An output of shape (n,), zeros included."""
+        found = self.elements(name)
+        return [found.get((a,), self.graph.zero) for a in range(self.n)]
+
+    def scalar(self, name: str) -> Expr:
+        """An output without axes."""
+        return self.elements(name).get((), self.graph.zero)
+
+    def velocity_symbol(self, a: int) -> Expr:
+        """q'^a [rad/s, m/s]."""
+        return self.graph.symbol(f"{self.model.coordinates[a]}'")
+
+    def acceleration_symbol(self, a: int) -> Expr:
+        """q''^a [rad/s^2, m/s^2]."""
+        name = f"{self.model.coordinates[a]}''"
+        self.symbols[name] = Symbol(name, "acceleration", f"{UNITS[self.model.joints[a]]}/s^2")
         return self.graph.symbol(name)
 
-    def product(self, matrix: Entries, primes: str) -> Entries:
-        """m_ab q'^b (or q''^b)."""
+    def times_velocity(self, matrix: Entries) -> Entries:
+        """m_ab q'^b."""
         entries: Entries = {}
         for (a, b), x in matrix.items():
-            entries[(a,)] = entries.get((a,), self.graph.zero) + x * self.rate(b, primes)
+            entries[(a,)] = entries.get((a,), self.graph.zero) + x * self.velocity_symbol(b)
         return entries
 
     def inverse_dynamics(self, accelerations: Sequence[Expr] | None = None) -> list[Expr]:
         """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a at the symbols q'', or at other expressions for them."""
-        rates = [self.rate(a, "''") for a in range(self.n)]
-        bindings = dict(zip((str(x.value) for x in rates), accelerations or rates, strict=True))
+        symbols = [self.acceleration_symbol(a) for a in range(self.n)]
+        qdd = symbols if accelerations is None else accelerations
         if ID in self.model.program.outputs:
-            result = self.independent(ID, bindings)
+            result = self.independent(ID, dict(zip((str(x.value) for x in symbols), qdd, strict=True)))
             return [result.get((a,), self.graph.zero) for a in range(self.n)]
         # models that were stored before this was one of their outputs
         rows = [self.graph.zero] * self.n
         for (a, b), x in self.elements("metric").items():
-            rows[a] = rows[a] + x * list(bindings.values())[b]
+            rows[a] = rows[a] + x * qdd[b]  # g_ab q''^b
         bias, forces = self.elements("bias"), self.elements("forces")
         return [x + bias.get((a,), 0) - forces.get((a,), 0) for a, x in enumerate(rows)]
 
     def program(self, outputs: Mapping[str, Formulas]) -> Program:
         """Outputs as a program."""
         return program(self.graph, outputs, self.symbols)
+
+    def _replayed(self, names: Sequence[str], bindings: Mapping[str, Expr] | None) -> dict[str, Formulas]:
+        bound = dict.fromkeys(self.zero, self.graph.zero) | dict(bindings or {})
+        try:
+            return replay(self.model.program, self.graph, bound, names)
+        except ZeroDivisionError:
+            if not self.zero:
+                raise
+            zeros = ", ".join(f"'{x}'" for x in sorted(self.zero & set(self.model.parameters)))
+            raise InvalidDocument.at(
+                "/parameters", "division-by-zero", f"a formula divides by zero when these are zero: {zeros}"
+            ) from None
+
+
+def _non_zero(formulas: Formulas) -> Entries:
+    return {index: x for index, x in formulas.expanded().items() if isinstance(x, Expr) and not x.is_zero}
 
 
 def vector(values: Sequence[Any]) -> Formulas:

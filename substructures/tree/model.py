@@ -76,11 +76,6 @@ class Model:
         """Number of coordinates."""
         return len(self.coordinates)
 
-    @cached_property
-    def derived(self) -> dict[str, Program]:
-        """Programs that were formed from this model's, by name; they live as long as it."""
-        return {}
-
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
         closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}

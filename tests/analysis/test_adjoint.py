@@ -17,7 +17,7 @@ from substructures.analysis.control.problem import ControlProblem, Cost, initial
 from substructures.analysis.control.shooting import Shooting
 from substructures.expr.interpret import interpret
 from substructures.printers import FORMATS, render
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Direction, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 
@@ -131,7 +131,7 @@ def test_adjoint_equations_are_transposed_perturbation_equations() -> None:
     state = {"q": q, "qd": qd, "t": 0.3, "inputs": {"x.u1": 0.4} if "x.u1" in inputs_of(model) else {}}
     along = {"q": dq, "qd": dqd, "inputs": du}
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    answer = evaluate(model, {"quantities": quantities, **state, "along": along})
+    answer = evaluate(model, quantities, **state, along=Direction(**along))
     slope = answer["forward_dynamics_derivative"]
     values: dict[str, Any] = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= dict.fromkeys(inputs_of(model), 0.0) | state["inputs"] | {"t": 0.3, "lambda.0": 1.0}
@@ -155,7 +155,7 @@ def test_multipliers_converge_to_the_costates() -> None:
     """A pendulum with q'' = -a sin q + b u: the continuous adjoint equations integrated to 1e-10."""
     model = shipped("simple-pendulum")
     (q,), (u,) = model.coordinates, inputs_of(model)
-    answer = evaluate(model, {"quantities": ["metric", "gravity"], "q": [0.5]})
+    answer = evaluate(model, ["metric", "gravity"], q=[0.5])
     request: Plain = {
         "controls": [u],
         "cost": Cost(f"{q}^2 + {u}^2", f"3*{q}'"),

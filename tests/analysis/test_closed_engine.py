@@ -29,7 +29,7 @@ def test_independent_engine(kind: str) -> None:
     document: Plain = {"gravity": list(GRAVITY), "instances": [{"name": "x", "substructure": "d"}]}
     start = rng.uniform(-0.5, 0.5, 8)
     chain = tree_model(document, {"d": definition})
-    x = evaluate(chain, {"quantities": ["kinematics"], "q": start})["kinematics"]
+    x = evaluate(chain, ["kinematics"], q=start)["kinematics"]
     where, turned = x["position"][-1], x["rotation"][-1]
     seat = {"position": [float(v) for v in where], "rpy": [float(v) for v in reversed(angles(turned))]}
     closure = {"name": "c", "type": kind, "from": "x.tip", "to": "world", "placement": seat}

@@ -100,7 +100,7 @@ def test_stewart_platform() -> None:
     assert abs(motion.q[-1, 2] - 1.1) > 0.1
     feet, joints = stewart_points()
     for q in motion.q:
-        where = evaluate(model, {"quantities": ["kinematics"], "q": q})["kinematics"]
+        where = evaluate(model, ["kinematics"], q=q)["kinematics"]
         plate = model.frames.index("top.plate")
         ends = where["position"][plate] + joints @ where["rotation"][plate].T
         lengths = np.linalg.norm(ends - feet, axis=1)

@@ -96,10 +96,10 @@ def metric_derivatives(model: Model, q: Any) -> tuple[Any, Any, Any]:
         points = np.repeat(q[None], 25, axis=0)
         points[:, c] += steps[:, 0] * h
         points[:, d] += steps[:, 1] * h
-        g = evaluate(model, {"quantities": ["metric"], "q": points})["metric"]
+        g = evaluate(model, ["metric"], q=points)["metric"]
         second[:, :, c, d] = np.einsum("k,kab->ab", mixed, g)
     around = q + h * np.arange(-2, 3)[:, None, None] * np.eye(n)
-    g = evaluate(model, {"quantities": ["metric"], "q": around.reshape(-1, n)})["metric"].reshape(5, n, n, n)
+    g = evaluate(model, ["metric"], q=around.reshape(-1, n))["metric"].reshape(5, n, n, n)
     return g[2, 0], np.einsum("k,kcab->abc", weights, g), second
 
 

@@ -42,7 +42,7 @@ def test_any_joint_may_be_cut(kind: str) -> None:
     closed = tree_model(document, {"w": parted})
     n = len(CHAINS[kind])
     q, qd = rng.uniform(-0.6, 0.6, chain.dof), rng.uniform(-1, 1, chain.dof)
-    answer = evaluate(chain, {"quantities": ["kinematics", "forward_dynamics"], "q": q, "qd": qd})
+    answer = evaluate(chain, ["kinematics", "forward_dynamics"], q=q, qd=qd)
     b2 = chain.frames.index("x.b2")
     pose = answer["kinematics"]["position"][b2], answer["kinematics"]["rotation"][b2]
     start = np.concatenate((q[:1], pose[0], angles(pose[1]), q[1 + n :]))
@@ -64,6 +64,6 @@ def slopes(chain: Any, q: np.ndarray, qd: np.ndarray, frame: int, h: float = 1e-
     """Rates of position and angles of a frame, by differences of fourth order."""
     result = np.zeros(6)
     for k, c in ((1, 8), (-1, -8), (2, -1), (-2, 1)):
-        x = evaluate(chain, {"quantities": ["kinematics"], "q": q + k * h * qd})["kinematics"]
+        x = evaluate(chain, ["kinematics"], q=q + k * h * qd)["kinematics"]
         result += c / (12 * h) * np.concatenate((x["position"][frame], angles(x["rotation"][frame])))
     return result

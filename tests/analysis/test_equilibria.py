@@ -38,7 +38,7 @@ def test_forces_vanish_on_random_trees(number: int) -> None:
     found = equilibria(model, count=4).found
     assert found
     for e in found:
-        forces = evaluate(model, {"quantities": ["forces"], "q": e.q})["forces"]
+        forces = evaluate(model, ["forces"], q=e.q)["forces"]
         assert np.abs(forces).max() < 1e-8
         assert e.at.is_equilibrium
 

@@ -28,7 +28,7 @@ def drift(model: Model, found: FirstIntegrals, seed: int = 0) -> dict[str, float
     """Largest derivative of every integral along the equations of motion at random states, by central differences."""
     rng, h = np.random.default_rng(seed), 1e-4
     x = random_states(rng, 4, model.dof)
-    qdd = evaluate(model, {"quantities": ["forward_dynamics"], "q": x["q"], "qd": x["qd"]})["forward_dynamics"]
+    qdd = evaluate(model, ["forward_dynamics"], q=x["q"], qd=x["qd"])["forward_dynamics"]
     ends = []
     for s in (h, -h):
         q = x["q"] + s * x["qd"] + 0.5 * s * s * qdd
@@ -97,7 +97,7 @@ def test_derivative_of_the_energy_is_the_power(number: int) -> None:
     rng, h = np.random.default_rng(number), 1e-5
     x = random_states(rng, 3, model.dof)
     state = {"q": x["q"], "qd": x["qd"], "t": 0.2}
-    qdd = evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]
+    qdd = evaluate(model, ["forward_dynamics"], **state)["forward_dynamics"]
     f = [
         interpret(
             found.program,
@@ -146,10 +146,10 @@ def test_cyclic_coordinates_are_those_that_nothing_depends_on(number: int) -> No
     found = first_integrals(model)
     x = random_states(np.random.default_rng(number), 2, model.dof)
     names = ["metric", "forces"]
-    before = evaluate(model, {"quantities": names, "q": x["q"], "qd": x["qd"]})
+    before = evaluate(model, names, q=x["q"], qd=x["qd"])
     for a, name in enumerate(model.coordinates):
         moved = x["q"] + 0.7 * np.eye(model.dof)[a]
-        after = evaluate(model, {"quantities": names, "q": moved, "qd": x["qd"]})
+        after = evaluate(model, names, q=moved, qd=x["qd"])
         same = np.allclose(after["metric"], before["metric"], rtol=1e-9, atol=1e-12)
         free = np.allclose(after["forces"][:, a], 0) and np.allclose(before["forces"][:, a], 0)
         assert (name in found.cyclic) == (same and free)
@@ -182,9 +182,7 @@ def test_routh_reduction_moves_like_the_whole(name: str, gravity: Any) -> None:
     rest = [model.coordinates.index(c) for c in reduced.coordinates]
     x = random_states(np.random.default_rng(3), 3, model.dof)
     state = {"q": x["q"], "qd": x["qd"]}
-    full = evaluate(
-        model, {"quantities": ["forward_dynamics", "metric", "potential_energy", "kinetic_energy"], **state}
-    )
+    full = evaluate(model, ["forward_dynamics", "metric", "potential_energy", "kinetic_energy"], **state)
     p = np.einsum("nab,nb->na", full["metric"], x["qd"])
     momenta = {f"p.{c}": p[:, model.coordinates.index(c)] for c in reduced.cyclic}
     f = interpret(reduced.program, values_at(model, x["q"], x["qd"]) | momenta)

@@ -41,7 +41,7 @@ def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int
     rng, n = np.random.default_rng(seed), len(model.coordinates)
     states: Plain = {name: rng.uniform(-2, 2, (samples, n)) for name in ("q", "qd", "qdd")}
     states["parameters"] = {name: float(rng.uniform(0.4, 1.2)) for name in model.parameters}
-    stacked = model.evaluate(states)["regressor"].reshape(-1, len(model.names))
+    stacked = model.evaluate(**states)["regressor"].reshape(-1, len(model.names))
     values = np.linalg.svd(stacked, compute_uv=False)
     return int(np.sum(values > 1e-9 * values[0]))
 
@@ -125,7 +125,7 @@ def test_random_trees(seed: int) -> None:
     assert base.count == numeric_rank(Y, 40 if n > 3 else 60, seed)
     states = {name: rng.uniform(-1, 1, (3, n)) for name in ("q", "qd", "qdd")}
     values: Plain = {name: float(rng.uniform(0.4, 1.2)) for name in Y.parameters}
-    full = Y.evaluate({**states, "parameters": dict(values)})
+    full = Y.evaluate(**states, parameters=dict(values))
     for primes, x in (("", states["q"]), ("'", states["qd"]), ("''", states["qdd"])):
         values |= {f"{name}{primes}": x[:, a] for a, name in enumerate(Y.coordinates)}
     found = interpret(base.program, values)
@@ -183,7 +183,7 @@ def test_recovery_of_the_puma() -> None:
     """From forces with noise of 0.05 N m: within four standard deviations; without noise to 1e-7. Rotors are known."""
     base, model = base_of("puma560"), couple(*tree("puma560"))
     data = motion(6, 500)
-    clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    clean = np.asarray(evaluate(model, **(data | {"quantities": ["inverse_dynamics"]}))["inverse_dynamics"])
     beta = own_values(base)
     exact = identify(base, **data, tau=clean, model=model)
     np.testing.assert_allclose(exact.values, beta, rtol=0, atol=1e-7)
@@ -202,7 +202,7 @@ def test_recovery_with_friction() -> None:
     """Viscous and dry friction of a planar arm, identified together with its links."""
     base, model = base_of("planar-3r", IN_PLANE, ("viscous", "coulomb")), couple(*tree("planar-3r", IN_PLANE))
     data = motion(3, 200)
-    tau = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    tau = np.asarray(evaluate(model, **(data | {"quantities": ["inverse_dynamics"]}))["inverse_dynamics"])
     tau = tau + 0.3 * data["qd"] + 0.2 * np.sign(data["qd"])
     found = identify(base, **data, tau=tau)
     expected = own_values(base)
@@ -214,7 +214,7 @@ def test_joints_are_weighted_by_what_they_leave_unexplained() -> None:
     """With a force sensor a thousand times as noisy as another: normal equations in two passes, and their inverse."""
     base, model = base_of("planar-3r", IN_PLANE), couple(*tree("planar-3r", IN_PLANE))
     data = motion(3, 100)
-    clean = np.asarray(evaluate(model, data | {"quantities": ["inverse_dynamics"]})["inverse_dynamics"])
+    clean = np.asarray(evaluate(model, **(data | {"quantities": ["inverse_dynamics"]}))["inverse_dynamics"])
     tau = clean + np.random.default_rng(2).normal(0, 1, clean.shape) * [1e-3, 1, 0.03]
     found = identify(base, **data, tau=tau)
     values: Plain = {name: default_number(p["value"]) for name, p in base.parameters.items()}

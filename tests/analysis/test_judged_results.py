@@ -35,7 +35,7 @@ def stated(motion: Trajectory, *names: str) -> Check:
 
 def energies(model: Model, q: Any, qd: Any) -> np.ndarray:
     """T + V, by a way that the judges do not go."""
-    found = evaluate(model, {"quantities": ["metric", "potential_energy"], "q": q, "qd": qd})
+    found = evaluate(model, ["metric", "potential_energy"], q=q, qd=qd)
     return np.asarray(0.5 * np.einsum("ka,kab,kb->k", qd, found["metric"], qd) + found["potential_energy"])
 
 
@@ -65,14 +65,14 @@ def test_trees(name: str, method: Plain) -> None:
     assert motion.status == "finished", motion.message
     assert_energy_is_stated(model, motion)
     if entry == "puma560":
-        first = evaluate(model, {"quantities": ["metric"], "q": motion.q})["metric"][:, 0]
+        first = evaluate(model, ["metric"], q=motion.q)["metric"][:, 0]
         assert_stated(stated(motion, "momentum.x.q1"), np.einsum("ka,ka->k", first, motion.qd))
 
 
 def test_all_momenta_of_a_free_body() -> None:
     model = catalogue_model("free-body", (0, 0, 0))
     motion = simulate(model, [0] * 6, (0, 5), qd=[0.3, -0.2, 0.1, 0.4, 0.2, 0.5])
-    found = evaluate(model, {"quantities": ["momentum"], "q": motion.q, "qd": motion.qd})["momentum"]
+    found = evaluate(model, ["momentum"], q=motion.q, qd=motion.qd)["momentum"]
     for kind in ("linear", "angular"):
         for k, axis in enumerate("xyz"):
             assert_stated(stated(motion, f"{kind}_momentum.{axis}"), found[kind][:, k])
@@ -99,7 +99,7 @@ def test_states_of_events_are_judged() -> None:
 
 def assert_pin_is_stated(model: Model, motion: Trajectory, ends: tuple[str, str]) -> None:
     """Gap and relative velocity of two points in the plane, by kinematics; both are below 1e-9."""
-    place = evaluate(model, {"quantities": ["kinematics"], "q": motion.q})["kinematics"]
+    place = evaluate(model, ["kinematics"], q=motion.q)["kinematics"]
     one, two = (model.frames.index(name) for name in ends)
     gap = np.abs(place["position"][:, one] - place["position"][:, two]).max()
     turned = np.einsum("kfij,kfaj,ka->kfi", place["rotation"], place["U"], motion.qd)

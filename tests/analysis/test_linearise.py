@@ -23,7 +23,7 @@ STEP = 1e-4
 
 
 def acceleration(model: Model, state: Plain) -> Any:
-    return evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]
+    return evaluate(model, ["forward_dynamics"], **state)["forward_dynamics"]
 
 
 def slope(model: Model, state: Plain, key: str, name: Any) -> Any:
@@ -118,7 +118,7 @@ def test_damping_is_twice_coriolis_less_dampers() -> None:
     model = catalogue_model("ur5")
     x = random_states(np.random.default_rng(2), 1, 6)
     found = linearise(model, x["q"][0], qd=x["qd"][0])
-    coriolis = evaluate(model, {"quantities": ["coriolis"], "q": x["q"][0], "qd": x["qd"][0]})["coriolis"]
+    coriolis = evaluate(model, ["coriolis"], q=x["q"][0], qd=x["qd"][0])["coriolis"]
     np.testing.assert_allclose(found.D, 2 * coriolis, atol=1e-12)
 
 

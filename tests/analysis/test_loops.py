@@ -181,7 +181,7 @@ def test_a_tree_without_loops_is_the_special_case() -> None:
     two = {"x.q1": "sin(t)", "x.q2": "t^3"}
     held = loop_state(catalogue_model("double-pendulum"), [0.4, 0.1], prescribed=two, t=0.5)
     state = {"q": [np.sin(0.5), 0.125], "qd": [np.cos(0.5), 0.75], "qdd": [-np.sin(0.5), 3]}
-    needed = evaluate(catalogue_model("double-pendulum"), {"quantities": ["inverse_dynamics"], **state})
+    needed = evaluate(catalogue_model("double-pendulum"), ["inverse_dynamics"], **state)
     np.testing.assert_allclose(held.qdd, state["qdd"])
     np.testing.assert_allclose(list(held.actuation.values()), needed["inverse_dynamics"], rtol=1e-9)
 

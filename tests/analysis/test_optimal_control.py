@@ -98,11 +98,11 @@ def test_swing_up() -> None:
     def rates(time: float, x: Any) -> Any:
         u = float(np.interp(time, t, found.controls[:, 0]))
         state = {"q": x[:2], "qd": x[2:], "inputs": {"tau.x.q0": u}}
-        return [*x[2:], *evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]]
+        return [*x[2:], *evaluate(model, ["forward_dynamics"], **state)["forward_dynamics"]]
 
     motion = solve_ivp(rates, (0, 2), [0, np.pi, 0, 0], rtol=1e-8, atol=1e-8, max_step=0.05)
     np.testing.assert_allclose(motion.y[:, -1], 0, atol=1e-2)
-    energy = evaluate(model, {"quantities": ["potential_energy"], "q": found.trajectory.q[[0, -1]]})["potential_energy"]
+    energy = evaluate(model, ["potential_energy"], q=found.trajectory.q[[0, -1]])["potential_energy"]
     assert energy[1] - energy[0] == pytest.approx(2 * 0.2 * 9.81 * 0.5)
 
 

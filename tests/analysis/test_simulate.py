@@ -29,7 +29,7 @@ def test_the_right_hand_side_is_forward_dynamics(number: int) -> None:
     x = random_states(rng, 1, model.dof)
     inputs = {s.name: float(rng.uniform(-1, 1)) for s in model.program.symbols if s.kind == "input"}
     state = {"q": x["q"][0], "qd": x["qd"][0], "inputs": inputs, "t": 0.4}
-    expected = evaluate(model, {"quantities": ["forward_dynamics"], **state})["forward_dynamics"]
+    expected = evaluate(model, ["forward_dynamics"], **state)["forward_dynamics"]
     f = RightHandSide(model, defaults(model) | inputs)
     found = f(0.4, np.concatenate([x["q"][0], x["qd"][0], np.zeros(f.size - 2 * model.dof)]))
     np.testing.assert_allclose(found[: model.dof], x["qd"][0])

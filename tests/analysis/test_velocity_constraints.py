@@ -148,7 +148,7 @@ def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
 
     B = out["constraints"]
     given = {"q": q, "qd": qd, "inputs": inputs, "t": 0.2}
-    x = evaluate(model, {"quantities": ["metric", "bias", "forces"], **given})
+    x = evaluate(model, ["metric", "bias", "forces"], **given)
     kkt = np.block([[x["metric"], -B.T], [B, np.zeros((n - p, n - p))]])
     solution = np.linalg.solve(kkt, np.concatenate((x["forces"] - x["bias"], -slope("constraints") @ qd)))
     scale = np.abs(solution).max()

@@ -30,7 +30,7 @@ DOWN = (0, -9.81, 0)
 
 
 def accelerations(model: Model, q: Any, qd: Any, **more: Any) -> Plain:
-    return evaluate(model, {"quantities": [FD], "q": q, "qd": qd, **more})
+    return evaluate(model, [FD], q=q, qd=qd, **more)
 
 
 @pytest.mark.parametrize("make", [lambda: four_bar(DOWN), lambda: slider_crank(DOWN), bricard, governor, stewart])
@@ -48,7 +48,7 @@ def test_accelerations_are_those_of_the_loops(make: Callable[[], Model]) -> None
             expected.append(found.qdd)
     q, qd = (np.array([getattr(s, name) for s in states]) for name in ("q", "qd"))
     answer = accelerations(model, q, qd, inputs=inputs)
-    assert answer["failures"] == []
+    assert answer.failures == ()
     scale = np.abs(expected).max()
     np.testing.assert_allclose(answer[FD], expected, rtol=0, atol=1e-8 * scale)
     one = accelerations(model, q[1], qd[1], inputs=inputs)[FD]
@@ -63,8 +63,8 @@ def test_open_and_singular_states_have_no_accelerations() -> None:
     answer = accelerations(model, np.array([good.q, good.q + 0.1, good.q]), np.array([good.qd, rest, good.qd + 0.1]))
     assert np.isfinite(answer[FD][0]).all()
     assert np.isnan(answer[FD][1:]).all()
-    assert [f["state"] for f in answer["failures"]] == [1, 2]
-    assert "loop states" in answer["failures"][0]["message"]
+    assert [f.state for f in answer.failures] == [1, 2]
+    assert "loop states" in answer.failures[0].message
     lengths = {"x.l0": 0.4, "x.l1": 0.1, "x.l2": 0.4, "x.l3": 0.1}
     folded = accelerations(model, rest, rest, parameters=lengths)
     assert np.isnan(folded[FD]).all()

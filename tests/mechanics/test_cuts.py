@@ -60,7 +60,7 @@ def answers(model: Model, q: dict[str, Any], qd: dict[str, Any]) -> dict[str, An
     inputs = {name: value * 2 for name, value in inputs.items()}
     request = {"quantities": QUANTITIES, "inputs": inputs, "t": 0.3}
     states = {k: np.stack([x[c] for c in names], axis=1) for k, x in (("q", q), ("qd", qd))} if names else {}
-    answer = evaluate(model, request | states)
+    answer = evaluate(model, **(request | states))
     result = {name: answer[name] for name in ("potential_energy",)}
     result |= {f"momentum {k}": x for k, x in answer["momentum"].items()}
     for name, axes in (("metric", 2), ("christoffel", 3), ("gravity", 1), ("forces", 1)):
@@ -68,7 +68,7 @@ def answers(model: Model, q: dict[str, Any], qd: dict[str, Any]) -> dict[str, An
         for axis in range(1, axes + 1):
             x = np.take(x, order, axis=axis)
         result[name] = x
-    for f, frame in enumerate(answer["frames"]):
+    for f, frame in enumerate(answer.frames or ()):
         short = frame.split(".")[1]
         if short != "base" and not short.startswith("seat"):
             k = answer["kinematics"]

@@ -17,7 +17,7 @@ from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
 from substructures.quantities.derivatives import SingularMetric, forward_dynamics
-from substructures.quantities.evaluation import Sources, cost, evaluate
+from substructures.quantities.evaluation import Direction, Sources, cost, evaluate
 from substructures.quantities.formulas import DERIVED, derived
 
 N = 5
@@ -39,15 +39,15 @@ def test_inverse_of_inverse_dynamics(number: int) -> None:
     model = random_model(number)
     x = random_states(np.random.default_rng(number), N, model.dof)
     rest = {"q": x["q"], "qd": x["qd"], "t": 0.3}
-    answer = evaluate(model, rest | {"quantities": ["forward_dynamics", "metric", "bias", "forces"]})
-    assert not answer["failures"]
+    answer = evaluate(model, **(rest | {"quantities": ["forward_dynamics", "metric", "bias", "forces"]}))
+    assert not answer.failures
     expected = cholesky_solve(answer["metric"], answer["forces"] - answer["bias"])
     condition = np.linalg.cond(answer["metric"]).max()
     tolerance = 1e-14 * condition * np.abs(expected).max()
     np.testing.assert_allclose(answer["forward_dynamics"], expected, rtol=0, atol=tolerance)
-    needed = evaluate(model, x | {"quantities": ["inverse_dynamics"], "t": 0.3})["inverse_dynamics"]
+    needed = evaluate(model, **(x | {"quantities": ["inverse_dynamics"], "t": 0.3}))["inverse_dynamics"]
     tau = {f"tau.{name}": needed[:, a] for a, name in enumerate(model.coordinates)}
-    back = evaluate(model, rest | Q | {"inputs": tau})["forward_dynamics"]
+    back = evaluate(model, **(rest | Q | {"inputs": tau}))["forward_dynamics"]
     np.testing.assert_allclose(back, x["qdd"], rtol=0, atol=1e-13 * condition * max(1, np.abs(needed).max()))
 
 
@@ -63,7 +63,7 @@ def test_compiled_equals_interpreted() -> None:
         "inputs": {s.name: values[s.name] for s in program.symbols if s.kind == "input"},
         "t": values.get("t", 0),
     }
-    expected = evaluate(model, Q | request)["forward_dynamics"]
+    expected = evaluate(model, **(Q | request))["forward_dynamics"]
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
@@ -90,10 +90,10 @@ def test_singular_in_one_state_is_one_failure() -> None:
     body = {"mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 1}}
     model = model_of({"name": "ball", "bodies": [{"name": "x", "parent": "base", "joint": joint, **body}]})
     pitch = np.array([0.3, np.pi / 2, -0.3])
-    answer = evaluate(model, Q | {"q": np.stack([pitch, pitch, pitch], axis=1), "qd": np.ones((3, 3))})
-    (failure,) = answer["failures"]
-    assert (failure["state"], failure["code"]) == (1, "not-finite")
-    assert "singular" in failure["message"]
+    answer = evaluate(model, **(Q | {"q": np.stack([pitch, pitch, pitch], axis=1), "qd": np.ones((3, 3))}))
+    (failure,) = answer.failures
+    assert (failure.state, failure.code) == (1, "not-finite")
+    assert "singular" in failure.message
     assert np.isnan(answer["forward_dynamics"][1]).all()
     assert np.isfinite(answer["forward_dynamics"][[0, 2]]).all()
 
@@ -113,17 +113,17 @@ def test_singular_in_every_state() -> None:
     with pytest.raises(SingularMetric, match="singular"):
         derived(model, "forward_dynamics")
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    request = {"quantities": quantities, "q": np.zeros((2, 2)), "along": {"q": [1, 0]}}
-    answer = evaluate(model, request)
-    assert [f["quantity"] for f in answer["failures"]] == [q for q in quantities[:2] for _ in range(2)]
+    request = {"quantities": quantities, "q": np.zeros((2, 2)), "along": Direction(q=[1, 0])}
+    answer = evaluate(model, **request)
+    assert [f.quantity for f in answer.failures] == [q for q in quantities[:2] for _ in range(2)]
     assert issubclass(SingularMetric, InvalidDocument)
 
 
 def test_negative_mass_is_a_failure() -> None:
     body = {"name": "a", "parent": "base", "joint": {"type": "prismatic"}, "mass": "m"}
     model = model_of({"name": "n", "parameters": {"m": {"value": 1}}, "bodies": [body]})
-    answer = evaluate(model, Q | {"q": np.zeros((4, 1)), "parameters": {"m": [1, -1, 0, 2]}})
-    assert [failure["state"] for failure in answer["failures"]] == [1, 2]
+    answer = evaluate(model, **(Q | {"q": np.zeros((4, 1)), "parameters": {"m": [1, -1, 0, 2]}}))
+    assert [failure.state for failure in answer.failures] == [1, 2]
 
 
 def test_tiny_and_huge_masses_are_not_singular() -> None:
@@ -132,7 +132,7 @@ def test_tiny_and_huge_masses_are_not_singular() -> None:
     model = model_of({"name": "slide", "parameters": {"m": {"value": 1}}, "bodies": [slide]})
     for m in (1e-30, 1e30):
         request = Q | {"q": [0], "parameters": {"m": m}, "inputs": {"tau.x.s": 3 * m}}
-        np.testing.assert_allclose(evaluate(model, request)["forward_dynamics"], 3 + GRAVITY[2], rtol=1e-12)
+        np.testing.assert_allclose(evaluate(model, **request)["forward_dynamics"], 3 + GRAVITY[2], rtol=1e-12)
     some = random_model(2)
     x = random_states(np.random.default_rng(2), N, some.dof)["q"]
     values = {s.name: 0.0 for s in some.program.symbols} | {c: x[:, a] for a, c in enumerate(some.coordinates)}
@@ -147,13 +147,13 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
     model = random_model(2)
     q, qd = np.random.default_rng(0).uniform(-1, 1, (2, 7, model.dof))
     request = Q | {"q": q, "qd": qd}
-    expected = evaluate(model, request)["forward_dynamics"]
+    expected = evaluate(model, **request)["forward_dynamics"]
 
     def small(model: Model, name: str) -> Any:
         return forward_dynamics(model, 3) if name == "forward_dynamics" else derived(model, name)
 
     monkeypatch.setattr("substructures.quantities.evaluation.BLOCK", 2 * model.dof**2)
-    found = evaluate(model, request, sources=Sources(model, small))
+    found = evaluate(model, **request, sources=Sources(model, small))
     np.testing.assert_allclose(found["forward_dynamics"], expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
     assert cost(Sources(model, small), ["forward_dynamics"])[1] == model.dof
     for name in DERIVED:
@@ -161,7 +161,9 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
             derived(model, name, 3)
     with pytest.raises(TooLarge, match="kinetic_energy"):
         evaluate(
-            model, request | {"quantities": ["kinetic_energy"]}, sources=Sources(model, lambda m, n: derived(m, n, 3))
+            model,
+            **(request | {"quantities": ["kinetic_energy"]}),
+            sources=Sources(model, lambda m, n: derived(m, n, 3)),
         )
 
 
@@ -177,9 +179,9 @@ def test_nothing_moves() -> None:
     model = model_of(
         {"name": "rock", "bodies": [{"name": "a", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     )
-    answer = evaluate(model, Q | {"q": []})
+    answer = evaluate(model, **(Q | {"q": []}))
     assert answer["forward_dynamics"].shape == (0,)
-    assert not answer["failures"]
+    assert not answer.failures
 
 
 def test_division_by_a_pivot_known_to_be_zero() -> None:
@@ -208,8 +210,8 @@ def test_models_stored_before_inverse_dynamics_was_an_output() -> None:
     older = Model.load(model.summary(), model.program.select(kept).to_bytes())
     x = random_states(np.random.default_rng(4), N, model.dof)
     names = ["inverse_dynamics", "forward_dynamics", "inverse_dynamics_derivative", "forward_dynamics_derivative"]
-    request = x | {"quantities": names, "along": {"q": x["qd"]}, "t": 0.3}
-    found, expected = evaluate(older, request), evaluate(model, request)
+    request = x | {"quantities": names, "along": Direction(q=x["qd"]), "t": 0.3}
+    found, expected = evaluate(older, **request), evaluate(model, **request)
     for name in names:
         atol = 1e-9 * max(1, np.abs(expected[name]).max())
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=atol)

@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, vector, with_parameters
+from random_trees import GRAVITY, Kind, random_definition, random_states, vector, with_parameters
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Evaluation, evaluate
 
 N = 3
 Array = Any
@@ -31,7 +31,7 @@ class Pair:
     host: Part
     guest: Part
     model: Model
-    answer: Plain
+    answer: Evaluation
     stored: dict[str, Array]
 
     @property
@@ -40,7 +40,7 @@ class Pair:
         return self.host.dof
 
     def frame(self, name: str) -> tuple[Array, Array, Array, Array]:
-        f, k = self.answer["frames"].index(name), self.answer["kinematics"]
+        f, k = (self.answer.frames or ()).index(name), self.answer["kinematics"]
         return k["position"][:, f], k["rotation"][:, f], k["U"][:, f], k["Omega"][:, f]
 
     @property
@@ -78,7 +78,7 @@ def pair(request: pytest.FixtureRequest) -> Pair:
     instances = [{"name": n, "substructure": n, "at": place, "placement": p} for n, place, p in mounts]
     model = couple(TreeSpec.read({"name": "t", "gravity": list(GRAVITY), "instances": instances}), parts)
     states = random_states(rng, N, model.dof)
-    answer = evaluate(model, {"quantities": ["metric", "christoffel", "gravity", "kinematics"], **states})
+    answer = evaluate(model, ["metric", "christoffel", "gravity", "kinematics"], **states)
     values = {name: float(p["value"]) for name, p in guest.parameters.items()} | {"": np.zeros(N)}
     values |= {c: states["q"][:, host.dof + i] for i, c in enumerate(guest.coordinates)}
     names = [n for n in guest.program.outputs if not n.startswith(("applied", "potential", "load"))]
@@ -136,22 +136,18 @@ def test_gravity_by_the_force_at_the_interface(pair: Pair) -> None:
     )
     q = np.zeros((N, pair.n))
     q[:] = np.random.default_rng(0).uniform(-1, 1, pair.n)
-    model = evaluate(
-        pair.model, {"quantities": ["metric", "kinematics"], "q": np.hstack([q, np.zeros((N, pair.guest.dof))])}
-    )
+    model = evaluate(pair.model, ["metric", "kinematics"], q=np.hstack([q, np.zeros((N, pair.guest.dof))]))
     values = {name: float(p["value"]) for name, p in pair.guest.parameters.items()} | {"": np.zeros(N)}
     values |= dict.fromkeys(pair.guest.coordinates, 0.0)
     x = interpret(pair.guest.program, own_values(pair.guest, values), [f"composite.{y}" for y in "msJ"])
-    f = model["frames"].index("guest.base")
+    f = (model.frames or ()).index("guest.base")
     U, Omega = (model["kinematics"][name][:, f, : pair.n] for name in ("U", "Omega"))
     m, s, J = (x[f"composite.{y}"] for y in "msJ")
     theta = np.trace(J, axis1=1, axis2=2)[:, None, None] * np.eye(3) - J
     mixed = np.einsum("nai,nbi->nab", U, np.cross(Omega, s[:, None]))
     payload = m[:, None, None] * np.einsum("nai,nbi->nab", U, U) + mixed + np.swapaxes(mixed, 1, 2)
     payload += np.einsum("nai,nij,nbj->nab", Omega, theta, Omega)
-    close(
-        evaluate(alone, {"quantities": ["metric"], "q": q})["metric"] + payload, model["metric"][:, : pair.n, : pair.n]
-    )
+    close(evaluate(alone, ["metric"], q=q)["metric"] + payload, model["metric"][:, : pair.n, : pair.n])
 
 
 def test_ports_and_joint_frames_with_respect_to_the_interface(pair: Pair) -> None:

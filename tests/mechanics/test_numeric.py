@@ -123,5 +123,5 @@ def test_answers_have_the_axis_of_states() -> None:
     for states in (2, 1, 0):
         values = {name: q[:states, a] for a, name in enumerate(model.coordinates)}
         found = evaluator.answer(values, ["metric", "gravity"], states)
-        expected = evaluate(model, {"q": q[:states], "quantities": ["metric", "gravity"]})
+        expected = evaluate(model, ["metric", "gravity"], q=q[:states])
         compare(found, {name: expected[name] for name in ("metric", "gravity")})

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from random_trees import Kind, Plain, model_of, random_definition, random_states, tree_of
+from random_trees import Kind, model_of, random_definition, random_states, tree_of
 
 from substructures import Definition, Model, couple, derive
 from substructures.array import Array
@@ -16,6 +16,8 @@ from substructures.expr.program import Program
 from substructures.quantities.evaluation import (
     QUANTITIES,
     REGRESSOR,
+    Direction,
+    Evaluation,
     Evaluator,
     Sources,
     cost,
@@ -39,7 +41,7 @@ def random_model() -> Model:
     return model_of(random_definition(rng, Kind(3, joints=("revolute", "prismatic"), massive=True)))
 
 
-def leaves(answer: Plain) -> dict[str, Any]:
+def leaves(answer: Evaluation) -> dict[str, Any]:
     """Arrays of the quantities by name."""
     found: dict[str, Any] = {}
     for name in NAMES:
@@ -55,12 +57,12 @@ def test_one_position_stands_for_all(engine: Evaluator, batched: str) -> None:
     x = random_states(np.random.default_rng(1), N, model.dof)
     given = {"t": np.arange(N) / 7, "inputs": {f"tau.{model.coordinates[0]}": np.arange(N) - 2.0}}
     one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES}
-    one["along"] = {"q": x["qd"][1], "inputs": {f"tau.{model.coordinates[0]}": 1.0}}
+    one["along"] = Direction(q=x["qd"][1], inputs={f"tau.{model.coordinates[0]}": 1.0})
     one |= {name: (x | given)[name] for name in batched.split()}
-    found = evaluate(model, one, engine=engine)
-    rows = evaluate(model, one | {"q": x["q"][:1]}, engine=engine)
-    repeated = evaluate(model, one | {"q": np.repeat(x["q"][:1], N, axis=0)})
-    assert found["count"] == rows["count"] == N
+    found = evaluate(model, **one, evaluator=engine)
+    rows = evaluate(model, **(one | {"q": x["q"][:1]}), evaluator=engine)
+    repeated = evaluate(model, **(one | {"q": np.repeat(x["q"][:1], N, axis=0)}))
+    assert found.count == rows.count == N
     for name, expected in leaves(repeated).items():
         scale = max(1.0, np.abs(expected).max(initial=0))
         np.testing.assert_allclose(leaves(found)[name], expected, rtol=1e-12, atol=1e-13 * scale, err_msg=name)
@@ -71,7 +73,7 @@ def test_the_axis_of_states_is_dropped_for_one_state_only() -> None:
     model = random_model()
     zero = np.zeros(model.dof)
     for qd, shape in ((zero, ()), (zero[None], ()), (np.zeros((2, model.dof)), (2,))):
-        answer = evaluate(model, {"quantities": ["metric"], "q": zero, "qd": qd})
+        answer = evaluate(model, ["metric"], q=zero, qd=qd)
         assert answer["metric"].shape == (*shape, model.dof, model.dof)
 
 
@@ -82,9 +84,9 @@ def test_the_size_of_an_answer_is_known_before() -> None:
     model = couple(spec, parts)
     sources = Sources(model, regressor=lambda: regressor(spec, parts))
     x = random_states(np.random.default_rng(1), 1, model.dof)
-    state = {key: rows[0] for key, rows in x.items()} | {"along": {"q": x["q"][0]}}
+    state: Plain = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
     for name in QUANTITIES:
-        found = evaluate(model, state | {"quantities": [name]}, sources=sources)[name]
+        found = evaluate(model, **(state | {"quantities": [name]}), sources=sources)[name]
         size = sum(np.size(array) for array in (found.values() if isinstance(found, dict) else [found]))
         assert cost(sources, [name])[1] == size <= numbers_per_state([name], model.dof, len(model.frames)), name
     assert cost(sources, ["metric", "momentum"])[1] == model.dof**2 + 6

@@ -11,7 +11,7 @@ import pytest
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Direction, evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
@@ -29,8 +29,11 @@ def pairs(number: int) -> tuple[Plain, Model]:
 
 def jacobian(model: Model, quantity: str, state: Plain, along: Plain, inputs: Plain | None = None) -> Any:
     """Columns: derivatives along the directions, one for every state of a batch of equal states."""
-    request = {key: np.tile(v, (model.dof, 1)) for key, v in state.items()} | {"inputs": inputs, "along": along}
-    return evaluate(model, request | {"quantities": [quantity]})[quantity].T
+    request = {key: np.tile(v, (model.dof, 1)) for key, v in state.items()} | {
+        "inputs": inputs,
+        "along": Direction(**along),
+    }
+    return evaluate(model, **(request | {"quantities": [quantity]}))[quantity].T
 
 
 @pytest.mark.parametrize("number", range(10))

@@ -111,7 +111,7 @@ def test_small_chains(accelerations: list[float]) -> None:
         for i in range(len(accelerations))
     ]
     model = alone({"name": "one", "bodies": bodies}, [0, -9.81, 0])
-    answer = evaluate(model, {"quantities": ["forward_dynamics"], "q": [0] * len(bodies)})
+    answer = evaluate(model, ["forward_dynamics"], q=[0] * len(bodies))
     np.testing.assert_allclose(answer["forward_dynamics"], accelerations, rtol=0, atol=5e-15 * 10)
 
 
@@ -129,7 +129,7 @@ def test_simple_pendulum_has_the_published_period() -> None:
     h = period / steps
 
     def slope(x: Any) -> Any:
-        answer = evaluate(model, {"quantities": ["forward_dynamics"], "q": x[:1], "qd": x[1:]})
+        answer = evaluate(model, ["forward_dynamics"], q=x[:1], qd=x[1:])
         return np.array([x[1], answer["forward_dynamics"][0]])
 
     x = np.zeros(2)

@@ -87,7 +87,7 @@ def test_puma_560(source: str) -> None:
     model = alone(definition, [0, 0, -9.81])
     q, qd = [0, math.pi / 4, math.pi, 0, math.pi / 4, 0], [1, 2, 3, 1, 2, 3]
     quantities = ["metric", "coriolis", "gravity", "inverse_dynamics"]
-    answer = evaluate(model, {"quantities": quantities, "q": q, "qd": qd, "qdd": qd})
+    answer = evaluate(model, quantities, q=q, qd=qd, qdd=qd)
     close = {"rtol": 0, "atol": 5.1e-5}
     np.testing.assert_allclose(answer["metric"], PUMA_M, **close)
     np.testing.assert_allclose(answer["coriolis"], PUMA_C, **close)

@@ -14,7 +14,8 @@ import pytest
 from random_cuts import all_cuts, cut_tree
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, tree_of, with_parameters
 
-from substructures import Definition, InvalidDocument, MissingValue, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import Definition, MissingValue, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
@@ -44,7 +45,7 @@ def inverse_dynamics(spec: TreeSpec, parts: dict[str, Part], states: Plain, arma
     """g q'' + bias - gravity forces from the coupled model, without rotors."""
     model = couple(spec, parts)
     known = {name: x for name, x in states.get("parameters", {}).items() if name in model.parameters}
-    answer = evaluate(model, {"quantities": ["metric", "bias", "gravity"], **states, "parameters": known})
+    answer = evaluate(model, ["metric", "bias", "gravity"], **(states | {"parameters": known}))
     inertial = np.einsum("nab,nb->na", answer["metric"], states["qdd"]) - armature * states["qdd"]
     return inertial + answer["bias"] - answer["gravity"]
 
@@ -54,7 +55,7 @@ def check(spec: TreeSpec, parts: dict[str, Part], armature: Any) -> RegressorMod
     n = len(Y.coordinates)
     states = random_states(np.random.default_rng(n), N, n)
     expected = inverse_dynamics(spec, parts, states, armature)
-    found = Y.evaluate(states)
+    found = Y.evaluate(**states)
     assert found["regressor"].shape == (N, n, len(Y.names))
     assert found["inertial_parameters"].shape == (N, len(Y.names))
     assert len(Y.names) == len(Y.units) == len(set(Y.names))
@@ -144,11 +145,11 @@ def test_linear_in_parameters_that_are_given_later() -> None:
     )
     Y, states = regressor(spec, parts), random_states(np.random.default_rng(1), N, 3)
     with pytest.raises(MissingValue):
-        Y.evaluate(states)
+        Y.evaluate(**states)
     rng = np.random.default_rng(2)
     one, two = ({name: float(rng.uniform(1, 2)) for name in Y.parameters} for _ in range(2))
     both = {name: one[name] + two[name] for name in one}
-    a, b, c = (Y.evaluate(states | {"parameters": p}) for p in (one, two, both))
+    a, b, c = (Y.evaluate(**states, parameters=p) for p in (one, two, both))
     assert np.array_equal(a["regressor"], b["regressor"])
     pi = [x["inertial_parameters"] for x in (a, b, c)]
     np.testing.assert_allclose(pi[0] + pi[1], pi[2], rtol=1e-13)
@@ -186,7 +187,7 @@ def test_compound_joints_and_fixed_bodies() -> None:
     assert Y.names == tuple(f"x.hull.{e}" for e in TEN)
     assert Y.units == ("kg", *["kg m"] * 3, *["kg m^2"] * 6)
     still = dict.fromkeys(("q", "qd", "qdd"), np.zeros(6))
-    assert Y.evaluate(still)["inertial_parameters"][:2] == pytest.approx([4, 2 * 0.1 + 2 * 1.1])
+    assert Y.evaluate(**still)["inertial_parameters"][:2] == pytest.approx([4, 2 * 0.1 + 2 * 1.1])
 
 
 def test_what_is_fixed_to_a_mounted_interface_is_a_link() -> None:
@@ -214,7 +215,7 @@ def test_parameters_that_the_motion_does_not_feel() -> None:
     sources = Sources(model, regressor=lambda: regressor(spec, parts))
     assert "x.a" not in model.parameters
     request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
-    assert evaluate(model, request, sources=sources)["inertial_parameters"][4] == 0.75
+    assert evaluate(model, **request, sources=sources)["inertial_parameters"][4] == 0.75
 
 
 def test_an_interface_that_carries_nothing_is_no_link() -> None:
@@ -231,6 +232,6 @@ def test_refusals() -> None:
     spec, parts = of({"name": "t", "instances": [{"name": "x", "substructure": "planar-2r"}]})
     with pytest.raises(TooLarge):
         regressor(spec, parts, max_nodes=10)
-    with pytest.raises(InvalidDocument) as error:
-        regressor(spec, parts).evaluate({"q": [0, 0]})
+    with pytest.raises(InvalidArgument) as error:
+        regressor(spec, parts).evaluate(q=[0, 0])
     assert error.value.faults[0].pointer == "/qdd"

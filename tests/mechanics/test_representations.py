@@ -35,9 +35,9 @@ def test_symbols_numbers_and_any_mixture_agree(seed: int) -> None:
     _, symbolic = pair(seed, 1)
     expected = model_of(numeric)
     request = request_for(expected, seed)
-    answer = flat(evaluate(expected, request))
+    answer = flat(evaluate(expected, **request))
     for definition in (mixed, symbolic):
-        same(answer, flat(evaluate(model_of(definition), request)), 1e-11)
+        same(answer, flat(evaluate(model_of(definition), **request)), 1e-11)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -69,14 +69,14 @@ def test_parameters_may_differ_from_state_to_state() -> None:
     name = next(iter(model.parameters))
     request = request_for(model, 0)
     default = float(model.parameters[name]["value"])
-    lists = flat(evaluate(model, request | {"parameters": {name: [default, 2.0, default]}}))
+    lists = flat(evaluate(model, **(request | {"parameters": {name: [default, 2.0, default]}})))
     same(
-        {k: x[[0, 2]] for k, x in flat(evaluate(model, request)).items()},
+        {k: x[[0, 2]] for k, x in flat(evaluate(model, **request)).items()},
         {k: x[[0, 2]] for k, x in lists.items()},
         1e-14,
     )
     same(
-        {k: x[1:2] for k, x in flat(evaluate(model, request | {"parameters": {name: 2}})).items()},
+        {k: x[1:2] for k, x in flat(evaluate(model, **(request | {"parameters": {name: 2}}))).items()},
         {k: x[1:2] for k, x in lists.items()},
         1e-14,
     )
@@ -88,7 +88,7 @@ def test_the_same_alone_and_derived_in_one_piece(seed: int) -> None:
     _, symbolic = pair(seed, 0.3)
     part, model = derive(Definition.read(symbolic)), model_of(symbolic)
     states = random_states(np.random.default_rng(seed), 3, model.dof)
-    expected = evaluate(model, {"quantities": ["metric", "christoffel", "gravity"], **states})
+    expected = evaluate(model, ["metric", "christoffel", "gravity"], **states)
     whole = derive_in_one_piece(Definition.read(symbolic), tuple(Decimal(str(x)) for x in GRAVITY))
     values = {name: float(p["value"]) for name, p in symbolic["parameters"].items()}
     values |= {c.removeprefix("x."): states["q"][:, a] for a, c in enumerate(model.coordinates)}
@@ -147,7 +147,7 @@ def test_one_recursion_for_formulas_floats_and_arrays(seed: int) -> None:
         body["joint"].pop("armature", None)
     part, model = derive(Definition.read(definition)), model_of(definition)
     request = request_for(model, seed)
-    formulas = evaluate(model, request)
+    formulas = evaluate(model, **request)
     paths: list[list[int]] = []
     for c, joint in enumerate(part.topology.joints):
         paths.append([*(paths[joint.parent] if joint.parent >= 0 else []), c])

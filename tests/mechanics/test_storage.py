@@ -39,8 +39,8 @@ def test_round_trips_of_storage(seed: int) -> None:
     assert loaded.coordinates == model.coordinates
     assert loaded.operations == model.operations
     request = request_for(model, seed)
-    for name, x in flat(evaluate(model, request)).items():
-        assert np.array_equal(flat(evaluate(loaded, request))[name], x), name
+    for name, x in flat(evaluate(model, **request)).items():
+        assert np.array_equal(flat(evaluate(loaded, **request))[name], x), name
 
 
 def test_the_index_of_stored_formulas() -> None:

@@ -48,7 +48,7 @@ class Case:
         named = {f"x.{name}": value for name, value in INPUTS.items()} | actuators
         known = {s.name for s in self.model.program.symbols if s.kind == "input"}
         inputs = {name: [value] * n for name, value in named.items() if name in known}
-        return evaluate(self.model, {"quantities": quantities, "q": q, "qd": qd, "t": TIME, "inputs": inputs})
+        return evaluate(self.model, quantities, q=q, qd=qd, t=TIME, inputs=inputs)
 
     def slope(self, quantity: str) -> Any:
         """Central differences of fourth order for all coordinates: (N, ..., n)."""
@@ -94,7 +94,7 @@ def test_metric_is_symmetric_and_positive_definite(case: Case) -> None:
     g = case.answer["metric"]
     assert np.array_equal(g, np.swapaxes(g, 1, 2))
     assert np.all(np.linalg.eigvalsh(g) > 0)
-    assert case.answer["failures"] == []
+    assert case.answer.failures == ()
 
 
 def test_base_functions_are_the_velocities(case: Case) -> None:

@@ -13,9 +13,9 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds import run
 from service.settings import Limits
 from substructures.documents import read_json, write_json
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidInput
 from substructures.formats.arrays import read_npz
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Evaluation, evaluate
 from substructures.tree.model import Model
 
 from .conftest import PENDULUM, SLIDER, TREE
@@ -57,10 +57,10 @@ def outcomes(
     return [run(kind, item, library.blobs, quiet) for item in items]
 
 
-def evaluated(library: MemoryLibrary, name: str, request: Mapping[str, Any]) -> dict[str, Any]:
+def evaluated(library: MemoryLibrary, name: str, request: Mapping[str, Any]) -> Evaluation:
     tree = library.tree(name)
     assert tree is not None
-    return evaluate(Model.load(read_json(tree.summary.encode()), library.blobs[tree.program]), request)
+    return evaluate(Model.load(read_json(tree.summary.encode()), library.blobs[tree.program]), **request)
 
 
 def joined(made: list[Outcome], name: str) -> Any:
@@ -70,6 +70,6 @@ def joined(made: list[Outcome], name: str) -> Any:
 
 def faults(library: MemoryLibrary, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> set[Any]:
     """Pointer and code of what is wrong with a submission."""
-    with pytest.raises(InvalidDocument) as caught:
+    with pytest.raises(InvalidInput) as caught:
         library.items(kind, request, limits)
     return {(fault.pointer, fault.code) for fault in caught.value.faults}

@@ -9,7 +9,7 @@ has its chunk: ``states`` is the digest of the npz file with the columns.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
@@ -26,6 +26,7 @@ from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, regressor_of
 from service.jobs.kinds.values import check_described, check_states
+from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
@@ -62,27 +63,33 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     tree = known_tree(item, library)
     summary = summary_of(tree.summary)
     request = _request(item)
-    chunk = states_per_item(request, len(summary["coordinates"]), len(summary["frames"]), limits)
-    described = _described(item, tree, summary, library)
+    chunk = states_per_item(request.quantities, len(summary["coordinates"]), len(summary["frames"]), limits)
+    described = _described(item, request, tree, summary, library)
     with inside("/request"):
         count = _count(summary, request, described)
     if count is not None and count > chunk * limits.job_items:
         message = f"{count:,} states; the limit is {chunk * limits.job_items:,}"
         raise InvalidDocument.at("/" + next(iter(described or ("request",))), "too-many-states", message)
-    common = {"tree": item["tree"], "format": item.get("format", "npz"), "request": request, "nodes": limits.job_nodes}
+    common = {
+        "tree": item["tree"],
+        "format": item.get("format", "npz"),
+        "request": request.given(),
+        "nodes": limits.job_nodes,
+    }
     if count is None:
         return [common]
+    given = request.given()
     ranges = [[start, min(start + chunk, count)] for start in range(0, count, chunk)]
-    return [{**common, **described, "request": _sliced(request, count, *each), "range": each} for each in ranges]
+    return [{**common, **described, "request": _sliced(given, count, *each), "range": each} for each in ranges]
 
 
-def states_per_item(request: Mapping[str, Any], dof: int, frames: int, limits: Limits) -> int:
-    """How many states an item may have. Raises InvalidDocument."""
-    size = 8 * numbers_per_state(read_quantities(request), dof, frames)
+def states_per_item(quantities: Sequence[str], dof: int, frames: int, limits: Limits) -> int:
+    """How many states an item may have. Raises InvalidArgument."""
+    size = 8 * numbers_per_state(read_quantities(quantities), dof, frames)
     return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
-def _request(item: ItemDocument) -> dict[str, Any]:
+def _request(item: ItemDocument) -> EvaluationRequest:
     request = item["request"]
     if not isinstance(request, dict):
         raise InvalidDocument.at("/request", "object-expected", "an object is needed")
@@ -96,29 +103,32 @@ def _request(item: ItemDocument) -> dict[str, Any]:
         message = "Arrow needs the extra 'arrow' on the server: pip install 'substructures[arrow]'"
         raise InvalidDocument.at("/format", "not-installed", message)
     with inside("/request"):
-        read_quantities(request)
-    return request
+        read = EvaluationRequest.read(request)
+        read_quantities(read.quantities)
+        return read
 
 
-def _described(item: ItemDocument, tree: StoredTree, summary: Mapping[str, Any], library: Library) -> ItemDocument:
+def _described(
+    item: ItemDocument, request: EvaluationRequest, tree: StoredTree, summary: Mapping[str, Any], library: Library
+) -> ItemDocument:
     """The grid or sample, complete; empty when the states are listed."""
     coordinates = summary["coordinates"]
     known = {*coordinates, *summary["parameters"]}
     known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates}
     if "grid" in item:
         grid = read_grid(item["grid"], known)
-        _check_once(item["request"], "/grid", [name for name, _ in grid])
+        _check_once(request, "/grid", [name for name, _ in grid])
         return {"grid": grid}
     if "sample" in item:
         sample = read_sample(item["sample"], known, joint_limits(tree, library))
-        _check_once(item["request"], "/sample/ranges", sample["ranges"])
+        _check_once(request, "/sample/ranges", sample["ranges"])
         return {"sample": sample}
     return {}
 
 
-def _check_once(request: Mapping[str, Any], place: str, names: Iterable[str]) -> None:
+def _check_once(request: EvaluationRequest, place: str, names: Iterable[str]) -> None:
     """Raise InvalidDocument for names that the request has as well."""
-    fields = [request.get(field) for field in ("inputs", "parameters")]
+    fields = (request.inputs, request.parameters)
     given = {name for field in fields if isinstance(field, Mapping) for name in field}
     faults = [
         Fault(place + pointer_step(name), "given-twice", f"'{name}' is given in the request as well")
@@ -129,7 +139,7 @@ def _check_once(request: Mapping[str, Any], place: str, names: Iterable[str]) ->
         raise InvalidDocument(faults)
 
 
-def _count(summary: Mapping[str, Any], request: Mapping[str, Any], described: ItemDocument) -> int | None:
+def _count(summary: Mapping[str, Any], request: EvaluationRequest, described: ItemDocument) -> int | None:
     """The number of states, None for one without a leading axis. Raises InvalidDocument."""
     if not described:
         states = check_states(summary, request)
@@ -162,7 +172,8 @@ def _with_axis(q: Any) -> Any:
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    has_parts = any(QUANTITIES[name].source == REGRESSOR for name in read_quantities(item["request"]))
+    quantities = EvaluationRequest.read(item["request"]).quantities
+    has_parts = any(QUANTITIES[name].source == REGRESSOR for name in quantities)
     found, blobs = pinned(item, library, item["nodes"], has_parts)
     return found, (*blobs, item["states"]) if "states" in item else blobs
 
@@ -173,8 +184,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     progress(0.1)
     columns = _columns(item)
     sources = Sources(model, regressor=lambda: regressor_of(item, blobs)) if "parts" in item else None
-    request = _with_columns(model, _uploaded(item, blobs), columns)
-    answer = evaluate(model, request, None, _engine, sources)
+    request = EvaluationRequest.read(_with_columns(model, _uploaded(item, blobs), columns))
+    answer = evaluate(model, **request.arguments(), evaluator=_evaluator, sources=sources).plain()
     progress(0.9)
     data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)
     summary = {
@@ -232,7 +243,7 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
     }
 
 
-def _engine(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+def _evaluator(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
     """Which engine answers depends on the item alone, so that its numbers never depend on what came before."""
     if states < COMPILED:
         return interpreted(program, values, names, states)

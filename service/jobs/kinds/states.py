@@ -11,25 +11,24 @@ from typing import Any
 
 import numpy as np
 
+from service.jobs.kinds.kind import inside
+from service.schemas.state_sets import Grid, Sample
 from substructures.array import Array
-from substructures.documents import pointer_step
+from substructures.documents import pointer_step, read_model
 from substructures.errors import Fault, InvalidDocument
 
 Axis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
 DRAWS = 4
-MAX_AXIS = 10_000
 
 
 def read_grid(given: Any, known: set[str]) -> list[Axis]:
-    """Name and values of every axis, which may be a list, one number, or ``{"from", "to", "count"}``.
-
-    Raises InvalidDocument.
-    """
+    """Name and values of every axis of a :class:`Grid`. Raises InvalidDocument."""
     if not isinstance(given, Mapping) or not given:
         raise InvalidDocument.at("/grid", "object-expected", "an object of axes by name is needed")
     _check_names("/grid", given, known)
-    return [(name, _axis(axis, "/grid" + pointer_step(name))) for name, axis in given.items()]
+    with inside("/grid"):
+        return read_model(Grid, given).axes()
 
 
 def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> None:
@@ -40,35 +39,6 @@ def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> Non
     ]
     if faults:
         raise InvalidDocument(faults)
-
-
-def _axis(given: Any, pointer: str) -> list[float]:
-    if isinstance(given, Mapping):
-        if given.keys() != {"from", "to", "count"}:
-            raise InvalidDocument.at(pointer, "axis", "an axis has 'from', 'to' and 'count'")
-        count = _count(given["count"], f"{pointer}/count", MAX_AXIS)
-        start, stop = (_finite(given[name], f"{pointer}/{name}") for name in ("from", "to"))
-        return [float(x) for x in np.linspace(start, stop, count)]
-    values = given if isinstance(given, list) else [given]
-    if not 0 < len(values) <= MAX_AXIS:
-        raise InvalidDocument.at(pointer, "axis", f"an axis has 1 to {MAX_AXIS:,} values")
-    return [_finite(x, f"{pointer}/{k}" if isinstance(given, list) else pointer) for k, x in enumerate(values)]
-
-
-def _finite(given: Any, pointer: str) -> float:
-    try:
-        value = math.nan if isinstance(given, bool | str) else float(given)
-    except (TypeError, ValueError, OverflowError):
-        value = math.nan
-    if not math.isfinite(value):
-        raise InvalidDocument.at(pointer, "number-expected", f"a number is needed, found {str(given)[:40]!r}")
-    return value
-
-
-def _count(given: Any, pointer: str, limit: int) -> int:
-    if isinstance(given, bool) or not isinstance(given, int) or not 0 < given <= limit:
-        raise InvalidDocument.at(pointer, "count", f"a whole number from 1 to {limit:,} is needed")
-    return given
 
 
 def grid_size(axes: Sequence[Axis]) -> int:
@@ -85,36 +55,22 @@ def grid_states(axes: Sequence[Axis], start: int, stop: int) -> dict[str, Array]
 
 
 def read_sample(given: Any, known: set[str], limits: Mapping[str, tuple[float, float] | None]) -> dict[str, Any]:
-    """``{"count", "seed", "ranges"}`` with a range for every coordinate: the one given, or its joint limits.
+    """A :class:`Sample` as plain data, with a range for every coordinate: the one given, or its joint limits.
 
     ``limits``: by coordinate; None where the joint has none that are numbers. Raises InvalidDocument.
     """
-    if not isinstance(given, Mapping) or not given.keys() <= {"count", "seed", "ranges"}:
+    if not isinstance(given, Mapping):
         raise InvalidDocument.at("/sample", "sample", "a sample has 'count', 'seed' and 'ranges'")
-    count = _count(given.get("count"), "/sample/count", 2**53)
-    seed = given.get("seed", 0)
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        raise InvalidDocument.at("/sample/seed", "seed", "a seed is a whole number from 0 to 2^64 - 1")
-    ranges = given.get("ranges", {})
-    if not isinstance(ranges, Mapping):
-        raise InvalidDocument.at("/sample/ranges", "object-expected", "an object of ranges by name is needed")
-    _check_names("/sample/ranges", ranges, known)
-    chosen = {name: _range(r, "/sample/ranges" + pointer_step(name)) for name, r in ranges.items()}
-    missing = [name for name, limit in limits.items() if limit is None and name not in chosen]
+    with inside("/sample"):
+        sample = read_model(Sample, {"count": None, **given})
+    _check_names("/sample/ranges", sample.ranges, known)
+    missing = [name for name, limit in limits.items() if limit is None and name not in sample.ranges]
     if missing:
         message = f"the joints of {', '.join(missing[:10])} have no limits that are numbers: give ranges"
         raise InvalidDocument.at("/sample/ranges", "missing", message)
     defaults = {name: list(limit) for name, limit in limits.items() if limit is not None}
-    return {"count": count, "seed": seed, "ranges": {**defaults, **chosen}}
-
-
-def _range(given: Any, pointer: str) -> list[float]:
-    if not isinstance(given, list) or len(given) != 2:
-        raise InvalidDocument.at(pointer, "range", "a range has two numbers")
-    low, high = (_finite(x, f"{pointer}/{k}") for k, x in enumerate(given))
-    if low > high:
-        raise InvalidDocument.at(pointer, "range", f"{low:g} is above {high:g}")
-    return [low, high]
+    chosen = {name: list(pair) for name, pair in sample.ranges.items()}
+    return {"count": sample.count, "seed": sample.seed, "ranges": {**defaults, **chosen}}
 
 
 def sample_states(sample: Mapping[str, Any], start: int, stop: int) -> dict[str, Array]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from service.schemas.numbers import EvaluationRequest
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.program import Program
@@ -21,9 +22,9 @@ def without_formulas(summary: Mapping[str, Any]) -> Model:
     return Model(Program((), (), {}), *names, summary["parameters"], {})
 
 
-def check_states(summary: Mapping[str, Any], request: Request) -> States:
-    """The states that are listed in a request. Raises InvalidDocument with pointers into it."""
-    states = read_states(without_formulas(summary), request, None)
+def check_states(summary: Mapping[str, Any], request: EvaluationRequest) -> States:
+    """The states that are listed in a request. Raises InvalidInput with pointers into it."""
+    states = read_states(without_formulas(summary), request.arguments(), None)
     if not states.count:
         raise InvalidDocument.at("/q", "missing", "at least one state is needed")
     _check_values(summary, request, states.count, states.qdd is not None)
@@ -47,26 +48,25 @@ def check_analysis(summary: Mapping[str, Any], request: Request, is_motion: bool
         raise InvalidDocument(faults)
 
 
-def check_described(summary: Mapping[str, Any], request: Request, count: int) -> None:
-    """What a request gives for so many states that a grid or sample describes. Raises InvalidDocument."""
+def check_described(summary: Mapping[str, Any], request: EvaluationRequest, count: int) -> None:
+    """What a request gives for so many states that a grid or sample describes. Raises InvalidInput."""
     start = [0] * len(summary["coordinates"])
-    given = read_states(without_formulas(summary), {"q": start, "qdd": request.get("qdd")}, None).qdd
+    given = read_states(without_formulas(summary), {"q": start, "qdd": request.qdd}, None).qdd
     if given is not None and len(given) not in (1, count):
         raise InvalidDocument.at("/qdd", "wrong-length", f"{len(given)} accelerations where there are {count} states")
     _check_values(summary, request, count, given is not None)
 
 
-def _check_values(summary: Mapping[str, Any], request: Request, count: int, has_accelerations: bool) -> None:
-    quantities = [QUANTITIES[name] for name in read_quantities(request)]
+def _check_values(summary: Mapping[str, Any], request: EvaluationRequest, count: int, has_accelerations: bool) -> None:
+    quantities = [QUANTITIES[name] for name in read_quantities(request.quantities)]
     needed = {field for quantity in quantities for field in quantity.requires}
     if "qdd" in needed and not has_accelerations and summary["coordinates"]:
         raise InvalidDocument.at("/qdd", "missing", "the quantities need accelerations 'qdd'")
-    if "along" in needed and not isinstance(request.get("along"), Mapping):
+    if "along" in needed and request.along is None:
         raise InvalidDocument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
-    if request.get("t") is not None:
-        given_values({"t": request["t"]}, "times", "", count, ("t",))
-    for field in ("inputs", "parameters"):
-        given = request.get(field)
+    if request.t is not None:
+        given_values({"t": request.t}, "times", "", count, ("t",))
+    for field, given in (("inputs", request.inputs), ("parameters", request.parameters)):
         known = list(given) if isinstance(given, Mapping) else []
         if field == "parameters" and all(quantity.source != REGRESSOR for quantity in quantities):
             known = list(summary["parameters"])  # the regressor has more of them; inputs of loads are in the formulas

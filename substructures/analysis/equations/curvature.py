@@ -28,18 +28,17 @@ from substructures.analysis.given import StateArray
 from substructures.array import Array
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.differentiate import gradient
-from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, Output, Program, array, program
-from substructures.expr.replay import replay
+from substructures.expr.graph import Expr
+from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.part.part import MAX_NODES
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model, require_open
 
 OUTPUTS = ("riemann", "ricci", "scalar_curvature", "inverse_metric", "christoffel_second")
 ADVICE = "the metric is singular in this state, or its inverse is too large: check masses and coordinates"
 
-Entries = dict[tuple[int, ...], Expr]
 Quadruple = tuple[int, int, int, int]
 
 
@@ -133,18 +132,12 @@ class _Space:
     """g, Gamma and their derivatives in a new graph."""
 
     def __init__(self, model: Model, max_nodes: int) -> None:
-        self.n, self.graph, self.max_nodes = model.dof, Graph(), max_nodes
+        workspace = Workspace(model)
+        self.n, self.graph, self.max_nodes = model.dof, workspace.graph, max_nodes
         self.coordinates = model.coordinates
-        found = replay(model.program, self.graph, {}, ["metric", "christoffel"])
-        self.metric = self._elements(model.program.outputs["metric"], found["metric"])
-        self.first = self._elements(model.program.outputs["christoffel"], found["christoffel"])
+        found = workspace.outputs(["metric", "christoffel"])
+        self.metric, self.first = found["metric"], found["christoffel"]
         self.slopes = self._slopes()
-
-    def _elements(self, output: Output, formulas: Formulas) -> Entries:
-        """All non-zero elements, those that follow from symmetries included."""
-        values = dict(zip(output.entries, formulas.entries.values(), strict=True))
-        pairs = ((index, values[entry] + self.graph.zero, sign) for index, entry, sign in output.expanded())
-        return {index: x if sign > 0 else -x for index, x, sign in pairs}
 
     def _slopes(self) -> list[Entries]:
         """[d][a, b, c] = d_d Gamma_abc, each different formula differentiated once."""

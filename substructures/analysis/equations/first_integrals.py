@@ -16,12 +16,12 @@ from functools import lru_cache
 from typing import Any, Literal
 
 from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
-from substructures.analysis.equations.formulas import Entries, ModelFormulas
+from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, program
+from substructures.expr.program import Entries, Formulas, Program, program
 from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import transfer
 from substructures.tree.model import Model

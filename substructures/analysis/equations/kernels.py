@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
-from substructures.tree.model import Model
+from substructures.quantities.memo import Known, known_model
 
-
-@dataclass(frozen=True)
-class Known:
-    """Something with a digest, as key of a cache: equal when the digests are."""
-
-    digest: str
-    source: Any = field(compare=False)
-
-
-def known_model(model: Model) -> Known:
-    """A model: its program, and the names of the rows of its closures."""
-    return Known(f"{model.program.digest} {model.closures}", model)
+__all__ = ["Known", "known_model", "program_kernel"]
 
 
 @lru_cache(maxsize=64)

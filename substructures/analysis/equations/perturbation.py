@@ -17,13 +17,13 @@ from functools import lru_cache
 
 from substructures.analysis.arguments import Scalar, exact
 from substructures.analysis.equations.expressions import read_expressions
-from substructures.analysis.equations.formulas import LENGTH, ModelFormulas, inputs_of
+from substructures.analysis.equations.formulas import ModelFormulas, inputs_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.given import require_known
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
 from substructures.quantities.workspace import ID
@@ -94,10 +94,8 @@ def _with_closures(f: ModelFormulas, found: Mapping[str, Formulas]) -> dict[str,
     second = gradient(f.reactions, f.model.coordinates)
     G, shape = f.elements("closure.jacobian"), f.model.program.outputs["closure.jacobian"].shape
     position, rates = [str(x.value) for x in f.q], dict(zip(f.model.coordinates, f.rates, strict=True))
-    accelerations = {f"{name}'": f.graph.symbol(f"{name}''") for name in position}
-    for a, name in enumerate(position):
-        f.symbols[f"{name}''"] = Symbol(f"{name}''", "acceleration", f"{LENGTH[f.model.joints[a]]}/s^2")
     # G' = d_b G q'^b, and G'' = d_b G' q'^b + dG'/dq'^b q''^b
+    accelerations = {f"{name}'": f.acceleration_symbol(a) for a, name in enumerate(position)}
     rate = directional(list(G.values()), rates)
     bent = directional(rate, rates | accelerations)
     return {

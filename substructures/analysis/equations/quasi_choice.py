@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.arguments import require_read
-from substructures.analysis.equations.formulation import Formulation
 from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
+from substructures.quantities.workspace import Workspace
 
 MatrixRows = list[list[Expr]]
 
 
-def _numbers(f: Formulation, rows: Sequence[Sequence[Expr]], near: Mapping[str, float] | None = None) -> Any:
+def _numbers(f: Workspace, rows: Sequence[Sequence[Expr]], near: Mapping[str, float] | None = None) -> Any:
     """Values of rows (K, m, n) at three random states, or ``near`` the given one."""
     p = program(f.graph, {"x": array((len(rows), f.n), lambda k, a: rows[k][a])}, f.symbols)
     rng = np.random.default_rng(3)
@@ -33,7 +33,7 @@ def _rank(x: Any) -> int:
     return int(np.linalg.matrix_rank(x, rtol=1e-9).min()) if x.size else 0
 
 
-def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows, list[str]]:
+def independent_rows(f: Workspace, given: VelocityRows) -> tuple[VelocityRows, list[str]]:
     """The rows without those that follow from earlier ones (in general position), and the names of these."""
     result, dependent = VelocityRows(gaps=given.gaps), []
     values = _numbers(f, given.rows) if given.rows else np.zeros((3, 0, f.n))
@@ -49,7 +49,7 @@ def independent_rows(f: Formulation, given: VelocityRows) -> tuple[VelocityRows,
 
 
 def quasi_velocity_rows(
-    f: Formulation,
+    f: Workspace,
     rows: VelocityRows,
     velocities: Mapping[str, str] | None,
     independent: Sequence[str] | None,
@@ -87,7 +87,7 @@ def quasi_velocity_rows(
     return names, own
 
 
-def _chosen(f: Formulation, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:
+def _chosen(f: Workspace, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:
     """Independent coordinates: the dependent ones are taken where the constraints have the simplest coefficients,
     if these are well conditioned.
     """

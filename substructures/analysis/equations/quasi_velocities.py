@@ -35,13 +35,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.analysis.equations.cofactors import inverse
-from substructures.analysis.equations.formulation import Elements, Formulation
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
 from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.program import Entries, Formulas, Program, array, program
+from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
@@ -86,7 +86,7 @@ def quasi_velocity_equations(
     Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
     do not determine the velocities; TooLarge.
     """
-    f = Formulation(model)
+    f = Workspace(model)
     given = velocity_rows(f, constraints)
     rows, dependent = independent_rows(f, given)
     names, own = quasi_velocity_rows(f, rows, velocities, independent, near)
@@ -109,7 +109,7 @@ def quasi_velocity_equations(
 class _Equations:
     """The outputs, from Y and its inverse."""
 
-    def __init__(self, f: Formulation, names: Sequence[str], Y: MatrixRows, inverted: MatrixRows) -> None:
+    def __init__(self, f: Workspace, names: Sequence[str], Y: MatrixRows, inverted: MatrixRows) -> None:
         self.f, self.n, self.p, self.Y = f, f.n, len(names), Y
         self.T = [row[: self.p] for row in inverted]
         self.S = [row[self.p :] for row in inverted]
@@ -156,7 +156,7 @@ class _Equations:
             "lost_power": array((), lambda: self._lost_power(Q)),
         }
 
-    def _hamel(self, momentum: Sequence[Expr], carried: Sequence[Expr], structure: Elements) -> list[Expr]:
+    def _hamel(self, momentum: Sequence[Expr], carried: Sequence[Expr], structure: Entries) -> list[Expr]:
         """g*' v - X_i(T*) - c^k_ji v^j p_k; ``carried`` = g T' v."""
         n, p, v = self.n, self.p, self.v
         christoffel = self.model["christoffel"]
@@ -189,10 +189,10 @@ class _Equations:
             result.append(growing - along - twist)
         return result
 
-    def _structure(self) -> Elements:
+    def _structure(self) -> Entries:
         """c^k_ij = Y^k_a (T^b_i d_b T^a_j - T^b_j d_b T^a_i)."""
         n, p = self.n, self.p
-        result: Elements = {}
+        result: Entries = {}
         for i in range(p):
             for j in range(i + 1, p):
                 bracket = [self._along(i, a, j) - self._along(j, a, i) for a in range(n)]
@@ -225,7 +225,7 @@ class _Equations:
     def _times(self, matrix: MatrixRows, x: Sequence[Expr]) -> list[Expr]:
         return [self._sum(m * y for m, y in zip(row, x, strict=True)) for row in matrix]
 
-    def _product(self, g: Elements, x: Sequence[Expr]) -> list[Expr]:
+    def _product(self, g: Entries, x: Sequence[Expr]) -> list[Expr]:
         return [self._sum(g.get((a, b), 0) * x[b] for b in range(self.n)) for a in range(self.n)]
 
     def _column(self, matrix: MatrixRows, i: int, x: Sequence[Expr]) -> Expr:

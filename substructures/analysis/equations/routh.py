@@ -17,11 +17,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from substructures.analysis.equations.elimination import MetricElimination
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
-from substructures.analysis.equations.formulas import Entries, Factors, ModelFormulas
+from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.tree.model import Model, require_open
 
 
@@ -84,12 +85,12 @@ class _Reduction:
         self.g = f.elements("metric")
         pairs = [(i, j, (a, b)) for i, a in enumerate(cyclic) for j, b in enumerate(cyclic)]
         block: Entries = {(i, j): self.g[ab] for i, j, ab in pairs if ab in self.g}
-        factors = Factors(block, [names[c] for c in cyclic])
+        factors = MetricElimination(block, [names[c] for c in cyclic])
         # columns of P = (1, K) by coordinate of the model, and w = (0, g_cc^-1 p)
         self.P = [self._column(factors, r) for r in self.rest]
         self.w = dict(zip(self.cyclic, factors.solve(self.p), strict=True))
 
-    def _column(self, factors: Factors, r: int) -> dict[int, Expr]:
+    def _column(self, factors: MetricElimination, r: int) -> dict[int, Expr]:
         # K = -g_cc^-1 g_cr
         coupling = [-self.g.get((c, r), self.zero) for c in self.cyclic]
         column = dict(zip(self.cyclic, factors.solve(coupling), strict=True))

@@ -24,12 +24,12 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.analysis.arguments import Scalar, exact, one_of, require_read
-from substructures.analysis.equations.formulation import Formulation
 from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
 from substructures.part.frames import axis_rotation
+from substructures.quantities.workspace import Workspace
 
 SHAPES = ("disc", "sphere")
 
@@ -96,7 +96,7 @@ class VelocityRows:
             self.rows.append(row)
 
 
-def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> VelocityRows:
+def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRows:
     """The rows of all constraints. Raises InvalidArgument, also for a closure of the model that is not among them."""
     _require_closed(f, constraints)
     result = VelocityRows()
@@ -130,7 +130,7 @@ def velocity_rows(f: Formulation, constraints: Sequence[Constraint]) -> Velocity
 class _Frame:
     """Kinematics of one frame: rotation to the world, origin, U and Omega of every coordinate in its axes."""
 
-    def __init__(self, f: Formulation, kinematics: Mapping[str, Mapping[tuple[int, ...], Expr]], k: int) -> None:
+    def __init__(self, f: Workspace, kinematics: Mapping[str, Mapping[tuple[int, ...], Expr]], k: int) -> None:
         zero = f.graph.zero
 
         def vector(name: str, *index: int) -> Vector:
@@ -144,7 +144,7 @@ class _Frame:
         self.Omega = [vector("Omega", a) for a in range(f.n)]
 
 
-def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
+def _require_closed(f: Workspace, constraints: Sequence[Constraint]) -> None:
     """Every closure of the model is among the constraints; else it would be open."""
     given = {c.name for c in constraints if isinstance(c, Closed)}
     for rows in f.model.closures:
@@ -153,7 +153,7 @@ def _require_closed(f: Formulation, constraints: Sequence[Constraint]) -> None:
             raise InvalidArgument.at("/constraints", "open-closure", message)
 
 
-def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> None:
+def _close(f: Workspace, name: str, pointer: str, result: VelocityRows) -> None:
     names = [(rows.name, row) for rows in f.model.closures for row in rows.rows]
     if name not in {closure for closure, _ in names}:
         known = ", ".join(rows.name for rows in f.model.closures) or "none"
@@ -169,7 +169,7 @@ def _close(f: Formulation, name: str, pointer: str, result: VelocityRows) -> Non
             result.gaps[f"{name}.{row}"] = residual
 
 
-def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
+def _roll(f: Workspace, c: Rolling, pointer: str, frame: _Frame, result: VelocityRows) -> None:
     radius = f.scope.read(exact(c.radius, f"{pointer}/radius"), f"{pointer}/radius")
     x, y, z = (exact(component, f"{pointer}/normal/{i}") for i, component in enumerate(c.normal))
     plane = axis_rotation(f.scope, (x, y, z), f"{pointer}/normal")
@@ -197,7 +197,7 @@ def _roll(f: Formulation, c: Rolling, pointer: str, frame: _Frame, result: Veloc
     result.gaps[c.name] = f.graph.lift(dot(normal, frame.c) + dot(n, rho))
 
 
-def linear_row(f: Formulation, text: str, pointer: str) -> list[Expr]:
+def linear_row(f: Workspace, text: str, pointer: str) -> list[Expr]:
     """Coefficients of the velocities in an expression that is linear and homogeneous in them; else a fault is noted."""
     x = f.scope.read(text, pointer)
     rates = [f"{name}'" for name in f.model.coordinates]

@@ -208,9 +208,8 @@ def _forces(given: Any, data: _Data) -> Array:
 
 def _known(model: Model, motion: _Motion, data: _Data) -> Array:
     """Inverse dynamics of the model without its inertial forces: less Y_B beta of its own values."""
-    given = motion.parameters.items()
-    common = {"q": data.q, "qd": data.qd, "qdd": data.qdd, "quantities": ["inverse_dynamics"]}
-    answer = evaluate(model, {**common, "parameters": {name: x for name, x in given if name in model.parameters}})
+    own = {name: x for name, x in motion.parameters.items() if name in model.parameters}
+    answer = evaluate(model, "inverse_dynamics", data.q, data.qd, data.qdd, parameters=own)
     # ID(q, q', q'') - Y_B beta
     inertial = np.einsum("nab,nb->na", data.outputs[REGRESSOR], data.outputs[OWN])
     return np.asarray(answer["inverse_dynamics"] - inertial, dtype=np.float64)
