@@ -17,7 +17,7 @@ from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import Sources, cost, steps
+from substructures.quantities.evaluation import REGRESSOR, Sources, cost, steps
 from substructures.quantities.states import longest
 
 BODY = 4096  # bytes of the request
@@ -60,7 +60,9 @@ def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: Tre
     if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures:
         return
     programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
-    at_hand = Sources(sources.model, lambda _, source: programs[source][0])  # nothing is derived anew
+    columns = sources.columns() if REGRESSOR in programs else None
+    regressor = None if columns is None else lambda: columns
+    at_hand = Sources(sources.model, lambda _, source: programs[source][0], regressor)  # nothing is derived anew
     found = AtHand(replace(evaluation, sources=at_hand), programs)
     if found.is_ready(store):
         store.caches.evaluations.put(_key(ref, names), found)

@@ -84,7 +84,7 @@ def test_the_size_of_an_answer_is_known_before() -> None:
     model = couple(spec, parts)
     sources = Sources(model, regressor=lambda: regressor(spec, parts))
     x = random_states(np.random.default_rng(1), 1, model.dof)
-    state: Plain = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
+    state: dict[str, Any] = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
     for name in QUANTITIES:
         found = evaluate(model, **(state | {"quantities": [name]}), sources=sources)[name]
         size = sum(np.size(array) for array in (found.values() if isinstance(found, dict) else [found]))

@@ -83,6 +83,18 @@ def test_faults_are_the_same(warm: TestClient, threads: list[object], fault: dic
     assert warm.post(URL, content=b"{", headers={"Content-Type": "application/json"}).status_code == 422
 
 
+def test_the_regressor_is_at_hand_too(warm: TestClient, threads: list[object]) -> None:
+    """With the names of its columns, which come from the parts of the tree."""
+    state = {"quantities": ["regressor", "inertial_parameters"], "q": [0.1], "qd": [0.2], "qdd": [0.3]}
+    warm.post("/v1/trees/cell@1/kernels", json={"quantities": state["quantities"]})
+    first = warm.post(URL, json=state)
+    before = len(threads)
+    again = warm.post(URL, json=state)
+    assert (first.status_code, again.status_code, len(threads)) == (200, 200, before)
+    assert again.json()["columns"] == first.json()["columns"]
+    assert again.json()["inertial_parameters"] == pytest.approx(first.json()["inertial_parameters"])
+
+
 def test_long_work_is_never_at_hand(warm: TestClient, threads: list[object], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(at_hand, "NUMBERS", 2)
     for _ in range(2):
