@@ -65,7 +65,7 @@ def test_altering_a_table_keeps_its_child_rows(database: Database, monkeypatch: 
         ) as batch:
             batch.add_column(sa.Column("extra", sa.Text))
 
-    monkeypatch.setattr("service.database.connections.migrate.command.upgrade", alter)
+    monkeypatch.setattr("service.database.migrate.command.upgrade", alter)
     upgrade(database.writer)
     with database.read() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM versions").scalar() == 1
@@ -79,7 +79,7 @@ def test_failed_migrations_change_nothing(database: Database, monkeypatch: pytes
         configuration.attributes["connection"].exec_driver_sql("CREATE TABLE half (x)")
         raise RuntimeError("half way")
 
-    monkeypatch.setattr("service.database.connections.migrate.command.upgrade", fail)
+    monkeypatch.setattr("service.database.migrate.command.upgrade", fail)
     with pytest.raises(RuntimeError, match="half way"):
         upgrade(database.writer)
     with database.read() as connection:

@@ -11,7 +11,7 @@ import pytest
 from service.jobs.engine import Outcome
 from service.jobs.kinds import run
 from substructures.documents import read_json, write_json
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidInput
 
 from .conftest import PENDULUM, TREE
 from .jobs_library import MemoryLibrary
@@ -113,7 +113,7 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
     ],
 )
 def test_wrong_items(library: MemoryLibrary, kind: str, item: dict[str, Any], pointer: str) -> None:
-    with pytest.raises(InvalidDocument) as caught:
+    with pytest.raises(InvalidInput) as caught:
         library.items(kind, {"items": [item]})
     assert pointer in {fault.pointer for fault in caught.value.faults}
 
@@ -129,5 +129,5 @@ def test_faults_that_need_the_model_are_outcomes(library: MemoryLibrary) -> None
 @pytest.mark.parametrize("name", ["format", "analysis"])
 def test_a_list_in_place_of_a_text_is_not_shown_as_in_python(library: MemoryLibrary, name: str) -> None:
     item = {"tree": "cell", "analysis": "equilibria", "request": {}, name: ["npz"]}
-    with pytest.raises(InvalidDocument, match=f"the {name} is no text"):
+    with pytest.raises(InvalidInput, match=f"the {name} is no text"):
         library.items("analyse", {"items": [item]})

@@ -104,7 +104,7 @@ def test_an_authorisation_is_remembered_for_its_time_only(store: Store, monkeypa
     """A revoked key works on for at most ``key_seconds``; refusals are never remembered."""
     clock = [100.0]
     monkeypatch.setattr("service.keys.monotonic", lambda: clock[0])
-    monkeypatch.setattr(store, "authorisations", Authorisations(seconds=1.0))
+    monkeypatch.setattr(store.runtime, "authorisations", Authorisations(seconds=1.0))
     client = make_client(store)
     key = new_key(store, "read")
     assert client.get("/v1/trees", headers=key).status_code == 200
