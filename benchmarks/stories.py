@@ -198,10 +198,10 @@ def ran(listener: Listener, part: Any, limits: Any) -> set[str]:
     resolved = documents.read_json(documents.write_json(kinds.resolve("assemble", expanded, library)[0]))
     sent = wire.work_frame(engine.Work("1", "assemble", resolved, blobs, engine.Budget(60.0, 2**31))).to_bytes()
     with listener.story() as calls:
-        (frame,) = wire.Reader().feed(sent)
+        (frame,) = wire.MessageReader().feed(sent)
         work = wire.read_work(frame, {})
         outcome = kinds.run(work.kind, dict(work.item), work.blobs, lambda _: None)
-        wire.report_frame(engine.Report(work.id, 1.0, outcome), last=False).to_bytes()
+        wire.report_frame(engine.AttemptReport(work.id, 1.0, outcome), last=False).to_bytes()
     if outcome.problem is not None:
         raise RuntimeError(str(outcome.problem))
     return {called for by, called in calls if called.startswith("service") or by.startswith("service")}

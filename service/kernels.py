@@ -92,6 +92,7 @@ class Kernels:
         """An engine that also takes the way over the parts, for outputs of the tree's own ``program``."""
 
         def run(given: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+            """By kernel, by the parts, or as for any program."""
             if given is program and quickest(states, coupled=True, warm=self.warm(parts)) is Way.PARTS:
                 kernel = self._ready(given, names, states)
                 try:

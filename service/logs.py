@@ -11,6 +11,7 @@ FORMAT = "%(asctime)s %(levelname)s %(name)s [%(request_id)s] %(message)s"
 
 class _WithRequestId(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
+        """Let every record pass, with the id."""
         record.request_id = current_request_id()
         return True
 

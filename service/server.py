@@ -92,6 +92,7 @@ class _Server(uvicorn.Server):
         self._store = store
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End what would have no end, then wait for the answers that were begun."""
         self._store.runtime.stopping.set()
         await super().shutdown(sockets)
 

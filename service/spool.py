@@ -56,21 +56,26 @@ class _OnDisk(io.RawIOBase):
         self._descriptor, self._position = descriptor, 0
 
     def readable(self) -> bool:
+        """Yes."""
         return True
 
     def seekable(self) -> bool:
+        """Yes."""
         return True
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move this reader; others of the file stay."""
         self._position = offset + (0, self._position, os.fstat(self._descriptor).st_size)[whence]
         return self._position
 
     def readinto(self, buffer: Any) -> int:
+        """Read at this reader's place."""
         count = os.preadv(self._descriptor, [buffer], self._position)
         self._position += count
         return count
 
     def close(self) -> None:
+        """Give this reader's descriptor up."""
         if not self.closed:
             os.close(self._descriptor)
         super().close()

@@ -108,6 +108,7 @@ def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any
 
 def _optimal_control(source: Source, read: OptimalControlRequest, report: ProgressReport) -> Any:
     def told(iteration: int, _cost: float, _violation: float) -> None:
+        """The share of the iterations that are done at most."""
         report(min(1.0, iteration / read.iterations))
 
     return optimal_control(source.model, **arguments(read), progress=told)

@@ -87,12 +87,14 @@ class Act:
         deadline = self._deadline
 
         def late() -> Commit | Answer | Stream:
+            """What is done when there is no time left: the job, if there is one."""
             if deferred is not None:
                 return deferred()
             detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; nothing was stored"
             raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
 
         def watched() -> Commit | Answer | Stream:
+            """The work under its deadline."""
             if deadline.is_over or (deferred is not None and self._prefers("respond-async")):
                 return late()
             return deadline.watched(work, late, instead=lambda: self._finish(late, keeps))
@@ -165,6 +167,7 @@ def timed(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response
 
     @wraps(endpoint)
     async def watched(*, act: Act, **arguments: Any) -> Response:
+        """The endpoint under the deadline of its act."""
         return await act.within_time(lambda: endpoint(act=act, **arguments))
 
     return watched

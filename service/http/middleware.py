@@ -36,6 +36,7 @@ class Conventions:
         status = 0
 
         async def send_with_id(message: Message) -> None:
+            """Send, and note the status; the head of the answer gets the id."""
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]

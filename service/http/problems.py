@@ -89,6 +89,7 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     """Let the app answer with problem documents; ``service.http.middleware`` catches what no handler is for."""
 
     def handle(request: Request, error: Exception) -> Response:
+        """The problem document of an error; of a wrong method with those that the path has."""
         if isinstance(error, HTTPException) and error.status_code == 405:
             # the framework names the methods of the first route only
             found = [route for route in routes if route.path_regex.fullmatch(request.url.path)]

@@ -37,6 +37,7 @@ def needs(scope: str) -> Any:
     """The dependency of a route that only API keys with this scope may use."""
 
     async def authorise(request: Request) -> None:
+        """Note who asks, or refuse."""
         store = store_of(request)
         given = request.headers.get("authorization")
         principal = store.runtime.authorisations.get(given, scope)

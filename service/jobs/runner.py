@@ -89,6 +89,7 @@ def _throttled(send: Callable[[float], None]) -> Callable[[float], None]:
     latest = monotonic()
 
     def progress(fraction: float) -> None:
+        """Tell, unless something was told a moment ago."""
         nonlocal latest
         if monotonic() - latest >= INTERVAL:
             latest = monotonic()

@@ -42,6 +42,7 @@ def part_entries(program: Program, rows: Sequence[FormulaRow], component: str | 
     operations = list(program.operations)
 
     def negated(entry: int) -> int:
+        """The number of an operation that negates another."""
         operations.append(("neg", entry))
         return len(operations) - 1
 

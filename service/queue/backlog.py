@@ -57,6 +57,7 @@ class Backlog:
         seconds = 2 * GATHER * slots / max(1, len(here))
 
         def of(job: str) -> int:
+            """How many more items of a job may be claimed."""
             durations = self._durations.get(job)
             ends = min(AHEAD, int(seconds / max(median(durations), 1e-4))) if durations else 0
             if not ends and job not in here:

@@ -31,6 +31,7 @@ def committed(store: Store, submission: jobs.JobSubmission, principal: str) -> C
     """What queues a submission and answers 202."""
 
     def commit(connection: Connection) -> Answer:
+        """Queue the job and answer it."""
         return answer(connection, jobs.submit(connection, submission, principal, store.settings.limits), 202)
 
     return commit
@@ -45,6 +46,7 @@ def deferred(
     """
 
     def prepare() -> Commit:
+        """Check the item as a submission would."""
         act.require("jobs")
         submission = jobs.prepare_one(act.store, kind, item, step, members)
         return committed(act.store, submission, act.principal)

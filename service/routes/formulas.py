@@ -60,6 +60,7 @@ def get_formula(
     tag = etag(version.digest, quantity, str((body, coordinate, component, inertia)), *style.identity)
 
     def make() -> Answer:
+        """Select, bind and print."""
         if body is coordinate is component is None:
             chosen = models.part_quantity(part.program, rows)
         else:

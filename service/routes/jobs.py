@@ -80,6 +80,7 @@ def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Resp
     read_model(CancelRequest, body)
 
     def commit(connection: Connection) -> Answer:
+        """Cancel, if the job is one's own."""
         if jobs.find(connection, job).principal != act.principal:
             act.require("admin")
         return answer(connection, jobs.cancel(connection, job))

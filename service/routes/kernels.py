@@ -37,6 +37,7 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Res
         model = store.model(connection, tree)
 
     def work() -> Answer:
+        """Compile what the quantities come from."""
         quantities = read_quantities(EvaluationRequest.read(body).quantities)  # also the body of an evaluation
         rows = []
         for source, program, names in steps(sources_of(store, tree, model), quantities):

@@ -67,6 +67,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
     evaluation = TreeEvaluation(sources_of(store, tree, model), tree.digest, limits, engine_of(store, tree, model))
 
     def work() -> Answer | Stream:
+        """Read the states and evaluate."""
         requests = read_requests(body, sent, limits)
         answer = evaluation.answer(requests, wanted)
         if sent == JSON and is_pinned(ref):
@@ -75,6 +76,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
         return answer
 
     def later() -> Commit:
+        """The job for the same states."""
         act.require("jobs")
         requests, form = read_requests(body, sent, limits), "arrow" if wanted == ARROW else "npz"
         if sent == JSON:
@@ -106,6 +108,7 @@ def get_quantity(
     tag = etag(tree.digest, quantity, *style.identity)
 
     def make() -> Answer:
+        """Form, bind and print."""
         sources = sources_of(store, tree, model)
         members, parameters = models.described(sources, quantity)
         program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)

@@ -44,9 +44,11 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     definition = Definition.read(body)
 
     def prepare() -> Any:
+        """Derive, unless that is stored already."""
         submission = catalogue.prepare(store, definition)
 
         def commit(connection: Connection) -> Answer:
+            """Store the version and answer it."""
             version, is_new = catalogue.submit(connection, submission)
             view = version_view(version, names_of(connection, version))
             return json_answer(dump(view), 201 if is_new else 200, {"Location": version_path(version)})
@@ -107,6 +109,7 @@ def yank(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
     wanted = read_model(YankRequest, body)
 
     def commit(connection: Connection) -> Answer:
+        """Withdraw the version and answer it."""
         version = catalogue.yank(connection, ref, wanted.reason)
         return json_answer(dump(version_view(version, names_of(connection, version))))
 

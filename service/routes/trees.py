@@ -32,9 +32,11 @@ def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
     """What ``Act`` runs: prepare a revision, then store it and answer it."""
 
     def prepared() -> Commit:
+        """Couple."""
         ready = prepare()
 
         def commit(connection: Connection) -> Answer:
+            """Store the revision and answer it."""
             tree, is_new = trees.commit(connection, ready)
             return json_answer(tree_view(tree), 201 if is_new else 200, {"Location": tree_path(tree)})
 
@@ -47,6 +49,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
     """Store a changed tree, at once or by a job."""
 
     def later() -> Commit:
+        """The job that stores the same change."""
         found = change()
         members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
         return deferred(act, "assemble", found.document, found.step, members)()

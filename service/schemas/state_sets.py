@@ -33,6 +33,7 @@ def _finite(given: Any) -> float:
 
 def _count(limit: int) -> BeforeValidator:
     def check(given: Any) -> Any:
+        """The number, if it is within the limit."""
         if isinstance(given, bool) or not isinstance(given, int) or not 0 < given <= limit:
             raise _refused("count", f"a whole number from 1 to {limit:,} is needed")
         return given

@@ -124,6 +124,7 @@ def _drive(width: int) -> str:
     advance = w.arithmetic("mul", c["group"], width)
 
     def row(base: str, region: str, block: str) -> str:
+        """The address of a block's row in a region."""
         return w.offset(base, w.arithmetic("mul", block, c[f"{region}_stride"]))
 
     rounds = w.arithmetic("sdiv", w.arithmetic("add", c["last"], w.arithmetic("sub", advance, 1)), advance)
@@ -133,6 +134,7 @@ def _drive(width: int) -> str:
         moved = w.offset(tables["o"], w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"]))
 
         def rows(block: str, moved: str = moved) -> list[str]:
+            """The addresses of a block's rows in all regions, and in the outputs."""
             return [*(row(tables[region], region, block) for region in REGIONS), row(moved, "o", block)]
 
         rest = w.arithmetic("add", w.arithmetic("sub", c["last"], start), width - 1)

@@ -89,6 +89,7 @@ def _transposed(w: AssemblyWriter, rows: list[str]) -> list[str]:
     kind = f"<{len(rows)} x i64>"
 
     def mixed(a: str, b: str, order: tuple[int, ...]) -> str:
+        """A shuffle of the elements of two vectors."""
         indices = ", ".join(f"i32 {k}" for k in order)
         return w.do(f"shufflevector {kind} {a}, {kind} {b}, <{len(order)} x i32> <{indices}>")
 

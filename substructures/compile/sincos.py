@@ -65,6 +65,7 @@ def _quadrant(w: AssemblyWriter, shifted: str, sine: str, cosine: str) -> tuple[
     integers = f"<{w.width} x i64>"
 
     def constant(n: int) -> str:
+        """A vector of one integer."""
         return f"<{', '.join([f'i64 {n}'] * w.width)}>"
 
     bits = w.do(f"bitcast {w.kind} {shifted} to {integers}")

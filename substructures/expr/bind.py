@@ -58,6 +58,7 @@ def _bindings(
     faults: list[Fault] = []
 
     def lookup(name: str) -> Expr | None:
+        """The value that a name has in an expression."""
         if name in constants:
             return constants[name]
         if name in values and isinstance(values[name], str):

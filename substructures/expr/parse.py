@@ -75,6 +75,7 @@ class _Parser:
         return tokens
 
     def take(self, *ops: str) -> str | None:
+        """The operator at hand if it is one of these; then it is passed."""
         kind, text, _ = self.tokens[self.at]
         if kind == "op" and text in ops:
             self.at += 1
@@ -82,11 +83,13 @@ class _Parser:
         return None
 
     def fail(self, expected: str) -> ExpressionError:
+        """The error that something else was expected here."""
         kind, text, column = self.tokens[self.at]
         found = "the end" if kind == "end" else repr(text)
         return ExpressionError(f"expected {expected}, found {found}", column)
 
     def sum(self) -> Expr:
+        """product (('+' or '-') product)*"""
         result = self.product()
         while op := self.take("+", "-"):
             column = self.tokens[self.at][2]
@@ -98,6 +101,7 @@ class _Parser:
         return result
 
     def product(self) -> Expr:
+        """sign (('*' or '/') sign)*"""
         result = self.sign()
         while op := self.take("*", "/"):
             column = self.tokens[self.at][2]
@@ -111,6 +115,7 @@ class _Parser:
         return result
 
     def sign(self) -> Expr:
+        """('+' or '-')* power"""
         minus = False
         while op := self.take("+", "-"):
             minus ^= op == "-"
@@ -118,6 +123,7 @@ class _Parser:
         return -result if minus else result
 
     def power(self) -> Expr:
+        """atom ('^' '-'? integer)?"""
         base = self.atom()
         if not self.take("^", "**"):
             return base
@@ -138,6 +144,7 @@ class _Parser:
             raise ExpressionError(str(error), column) from None
 
     def atom(self) -> Expr:
+        """number, name, call or parenthesis"""
         kind, text, column = self.tokens[self.at]
         if kind == "number":
             self.at += 1
@@ -152,12 +159,14 @@ class _Parser:
         raise self.fail("a number, a name or '('")
 
     def number(self, text: str, column: int) -> Expr:
+        """An exact number."""
         try:
             return self.graph.number(decimal_number(text))
         except (ValueError, ArithmeticError):
             raise ExpressionError(f"number has more than {MAX_DIGITS} digits", column) from None
 
     def name(self, text: str, column: int) -> Expr:
+        """pi, or what the lookup knows."""
         if text == "pi":
             return self.graph.pi
         found = self.lookup(text)
@@ -166,6 +175,7 @@ class _Parser:
         return found
 
     def call(self, name: str, column: int) -> Expr:
+        """function parenthesis"""
         if not self.take("("):
             raise self.fail(f"'(' after {name}")
         argument = self.parenthesis()
@@ -175,6 +185,7 @@ class _Parser:
             raise ExpressionError(str(error), column) from None
 
     def parenthesis(self) -> Expr:
+        """'(' was passed: sum ')'"""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise ExpressionError(f"more than {MAX_DEPTH} nested parentheses", self.tokens[self.at][2])

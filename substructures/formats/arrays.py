@@ -84,16 +84,20 @@ class _Memory(io.RawIOBase):
         self._data, self._position = data, 0
 
     def readable(self) -> bool:
+        """Yes."""
         return True
 
     def seekable(self) -> bool:
+        """Yes."""
         return True
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move to a place in the bytes."""
         self._position = offset + (0, self._position, len(self._data))[whence]
         return self._position
 
     def readinto(self, buffer: Any) -> int:
+        """Copy from the place at hand."""
         part = self._data[self._position : self._position + len(buffer)]
         buffer[: len(part)] = part.data
         self._position += len(part)

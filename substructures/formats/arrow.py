@@ -46,9 +46,11 @@ class _Guarded(io.RawIOBase):
         self.file, self.limit = file, limit
 
     def readable(self) -> bool:
+        """Yes."""
         return True
 
     def read(self, size: int = -1) -> bytes:
+        """Read, unless a batch declares more than the limit. Raises TooLarge."""
         if not 0 <= size <= self.limit:
             raise TooLarge("a record batch (in bytes)", size, self.limit)
         return self.file.read(size)

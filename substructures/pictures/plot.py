@@ -73,6 +73,7 @@ def _panel(panel: Panel, top: float) -> list[str]:
     width = WIDTH - LEFT - RIGHT
 
     def place(x: Array, y: Array) -> tuple[Array, Array]:
+        """Data to coordinates of the picture."""
         across = LEFT + width * (x - x_range[0]) / (x_range[1] - x_range[0])
         return across, top + PANEL * (y_range[1] - y) / (y_range[1] - y_range[0])
 

@@ -105,6 +105,7 @@ def _projection(scene: _Scene) -> Any:
     shift = np.array([WIDTH, HEIGHT]) / 2 - scale * (low + high) / 2
 
     def project(p: Array) -> Array:
+        """A point of the world to the picture, with its depth."""
         return scale * (VIEW @ p) + shift
 
     return project

@@ -130,6 +130,7 @@ class _ExpandedWriter:
         return self.language.write(node.op, [pieces[a] for a in node.args])
 
     def form(self, form: Expanded) -> Piece:
+        """A sum of products, over its denominator if it has one."""
         numerator = self._sum(form.terms)
         return self.language.div(numerator, self._sum(form.denominator)) if form.denominator else numerator
 

@@ -74,6 +74,7 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
     rows = r.inverse_dynamics()
 
     def matrix(names: Sequence[str]) -> Formulas:
+        """dID_a/dx^b for the symbols x."""
         # column b: dID_a/dx^b, the derivative along the unit direction of x^b alone
         columns = [directional(rows, {name: r.graph.one}) for name in names]
         return array((r.n, r.n), lambda a, b: columns[b][a])

@@ -206,6 +206,7 @@ def _closed(
     outputs = evaluator(program, values, [*DYNAMICS, *CLOSED], states.count)
 
     def second(velocities: Array) -> Array:
+        """G' q' at other velocities."""
         given = {f"{name}'": velocities[:, a] for a, name in enumerate(model.coordinates)}
         return evaluator(program, {**values, **given}, [CLOSED[2]], states.count)[CLOSED[2]]
 

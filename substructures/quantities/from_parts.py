@@ -153,6 +153,7 @@ class NumericTree:
 
     def _run(self) -> Run:
         def run(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+            """Stored outputs of a part in numbers."""
             values = {name: plain(x) for name, x in bindings.items()}
             found, outputs = self.engine(part.program, values, names), part.program.outputs
             if any(map(is_array, values.values())):

@@ -196,6 +196,7 @@ def _bare(run: Run) -> Run:
     """Parts without mass and loads: coupling them gives the kinematics, and the rest is zero at once."""
 
     def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+        """Outputs of a part, those of its masses empty."""
         found = run(part, bindings, [name for name in names if name not in DYNAMIC])
         return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
 

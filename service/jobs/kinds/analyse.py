@@ -33,6 +33,7 @@ def analysis_kind(name: str | None = None) -> Kind:
     """The kind for one analysis; without a name every item says which."""
 
     def spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
+        """One item for each request."""
         which = ("analysis",) if name is None else ()
         what = "requests" if "requests" in item else "request"
         check_fields(item, ("tree", what, *which), ("format",))

@@ -71,6 +71,7 @@ def _names(text: str) -> frozenset[str]:
     graph, found = Graph(), set[str]()
 
     def lookup(name: str) -> Expr:
+        """Any name is a symbol, and noted."""
         found.add(name)
         return graph.symbol(name)
 

@@ -153,6 +153,7 @@ def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> di
     """The request for some of its states: what is given for each of them is cut."""
 
     def cut(field: str, value: Any) -> Any:
+        """What belongs to the states of the slice."""
         if isinstance(value, Mapping):
             return {name: cut(name if field == "along" else "", each) for name, each in value.items()}
         is_flat = isinstance(value, list) and not (value and isinstance(value[0], list))

@@ -91,6 +91,7 @@ def _moved(
     inner = problem.integrator.stepper()
 
     def stepper(_f: object, t: float, y: Array, end: float) -> ClosedStepper:
+        """The stepper that lands on the closures."""
         return ClosedStepper(reduction, inner, t, y, end)
 
     motion = integrate(

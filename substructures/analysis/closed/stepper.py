@@ -184,6 +184,7 @@ class ClosedStepper:
         rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
         def share(part: float) -> float:
+            """sigma_min / sigma_max of G at a part of the step."""
             state(start + part * h)
             # sigma_min / sigma_max of the independent rows
             values = svdvals(self.s.G[rows])
@@ -199,6 +200,7 @@ class ClosedStepper:
         first = self._way[0]
 
         def make(*arguments: Any, **options: Any) -> Any:
+            """A stepper that goes on from the state at hand."""
             self.reduction.expect(first)
             return self.make(*arguments, **options)
 
@@ -213,6 +215,7 @@ class ClosedStepper:
         (first, last), start, end = self._way, self.t_old, self.inner.t
 
         def state(t: float) -> Array:
+            """(q, q', W) on the closures at t."""
             y = dense(t)
             self.reduction.expect(first + (t - start) / (end - start) * (last - first))
             return np.concatenate((*self.reduction.land(t, y), y[-1:]))

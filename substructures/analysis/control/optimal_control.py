@@ -132,6 +132,7 @@ def _searched(search: ShootingProgram, progress: IterationReport | None) -> Opti
     history = [search.progress(z)]
 
     def note(x: Array) -> None:
+        """Keep cost and violation of an iterate, and tell them."""
         history.append(search.progress(x))
         if progress is not None:
             progress(len(history) - 1, *history[-1])

@@ -45,6 +45,7 @@ def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | No
         kinds |= {s.name: s for s in model.program.symbols if s.kind == "input"}
 
     def lookup(name: str) -> Expr | None:
+        """The symbol of a name, declared when it is first used."""
         if name not in kinds:
             return None
         symbol = kinds[name]

@@ -134,6 +134,7 @@ class _Frame:
         zero = f.graph.zero
 
         def vector(name: str, *index: int) -> Vector:
+            """Three elements of a kinematic output."""
             x, y, z = (kinematics[name].get((k, *index, i), zero) for i in range(3))
             return x, y, z
 

@@ -172,6 +172,7 @@ class _Columns:
         at = {**symbols, **{name: field.draw() for name in self.Y.coordinates}}
 
         def regressor(motion: Mapping[str, int]) -> dict[tuple[int, ...], int]:
+            """Y at a random position in the field, for a motion."""
             return field.evaluate(self.Y.program, {**at, **motion}, "regressor")
 
         return self._rows(regressor, 0, 1)

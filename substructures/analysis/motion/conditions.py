@@ -90,7 +90,10 @@ class Conditions:
         run = kernel.bind({"events": found}, self.values | {"t": t}, columns=[(names, x)])
 
         def level(k: int) -> Callable[[float, Array], float]:
+            """The function whose zeros are event k."""
+
             def g(at: float, y: Array) -> float:
+                """quantity - level at (t, x)."""
                 # g(t, y) = quantity(q, q', t) - level
                 t[0], x[0] = at, state(at, y)
                 run()

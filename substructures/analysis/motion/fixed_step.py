@@ -56,6 +56,7 @@ def semi_implicit_euler(n: int) -> StepMethod:
     """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
 
     def step(f: Function, t: float, x: Array, h: float) -> Array:
+        """One step: velocities first."""
         # q'_1 = q' + h q''(t, q, q'), then q_1 = q + h q'_1
         new = x + h * f(t, x)
         new[:n] = x[:n] + h * new[n : 2 * n]

@@ -232,6 +232,7 @@ class _Run:
         a, b = float(solver.t_old), float(solver.t)
 
         def g(t: float) -> float:
+            """The watched function within the step."""
             return watch.function(t, np.asarray(dense(t), dtype=np.float64))
 
         # g(t*) = 0 in [a, b], found to the resolution of times

@@ -136,6 +136,7 @@ class RestSearch:
         q = start.copy()
 
         def both(x: Array) -> tuple[Array, Array]:
+            """Forces and their Jacobian at free coordinates x."""
             q[moving] = x
             F, K = self.at(q)
             return F, K[:, moving]
@@ -212,6 +213,7 @@ class ClosedSearch(RestSearch):
         scale = max(1.0, float(np.abs(K).max(initial=0)))
 
         def both(x: Array) -> tuple[Array, Array]:
+            """Residuals and their Jacobian at free coordinates and multipliers."""
             q[moving], self.multipliers[0] = x[:k], x[k:]
             F, K = self.at(q)
             G = self.G[0]
