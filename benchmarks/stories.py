@@ -7,8 +7,8 @@ A module belongs to a story when one of its functions is called in it. Left out 
 
 metric over parts   how coupling computes g: :func:`couple_parts` without Christoffel symbols, over formulas, on two
                     stored parts; and the modules of the two that lead there, ``couple`` and ``assemble``
-Christoffel, HTTP   how Gamma gets its numbers: what runs in the operation ``Evaluation`` behind a POST to evaluations
-                    of a compiled tree
+Christoffel, HTTP   how Gamma gets its numbers: what runs in the operation ``TreeEvaluation`` behind a POST to
+                    evaluations of a compiled tree
 item of a job       how an item of the kind assemble is executed: what a supervisor with a local engine runs from the
                     queue to the stored result, and what a runner does in between (read the work, run it, write the
                     report); of the science only what the service itself calls, and without the SQL
@@ -163,7 +163,7 @@ async def christoffel(listener: Listener, app: Any) -> list[str]:
         status = await posted(app, path, body)
         if status not in (200, 201):
             raise RuntimeError(f"{path}: {status}")
-    with listener.story(found("Evaluation").__module__) as calls:
+    with listener.story(found("TreeEvaluation").__module__) as calls:
         await posted(app, evaluation, quantities | states)
     return chosen({called for _, called in calls})
 

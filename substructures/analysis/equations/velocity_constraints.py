@@ -98,6 +98,7 @@ class VelocityRows:
 
 def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRows:
     """The rows of all constraints. Raises InvalidArgument, also for a closure of the model that is not among them."""
+    scope = f.scope  # its symbols come first in the graph, and so in what is stored
     _require_closed(f, constraints)
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
@@ -111,7 +112,7 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
         elif constraint.frame not in f.model.frames:
             known = ", ".join(f.model.frames[:20])
             message = f"unknown frame '{constraint.frame}'; there are {known}"
-            f.scope.fault(f"{pointer}/frame", "unknown-frame", message)
+            scope.fault(f"{pointer}/frame", "unknown-frame", message)
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
@@ -122,8 +123,8 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
     names = [c.name for c in constraints]
     for i, name in enumerate(names):
         if name in names[:i]:
-            f.scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
-    require_read(f.scope)
+            scope.fault(f"/constraints/{i}/name", "duplicate-name", f"duplicate constraint '{name}'")
+    require_read(scope)
     return result
 
 
@@ -182,7 +183,7 @@ def _roll(f: Workspace, c: Rolling, pointer: str, frame: _Frame, result: Velocit
         if across.is_zero:
             f.scope.fault(f"{pointer}/frame", "flat-disc", "the axis of the disc is the normal of the plane")
             return
-            # rho = -r (n - (n.e) e) / |n - (n.e) e|
+        # rho = -r (n - (n.e) e) / |n - (n.e) e|
         width = f.graph.sqrt(across)
         rho: Vector = (f.graph.lift(-(radius * n[0])) / width, f.graph.lift(-(radius * n[1])) / width, f.graph.zero)
     else:
