@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
-from service.schemas.parts import Part
+from service.schemas.parts import RequestPart
 from substructures.documents import read_model
 from substructures.errors import InvalidDocument
 
@@ -33,10 +33,10 @@ def arguments(request: BaseModel) -> dict[str, Any]:
 
 
 def _value(given: Any) -> Any:
-    if isinstance(given, Part):
+    if isinstance(given, RequestPart):
         return given.value()
     if isinstance(given, dict):
         return {name: _value(item) for name, item in given.items()}
-    if isinstance(given, tuple) and given and isinstance(given[0], Part):
+    if isinstance(given, tuple) and given and isinstance(given[0], RequestPart):
         return tuple(_value(item) for item in given)
     return given

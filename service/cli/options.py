@@ -15,12 +15,12 @@ from substructures.errors import InvalidInput
 
 SERVER = "http://127.0.0.1:8000"
 
-Run = Callable[[argparse.Namespace], int]
+CommandFunction = Callable[[argparse.Namespace], int]
 #: adds the arguments of commands to their parsers, by name of the command
 Add = Mapping[str, Callable[[argparse.ArgumentParser], None]]
 
 
-def add_action(actions: Any, name: str, run: Run, text: str) -> argparse.ArgumentParser:
+def add_action(actions: Any, name: str, run: CommandFunction, text: str) -> argparse.ArgumentParser:
     """One more action of a command that is a group of them."""
     command: argparse.ArgumentParser = actions.add_parser(name, help=text, description=text)
     command.set_defaults(command=run)

@@ -56,8 +56,8 @@ def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answ
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)
-    deadline = Deadline(store.settings.limits.sync_seconds)
-    result = analysis.compute(source_of(store, tree, model), request, deadline)
+    time_limit = TimeLimit(store.settings.limits.sync_seconds)
+    result = analysis.compute(source_of(store, tree, model), request, time_limit)
     headers = {"Content-Type": media}
     motion = trajectory_of(result)
     if motion is not None:  # a CSV file has no place for them
@@ -65,7 +65,7 @@ def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answ
     return Answer(200, written(result, media, model), headers)
 
 
-class Deadline:
+class TimeLimit:
     """A listener of progress that ends the work when its time is over: nobody waits for it any longer."""
 
     def __init__(self, seconds: float) -> None:

@@ -21,7 +21,7 @@ class Alias:
 
 
 @dataclass(frozen=True, slots=True)
-class AliasChange:
+class AliasHistoryEntry:
     """One entry of an alias's history."""
 
     revision: int
@@ -60,12 +60,12 @@ def aliases_of(connection: Connection, *versions: tuple[str, int]) -> list[list[
     return [found.get(version, []) for version in versions]
 
 
-def history(connection: Connection, name: str, alias: str) -> list[AliasChange]:
+def history(connection: Connection, name: str, alias: str) -> list[AliasHistoryEntry]:
     """All changes of an alias, the newest first."""
     table = alias_history.c
     columns = select(table.revision, table.version, table.changed, table.principal)
     rows = connection.execute(columns.where(table.name == name, table.alias == alias).order_by(table.revision.desc()))
-    return [AliasChange(*row) for row in rows]
+    return [AliasHistoryEntry(*row) for row in rows]
 
 
 def set_alias(

@@ -27,13 +27,12 @@ FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
 
 def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
     @timed
-    def run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
-        """The analysis, or the job that does it."""
+    def _run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
         return act.compute(lambda: analyse(store, ref, name, body, media), deferred(act, "analyse", item, "/request"))
 
-    return run
+    return _run
 
 
 def _add(name: str, analysis: Analysis) -> None:

@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from service.schemas.parts import Part
+from service.schemas.parts import RequestPart
 from substructures.analysis.control import nonlinear_program, problem
 from substructures.documents import DocumentPart
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
-class Cost(Part):
+class Cost(RequestPart):
     """l and phi."""
 
     running: str = Field("0", description="l(q, q', u, t, parameters), per second")
@@ -53,7 +53,7 @@ class GradientRequest(ControlProblem):
     vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
 
 
-class End(Part):
+class End(RequestPart):
     """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
 
     q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")

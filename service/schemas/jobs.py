@@ -12,7 +12,7 @@ from service.schemas.shapes import Links, Shape, Time
 JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemDocument = dict[str, Any]
-Values = Annotated[list[Any], Field(min_length=1)]
+ChoiceValues = Annotated[list[Any], Field(min_length=1)]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -32,7 +32,7 @@ class JobRequest(Shape):
     template: ItemDocument = Field(
         default_factory=dict, description="an item that is copied for every combination of choices"
     )
-    choices: dict[str, Values] = Field(default_factory=dict, min_length=1, description=CHOICES)
+    choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
 
 
 class CancelRequest(Shape):

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from service.schemas.parts import Part
+from service.schemas.parts import RequestPart
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis import simulate as science
 from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
@@ -43,7 +43,7 @@ Span = Annotated[tuple[Real, Real], BeforeValidator(_listed)]
 _Column = Annotated[Reals, Field(min_length=2, max_length=100_000)]
 
 
-class Table(Part):
+class Table(RequestPart):
     """Values over time [s]. Inputs: piecewise constant, linear, or a cubic spline; prescribed motions: a spline of
     degree five.
     """
@@ -70,7 +70,7 @@ def _kind(value: Any) -> str:
 Signal = Annotated[Annotated[Number, Tag("number")] | Annotated[Table, Tag("table")], Discriminator(_kind)]
 
 
-class Event(Part):
+class Event(RequestPart):
     """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
 
     name: Name
@@ -84,7 +84,7 @@ class Event(Part):
         return science.Event(self.name, self.quantity, self.level, self.direction, self.action)
 
 
-class FixedStep(Part):
+class FixedStep(RequestPart):
     """Real-time mode: every step takes the same, known time. Semi-implicit Euler, or Runge-Kutta of fourth order."""
 
     step: Positive = Field(description="s")

@@ -18,8 +18,8 @@ from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
 
 Column = float | list[float]
-Values = Annotated[dict[str, Column], SkipValidation]
-States = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation]
+ValueColumns = Annotated[dict[str, Column], SkipValidation]
+StateColumns = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation]
 _NEEDED = {
     "quantities": "a list of quantities is needed",
     "along": "the direction 'along' is needed: q, qd, qdd and inputs",
@@ -34,10 +34,10 @@ def _values(description: str | None = None) -> Any:
 class Direction(Shape):
     """The direction of a derivative, zero where nothing is given; one row for all states, or one for each."""
 
-    q: States = None
-    qd: States = None
-    qdd: States = Field(None, description="of inverse dynamics")
-    inputs: Values = _values()
+    q: StateColumns = None
+    qd: StateColumns = None
+    qdd: StateColumns = Field(None, description="of inverse dynamics")
+    inputs: ValueColumns = _values()
 
 
 def _needs_states(schema: dict[str, Any]) -> None:
@@ -58,11 +58,11 @@ class EvaluationRequest(Shape):
     model_config = ConfigDict(extra="forbid", json_schema_extra=_needs_states)
 
     quantities: Annotated[list[str], SkipValidation]
-    parameters: Values = _values("values in place of defaults; one, or one for every state")
-    q: States = Field(None, description="(n,), (N, n) or columns by name")
-    qd: States = None
-    qdd: States = None
-    inputs: Values = _values("tau.<coordinate> (N m or N) and inputs of loads")
+    parameters: ValueColumns = _values("values in place of defaults; one, or one for every state")
+    q: StateColumns = Field(None, description="(n,), (N, n) or columns by name")
+    qd: StateColumns = None
+    qdd: StateColumns = None
+    inputs: ValueColumns = _values("tau.<coordinate> (N m or N) and inputs of loads")
     t: Annotated[Column, SkipValidation] = Field(0, description="s")
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
 

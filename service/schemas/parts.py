@@ -7,7 +7,7 @@ from abc import abstractmethod
 from substructures.documents import DocumentPart
 
 
-class Part(DocumentPart):
+class RequestPart(DocumentPart):
     """A part of a request, as plain data, of something that the science takes as a value of its own."""
 
     @abstractmethod

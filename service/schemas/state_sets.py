@@ -71,15 +71,15 @@ def _object(given: Any) -> Any:
     return given
 
 
-Finite = Annotated[float, BeforeValidator(_finite)]
-Range = Annotated[tuple[Finite, Finite], BeforeValidator(_pair), AfterValidator(_ordered)]
+FiniteNumber = Annotated[float, BeforeValidator(_finite)]
+Range = Annotated[tuple[FiniteNumber, FiniteNumber], BeforeValidator(_pair), AfterValidator(_ordered)]
 
 
-class Span(Shape):
+class AxisSpan(Shape):
     """``count`` values of an axis at equal distances, both ends included."""
 
-    start: Finite = Field(alias="from")
-    stop: Finite = Field(alias="to")
+    start: FiniteNumber = Field(alias="from")
+    stop: FiniteNumber = Field(alias="to")
     count: Annotated[int, _count(MAX_AXIS)]
 
     def values(self) -> list[float]:
@@ -99,9 +99,9 @@ def _kind(given: Any) -> str:
 
 
 Axis = Annotated[
-    Annotated[Span, Tag("span")]
-    | Annotated[list[Finite], BeforeValidator(_listed), Tag("values")]
-    | Annotated[Finite, Tag("value")],
+    Annotated[AxisSpan, Tag("span")]
+    | Annotated[list[FiniteNumber], BeforeValidator(_listed), Tag("values")]
+    | Annotated[FiniteNumber, Tag("value")],
     Discriminator(_kind),
 ]
 
@@ -114,8 +114,8 @@ class Grid(RootModel[dict[str, Axis]]):
         return [(name, _values(axis)) for name, axis in self.root.items()]
 
 
-def _values(axis: Span | list[float] | float) -> list[float]:
-    if isinstance(axis, Span):
+def _values(axis: AxisSpan | list[float] | float) -> list[float]:
+    if isinstance(axis, AxisSpan):
         return axis.values()
     return axis if isinstance(axis, list) else [axis]
 

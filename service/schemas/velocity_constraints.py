@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from service.schemas.parts import Part
+from service.schemas.parts import RequestPart
 from substructures.analysis.equations import velocity_constraints as science
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Number
@@ -14,7 +14,7 @@ from substructures.documents.fields import Name, Number
 FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
 
-class Linear(Part):
+class Linear(RequestPart):
     """An expression that is zero, linear in the velocities."""
 
     type: Literal["linear"]
@@ -26,7 +26,7 @@ class Linear(Part):
         return science.Linear(self.name, self.expression)
 
 
-class KnifeEdge(Part):
+class KnifeEdge(RequestPart):
     """A skate: no velocity across the edge, which lies along the first axis of the frame."""
 
     type: Literal["knife_edge"]
@@ -38,7 +38,7 @@ class KnifeEdge(Part):
         return science.KnifeEdge(self.name, self.frame)
 
 
-class Rolling(Part):
+class Rolling(RequestPart):
     """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
 
     type: Literal["rolling"]
@@ -53,7 +53,7 @@ class Rolling(Part):
         return science.Rolling(self.name, self.frame, self.radius, self.shape, self.normal)
 
 
-class Closed(Part):
+class Closed(RequestPart):
     """A closure of the tree, by its name."""
 
     type: Literal["closure"]

@@ -9,7 +9,7 @@ import orjson
 
 from service.addresses import BASE, tree_path, version_path
 from service.operations.catalogue import Page
-from service.queries.aliases import Alias, AliasChange
+from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.catalogue import Version
 from service.queries.content import FormulaRow
 from service.queries.trees import Tree
@@ -83,7 +83,7 @@ def _formula(row: FormulaRow) -> dict[str, Any]:
     }
 
 
-def alias_view(name: str, alias: Alias, history: Sequence[AliasChange]) -> dict[str, Any]:
+def alias_view(name: str, alias: Alias, history: Sequence[AliasHistoryEntry]) -> dict[str, Any]:
     """An alias with its history, the newest change first."""
     return {
         "name": name,

@@ -14,7 +14,7 @@ from substructures.errors import InvalidArgument
 from substructures.part.scope import Scope
 
 #: a number or an expression (substructures.expr.parse); floats stand for their shortest decimal text
-Scalar = int | float | Decimal | str
+NumberOrExpression = int | float | Decimal | str
 #: one dimension: a tuple, a list or an array of shape (K,)
 Numbers = tuple[float, ...] | list[float] | Array
 

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence, Sized
 from pathlib import Path
 from typing import Any, Literal
 
-from substructures.analysis.arguments import Numbers, Scalar
+from substructures.analysis.arguments import NumberOrExpression, Numbers
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
 from substructures.analysis.equations.velocity_constraints import Closed, Constraint, KnifeEdge, Linear, Rolling
 from substructures.analysis.motion.events import Event
@@ -32,8 +32,6 @@ from substructures.tree.model import Model
 
 __all__ = ["Closed", "Event", "FixedStep", "KnifeEdge", "Linear", "Rolling", "Table", "simulate"]
 
-Progress = ProgressReport | None
-
 
 def simulate(
     model: Model,
@@ -48,7 +46,7 @@ def simulate(
     step: float | None = None,
     count: int | None = None,
     events: Sequence[Event] = (),
-    series: Mapping[str, Scalar] | None = None,
+    series: Mapping[str, NumberOrExpression] | None = None,
     method: str = "DOP853",
     fixed_step: FixedStep | None = None,
     prescribed: Mapping[str, Signal] | None = None,
@@ -63,7 +61,7 @@ def simulate(
     max_step: float | None = None,
     max_steps: int = 1_000_000,
     drift_limit: float = 1e-7,
-    progress: Progress = None,
+    progress: ProgressReport | None = None,
     folder: Path | None = None,
 ) -> Trajectory:
     """The motion of a model from a start over a span of time, with its judges.

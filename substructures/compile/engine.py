@@ -73,7 +73,7 @@ class Scratch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Runtime:
+class VectorRuntime:
     """The shared functions for one vector width."""
 
     width: int
@@ -82,7 +82,7 @@ class Runtime:
     pair: NDArray[np.int64]
 
     @classmethod
-    def of(cls, code: bytes, width: int) -> Runtime:
+    def of(cls, code: bytes, width: int) -> VectorRuntime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
         loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
         call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
@@ -120,10 +120,10 @@ def workers() -> ThreadPoolExecutor:
     return _pools[process]
 
 
-_runtimes: dict[int, Runtime] = {}
+_runtimes: dict[int, VectorRuntime] = {}
 
 
-def shared_runtime(width: int, folder: Path | None = None) -> Runtime:
+def shared_runtime(width: int, folder: Path | None = None) -> VectorRuntime:
     """Compiled, or taken from the folder, once in a process."""
     if width not in _runtimes:
         text = runtime(width)
@@ -132,5 +132,5 @@ def shared_runtime(width: int, folder: Path | None = None) -> Runtime:
         code = found[1] if found is not None else target.assemble(text)
         if folder is not None and found is None:
             cache.write(folder, wanted, None, code)
-        _runtimes[width] = Runtime.of(code, width)
+        _runtimes[width] = VectorRuntime.of(code, width)
     return _runtimes[width]

@@ -13,7 +13,7 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import layout, target
 from substructures.compile.arguments import Arguments, NamedColumns, batch_shape, merged
-from substructures.compile.engine import WORDS, Counter, Runtime, Scratch, WordTable, address, workers
+from substructures.compile.engine import WORDS, Counter, Scratch, VectorRuntime, WordTable, address, workers
 from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.recipe import Recipe
@@ -54,7 +54,9 @@ class _Prepared(NamedTuple):
 class MachineKernel(Kernel):
     """Compiled functions and the tables that the driver needs."""
 
-    def __init__(self, program: Program, names: Sequence[str], recipe: Recipe, code: bytes, runtime: Runtime) -> None:
+    def __init__(
+        self, program: Program, names: Sequence[str], recipe: Recipe, code: bytes, runtime: VectorRuntime
+    ) -> None:
         super().__init__(program, names)
         width = runtime.width
         self.width, self.recipe, self.runtime = width, recipe, runtime

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from substructures.compile.arguments import NOTHING, Arguments, Inputs
-from substructures.compile.engine import Counter, Runtime, Scratch, WordTable
+from substructures.compile.engine import Counter, Scratch, VectorRuntime, WordTable
 from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
 from substructures.compile.runtime import STEP
@@ -28,7 +28,7 @@ class PreparedStages(NamedTuple):
 class Stages:
     """Inputs and steps of all stages. ``rows``: doubles of a scratch row of each; ``results``: results before each."""
 
-    def __init__(self, recipe: Recipe, runtime: Runtime, functions: Mapping[str, int]) -> None:
+    def __init__(self, recipe: Recipe, runtime: VectorRuntime, functions: Mapping[str, int]) -> None:
         self.runtime, self.width = runtime, runtime.width
         self.inputs = [Inputs(stage.inputs) for stage in recipe.stages]
         self.rows = [self.width * max(stage.size, 1) for stage in recipe.stages]

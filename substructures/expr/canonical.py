@@ -15,7 +15,7 @@ from substructures.expr.laurent import Laurent, Quotient, Ring
 Terms = tuple[tuple[Basis, Fraction], ...]
 
 
-class Evaluator:
+class RingEvaluator:
     """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions."""
 
     def __init__(self, generators: Generators, nodes: list[Expr], limit: int) -> None:

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from substructures.errors import TooLarge
-from substructures.expr.canonical import Evaluator
+from substructures.expr.canonical import RingEvaluator
 from substructures.expr.generators import Basis, Generators, Sum, is_function, times_power
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin
@@ -99,10 +99,10 @@ class Expander:
         for node in reachable(exprs):
             if is_function(node):
                 self.generators.classify(node, [self._argument(a) for a in node.args])
-        self.evaluator = Evaluator(self.generators, reachable(exprs, is_function), limit)
+        self.evaluator = RingEvaluator(self.generators, reachable(exprs, is_function), limit)
 
     def _argument(self, expr: Expr) -> Sum:
-        evaluator = Evaluator(self.generators, reachable([expr], is_function), self.limit)
+        evaluator = RingEvaluator(self.generators, reachable([expr], is_function), self.limit)
         self.effort += (evaluator.ring.size + evaluator.ring.angles) ** 2
         if self.effort > EFFORT:
             raise TooLarge("the nesting of functions in an expansion (in squared generators)", self.effort, EFFORT)

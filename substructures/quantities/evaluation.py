@@ -19,7 +19,7 @@ from substructures.quantities.derivatives import FD, SINGULAR
 from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.result import Evaluation, Failure, ParameterColumns, failures_of, without_axis
 from substructures.quantities.states import (
-    Arguments,
+    ArgumentsByName,
     StateInput,
     States,
     ValueInput,
@@ -215,7 +215,7 @@ def _closed(
 
 
 def _values(
-    sources: Sources, given: Arguments, along: Direction | None, states: States, quantities: Sequence[str]
+    sources: Sources, given: ArgumentsByName, along: Direction | None, states: States, quantities: Sequence[str]
 ) -> dict[str, Any]:
     """Values of all symbols. Raises InvalidArgument for an argument that a quantity needs."""
     model = sources.model

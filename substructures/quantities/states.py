@@ -30,7 +30,7 @@ StateInput = ArrayLike | Mapping[str, ArrayLike]
 #: by name: one number, or (N,), one for every state
 ValueInput = Mapping[str, ArrayLike]
 #: arguments by name
-Arguments = Mapping[str, Any]
+ArgumentsByName = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class States:
     single: bool
 
 
-def read_states(model: Model, given: Arguments, limit: int | None) -> States:
+def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> States:
     """q, qd, qdd of arguments. One q holds for all velocities, times, inputs, ... Raises InvalidArgument."""
     q = _state(model, given.get("q"), "q")
     if q is None:
@@ -68,7 +68,7 @@ def read_states(model: Model, given: Arguments, limit: int | None) -> States:
     return States(q[0], qd, others[1], count, q[1] and count == 1)
 
 
-def longest(given: Arguments) -> int:
+def longest(given: ArgumentsByName) -> int:
     """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
     lengths = [1, _entries(given.get("t"))]
     for name in ("q", "qd", "qdd"):
@@ -146,7 +146,7 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
         raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
 
 
-def symbol_values(model: Model, given: Arguments, states: States, needs: Iterable[str]) -> dict[str, Any]:
+def symbol_values(model: Model, given: ArgumentsByName, states: States, needs: Iterable[str]) -> dict[str, Any]:
     """Values of all symbols that the needed outputs of the model depend on. Raises InvalidArgument, MissingValue."""
     values = known_values(model, given, states, model.parameters)
     require(model.program, needs, values)
@@ -154,7 +154,7 @@ def symbol_values(model: Model, given: Arguments, states: States, needs: Iterabl
 
 
 def known_values(
-    model: Model, given: Arguments, states: States, parameters: Mapping[str, Mapping[str, Any]]
+    model: Model, given: ArgumentsByName, states: States, parameters: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, Any]:
     """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
     a value among the arguments. Raises InvalidArgument.

@@ -14,7 +14,7 @@ from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_lo
 from substructures.tree.mounted_part import WORLD, PlacedPart
 
 Motions = dict[int, BodyMotion]
-Loads = dict[int, Wrench]
+WrenchesByCarrier = dict[int, Wrench]
 
 
 def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar]) -> list[Scalar]:
@@ -75,7 +75,7 @@ def _interface_motion(here: PlacedPart, motions: Sequence[Motions], falling: boo
     return motions[here.mounted.host][seat.parent].at(from_body(here.host.links, seat), seat.rotation)
 
 
-def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[Loads]:
+def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
     """What moves every body, and what is fixed to an interface, like that."""
     return [
         {c: inertial_load(own[c], here.evaluated.own.own_inertia(c)) for c in (*range(len(here.links)), INTERFACE)}
@@ -83,7 +83,7 @@ def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) ->
     ]
 
 
-def _pass_back(placed: Sequence[PlacedPart], loads: list[Loads], n: int) -> list[Scalar]:
+def _pass_back(placed: Sequence[PlacedPart], loads: list[WrenchesByCarrier], n: int) -> list[Scalar]:
     """The component along or about its axis of what every joint has to transmit, from the leaves to the root."""
     result: list[Scalar] = [0] * n
     for here, own in zip(reversed(placed), reversed(loads), strict=True):

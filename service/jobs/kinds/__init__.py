@@ -13,10 +13,11 @@ from service.jobs.kinds.choices import combinations
 from service.jobs.kinds.derive import DERIVE
 from service.jobs.kinds.evaluate import EVALUATE
 from service.jobs.kinds.export import EXPORT
-from service.jobs.kinds.kind import ItemDocument, ItemProgress, Kind
+from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
 from substructures.part.certificate import VerificationFailed

@@ -16,10 +16,11 @@ from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import InvalidDocument
 

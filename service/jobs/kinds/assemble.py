@@ -8,8 +8,9 @@ from service.cache import Cache
 from service.database.packed import pack
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
 from service.jobs.kinds.library import Library, StoredVersion
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
 from substructures.documents import read_json

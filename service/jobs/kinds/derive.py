@@ -7,8 +7,9 @@ from functools import lru_cache
 from typing import Any
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
 from service.jobs.kinds.library import Library
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content
 from substructures.documents import read_json

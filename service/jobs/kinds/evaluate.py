@@ -21,11 +21,12 @@ from service.cache import Cache
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import model_of, summary_of
 from service.jobs.kinds.joint_limits import joint_limits
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, regressor_of
 from service.jobs.kinds.values import check_described, check_states
+from service.schemas.jobs import ItemDocument
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from substructures.array import Array

@@ -27,10 +27,11 @@ from service.analyses.printing import (
 from service.analyses.source import Source
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.refusals import Refused
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed

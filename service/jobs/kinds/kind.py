@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 from service.jobs.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 
-ItemDocument = dict[str, Any]
 Blobs = Mapping[str, bytes]
 ItemProgress = Callable[[float], None]
 

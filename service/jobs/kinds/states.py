@@ -17,12 +17,12 @@ from substructures.array import Array
 from substructures.documents import pointer_step, read_model
 from substructures.errors import Fault, InvalidDocument
 
-Axis = tuple[str, list[float]]
+NamedAxis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
 DRAWS = 4
 
 
-def read_grid(given: Any, known: set[str]) -> list[Axis]:
+def read_grid(given: Any, known: set[str]) -> list[NamedAxis]:
     """Name and values of every axis of a :class:`Grid`. Raises InvalidDocument."""
     if not isinstance(given, Mapping) or not given:
         raise InvalidDocument.at("/grid", "object-expected", "an object of axes by name is needed")
@@ -41,12 +41,12 @@ def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> Non
         raise InvalidDocument(faults)
 
 
-def grid_size(axes: Sequence[Axis]) -> int:
+def grid_size(axes: Sequence[NamedAxis]) -> int:
     """How many states a grid has."""
     return math.prod(len(values) for _, values in axes)
 
 
-def grid_states(axes: Sequence[Axis], start: int, stop: int) -> dict[str, Array]:
+def grid_states(axes: Sequence[NamedAxis], start: int, stop: int) -> dict[str, Array]:
     """The columns of a part of the grid; the last axis varies fastest."""
     indices = np.unravel_index(np.arange(start, stop), [len(values) for _, values in axes])
     return {

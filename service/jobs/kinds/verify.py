@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemDocument, ItemProgress, Kind, check_fields
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields
 from service.jobs.kinds.library import Library
+from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument, InvalidProgram

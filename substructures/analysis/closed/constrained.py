@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.arguments import Scalar
+from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
@@ -61,7 +61,7 @@ class Constrained:
         prescribed: Mapping[str, Signal] | None = None,
         *,
         events: Sequence[Event] = (),
-        series: Mapping[str, Scalar] | None = None,
+        series: Mapping[str, NumberOrExpression] | None = None,
         folder: Path | None = None,
     ) -> None:
         """``span`` [s]: the times at which states will be; (t, t) for one. ``prescribed``: coordinates whose motion is

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import Scalar, exact, one_of, positive, real, whole
+from substructures.analysis.arguments import NumberOrExpression, exact, one_of, positive, real, whole
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import StateArray, numbers, require_known, unknown
 from substructures.array import Array
@@ -45,8 +45,8 @@ KIND = {"values": "value", "guess": "guess"}
 class Cost:
     """``running``: l(q, q', u, t, parameters), per second; ``terminal``: phi(q, q', t, parameters) at the end."""
 
-    running: Scalar = "0"
-    terminal: Scalar = "0"
+    running: NumberOrExpression = "0"
+    terminal: NumberOrExpression = "0"
 
 
 #: l = phi = 0

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from substructures.analysis.arguments import Scalar, exact
+from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import ModelFormulas, inputs_of
 from substructures.analysis.equations.kernels import Known, known_model
@@ -113,7 +113,9 @@ def _rows(formulas: Formulas, n: int, zero: Expr) -> list[Expr]:
     return [x if isinstance(x, Expr) else zero.graph.number(x) for x in entries]
 
 
-def state_space(model: Model, outputs: Sequence[Scalar] = (), inputs: Sequence[str] | None = None) -> Program:
+def state_space(
+    model: Model, outputs: Sequence[NumberOrExpression] = (), inputs: Sequence[str] | None = None
+) -> Program:
     """A (2n, 2n), B (2n, m), C (k, 2n), D (k, m) as formulas at any state, with ``derivative`` (2n,) = x' and
     ``output`` (k,) = y.
 

@@ -23,7 +23,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from substructures.analysis.arguments import Scalar, exact, one_of, require_read
+from substructures.analysis.arguments import NumberOrExpression, exact, one_of, require_read
 from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
@@ -61,9 +61,9 @@ class Rolling:
 
     name: str
     frame: str
-    radius: Scalar
+    radius: NumberOrExpression
     shape: Literal["disc", "sphere"] = "disc"
-    normal: tuple[Scalar, Scalar, Scalar] = (0, 0, 1)
+    normal: tuple[NumberOrExpression, NumberOrExpression, NumberOrExpression] = (0, 0, 1)
 
     def __post_init__(self) -> None:
         one_of(self.shape, "shape", SHAPES)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from substructures.analysis.arguments import Scalar
+from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.equations.expressions import Given, read_expressions
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.events import DIRECTIONS, Event
@@ -115,7 +115,7 @@ def read_conditions(
     span: tuple[float, float],
     needs: Sequence[str],
     events: Sequence[Event] = (),
-    series: Mapping[str, Scalar] | None = None,
+    series: Mapping[str, NumberOrExpression] | None = None,
 ) -> Conditions:
     """Check what is given against a model; ``needs``: outputs of the model whose symbols must have values.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from substructures.analysis.arguments import Scalar, one_of, real
+from substructures.analysis.arguments import NumberOrExpression, one_of, real
 
 #: sign of the slope at the zeros that count; 0: any
 DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
@@ -20,7 +20,7 @@ class Event:
     """
 
     name: str
-    quantity: Scalar
+    quantity: NumberOrExpression
     level: float = 0.0
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"

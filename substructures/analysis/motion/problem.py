@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.analysis.arguments import Numbers, Scalar, in_range, one_of, positive, whole
+from substructures.analysis.arguments import NumberOrExpression, Numbers, in_range, one_of, positive, whole
 from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.signals import Signal
@@ -70,7 +70,7 @@ class MotionProblem:
     times: OutputTimes
     integrator: IntegratorChoice = field(default_factory=IntegratorChoice)
     events: Sequence[Event] = ()
-    series: Mapping[str, Scalar] = field(default_factory=dict)
+    series: Mapping[str, NumberOrExpression] = field(default_factory=dict)
     drift_limit: float = 1e-7
 
     def __post_init__(self) -> None:

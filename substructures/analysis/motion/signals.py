@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 import scipy
 
-from substructures.analysis.arguments import Numbers, Scalar, one_of, reals
+from substructures.analysis.arguments import NumberOrExpression, Numbers, one_of, reals
 from substructures.errors import InvalidArgument
 
 INTERPOLATIONS = ("hold", "linear", "cubic")
@@ -41,7 +41,7 @@ class Table:
 
 
 #: a number, an expression in coordinates, velocities, parameters and t, or a table over time
-Signal = Scalar | Table
+Signal = NumberOrExpression | Table
 
 
 def require_increasing(times: Numbers) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.arguments import Scalar
+from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.equations.formulas import inputs_of, require_moving
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
@@ -34,7 +34,7 @@ def linearise(
     t: float | Sequence[float] | Array = 0,
     parameters: Mapping[str, Any] | None = None,
     inputs: Mapping[str, Any] | None = None,
-    outputs: Mapping[str, Scalar] | None = None,
+    outputs: Mapping[str, NumberOrExpression] | None = None,
     of_inputs: Sequence[str] | None = None,
 ) -> Linearisation:
     """Perturbation equations and state-space matrices of a model about a state, or states along a trajectory.

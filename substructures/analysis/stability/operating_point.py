@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.arguments import Scalar, exact
+from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
@@ -41,7 +41,7 @@ class OperatingPoint:
     t: Any
     parameters: Mapping[str, Any]
     inputs: Mapping[str, Any]
-    outputs: Mapping[str, Scalar]
+    outputs: Mapping[str, NumberOrExpression]
     of_inputs: Sequence[str] | None
 
     @property
