@@ -10,7 +10,8 @@ import       of one module by another of the checkout, anywhere in the file; ``f
 rooms        of a folder: the modules and subfolders directly in it that hold code, its ``__init__`` left out
 floors       rooms on the longest path of imports between the rooms; rooms that import each other in a circle are one,
              and the circle is told
-chain        the same between all modules of a package, and between its folders (a module stands for its folder)
+chain        the same between all modules of a package, and between its folders (a module stands for its folder, one in
+             the root for itself; the package's own ``__init__`` is left out)
 comments     share of the lines of the files that hold nothing but a ``#`` comment; docstrings do not count
 docstrings   functions, methods and classes whose names do not begin with an underscore, wherever they are defined,
              and how many of these have no docstring
@@ -33,12 +34,6 @@ from typing import Any
 
 PACKAGES = ("substructures", "service")
 STORIES = Path(__file__).with_name("stories.py")
-#: the modules of part/ and tree/ while they stood in the root of the science
-COUPLING = (
-    *("definition", "skeleton", "scope", "frames", "mechanism", "inertia_symbols", "loads", "interface", "stored"),
-    *("certificate", "physics", "part", "lean", "one_piece"),
-    *("tree", "mounting", "mounted", "kinematics", "coupling", "bias", "closures", "verification", "model"),
-)
 Graph = Mapping[str, set[str]]
 
 
@@ -164,11 +159,14 @@ def measured(root: Path) -> dict[str, Any]:
     }
     files = {folder: len(list((root / folder.replace(".", "/")).glob("*.py"))) for folder in rooms}
 
-    def folder_of(name: str) -> str:
-        return name if known[name].name == "__init__.py" else name.rpartition(".")[0]
+    def folder_of(name: str) -> str | None:
+        if name in PACKAGES:
+            return None
+        is_folder = known[name].name == "__init__.py" or name.count(".") == 1
+        return name if is_folder else name.rpartition(".")[0]
 
     science = {name: file for name, file in known.items() if name.startswith("substructures.")}
-    coupling = [f for name, f in science.items() if name.split(".")[1] in (*COUPLING, "part", "tree")]
+    coupling = [f for name, f in science.items() if name.split(".")[1] in ("part", "tree")]
     places = {
         "substructures": science.values(),
         "service": [file for name, file in known.items() if name.startswith("service")],
