@@ -143,6 +143,7 @@ def _positive_definite(m: Mechanism, result: Program, values: Mapping[str, Array
     metric = interpret(result, numbers, ["metric"])["metric"]
     if not np.isfinite(metric).all():
         return None
+    # lambda_min > 0 up to rounding: q'^T g q' > 0 for all q' that are not zero
     eigenvalues = np.linalg.eigvalsh(metric)
     return bool((eigenvalues[..., 0] > 1e-13 * eigenvalues[..., -1]).all())
 

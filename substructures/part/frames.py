@@ -56,6 +56,7 @@ def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:
 
 def _reversed(e: Matrix) -> Matrix:
     """The same axis in the opposite direction: a half turn about the first axis of the frame."""
+    # Rx(pi): e1 stays, e2 and e3 are turned round
     return e[0], negate(e[1]), negate(e[2])
 
 
@@ -69,4 +70,5 @@ def _general_axis(scope: Scope, n: tuple[Expr, Expr, Expr], smallest: int) -> Ma
     across = cross(IDENTITY[smallest], n)
     length = graph.sqrt(length2 - n[smallest] * n[smallest])
     first: Vector = (graph.lift(across[0]) / length, graph.lift(across[1]) / length, graph.lift(across[2]) / length)
+    # right-handed rows: a = e_i x n / |e_i x n|, n x a, n
     return first, cross(unit, first), unit
