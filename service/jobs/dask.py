@@ -23,6 +23,7 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 from distributed import Client
+from distributed.comm.core import CommClosedError
 
 from service.jobs.dask_cluster import CONNECT, Notices, Workers, described
 from service.jobs.dask_task import TOPIC, compute
@@ -212,6 +213,8 @@ class DaskEngine:
         future = client.submit(compute, frame, key=key, pure=False, workers=sorted(fitting), allow_other_workers=False)
         try:
             data = await future
+        except CommClosedError:
+            pass  # the connection broke, which the client may notice later: the next look submits the work again
         except (CancelledError, OSError) as error:
             if client.status == "running":
                 self._end(AttemptReport(work.id, death=f"the cluster gave the task up: {error}"))
