@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from substructures.compile.order import REGIONS, depth_first, stage_of
-from substructures.expr.graph import MAX_EXPONENT
+from substructures.expr.exact import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
 

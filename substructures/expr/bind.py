@@ -7,11 +7,13 @@ from decimal import Decimal
 from fractions import Fraction
 
 from substructures.errors import Fault, InvalidDocument, TooLarge
-from substructures.expr.graph import MAX_BITS, Expr, Graph
-from substructures.expr.parse import ExpressionError, decimal_number, parse
+from substructures.expr.exact import MAX_BITS
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
+from substructures.expr.syntax import ExpressionError, decimal_number
 
 Value = int | str | Decimal | Fraction
 

@@ -8,8 +8,9 @@ from math import gcd, lcm
 from typing import Any
 
 from substructures.errors import TooLarge
+from substructures.expr.exact import MAX_BITS
 from substructures.expr.generators import Angle, Basis, Generators, Product, Sum, is_function
-from substructures.expr.graph import MAX_BITS, Expr
+from substructures.expr.graph import Expr
 from substructures.expr.laurent import Laurent, Quotient, Ring
 
 Terms = tuple[tuple[Basis, Fraction], ...]

@@ -1,9 +1,13 @@
-"""Exact numbers: square roots of rationals."""
+"""Exact numbers: their limits, square roots of rationals."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import isqrt
+
+#: Constants are exact; numerator and denominator may have this many bits.
+MAX_BITS = 4096
+MAX_EXPONENT = 64
 
 
 def split_square(value: Fraction) -> tuple[Fraction, int]:

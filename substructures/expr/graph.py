@@ -21,15 +21,11 @@ from fractions import Fraction
 from typing import Any
 
 from substructures.errors import TooLarge
-from substructures.expr.exact import split_square
+from substructures.expr.exact import MAX_BITS, MAX_EXPONENT, split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 from substructures.expr.patterns import coefficient, constant, has_number, square_of_root
 
 ExactNumber = int | Fraction | Decimal
-
-#: Constants are exact; numerator and denominator may have this many bits.
-MAX_BITS = 4096
-MAX_EXPONENT = 64
 
 
 class Expr:

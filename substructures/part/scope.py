@@ -10,7 +10,8 @@ from typing import Any
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
-from substructures.expr.parse import MAX_DIGITS, ExpressionError, decimal_number, parse
+from substructures.expr.parse import parse
+from substructures.expr.syntax import MAX_DIGITS, ExpressionError, decimal_number
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.linear3 import Planar, Rotation
 

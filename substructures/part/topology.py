@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.errors import Fault, InvalidDocument
-from substructures.expr.parse import RESERVED
+from substructures.expr.syntax import RESERVED
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Body, Definition
 

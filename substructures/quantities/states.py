@@ -20,8 +20,9 @@ from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, listed
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
-from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
+from substructures.expr.syntax import ExpressionError
 from substructures.part.scope import no_names
 from substructures.tree.model import Model
 

@@ -12,7 +12,7 @@ import pytest
 
 import substructures
 from substructures import Definition, TreeSpec, catalogue, couple, derive
-from substructures.expr.graph import MAX_BITS, MAX_EXPONENT
+from substructures.expr.exact import MAX_BITS, MAX_EXPONENT
 from substructures.expr.interpret import interpret
 from substructures.expr.operations import ARITY, KINDS, MAX_ELEMENTS, SYMMETRIES, VERSION
 from substructures.expr.program import Program

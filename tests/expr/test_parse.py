@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from substructures.errors import TooLarge
 from substructures.expr.graph import Graph
-from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.parse import parse
+from substructures.expr.syntax import ExpressionError
 from substructures.expr.trigonometry import cos, sin
 
 

@@ -15,7 +15,8 @@ from service.summaries import part_content
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.parse import parse
+from substructures.expr.syntax import ExpressionError
 from substructures.part.definition import Definition
 from substructures.part.part import derive
 from substructures.part.topology import topology

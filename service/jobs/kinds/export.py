@@ -36,7 +36,8 @@ from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
 from substructures.expr.graph import Graph
-from substructures.expr.parse import ExpressionError, parse
+from substructures.expr.parse import parse
+from substructures.expr.syntax import ExpressionError
 from substructures.printers import FORMATS
 from substructures.printers.render import FORMS
 from substructures.quantities.evaluation import Sources

@@ -1,0 +1,208 @@
+"""The expression grammar of definitions and requests, read into its own syntax. Nothing is ever executed.
+
+::
+
+    sum     = product { ("+" | "-") product }
+    product = sign { ("*" | "/") sign }
+    sign    = { "+" | "-" } power
+    power   = atom [ ("^" | "**") integer ]
+    atom    = number | name | function "(" sum ")" | "(" sum ")"
+    name    = letter { letter | digit | "_" } { "." name } { "'" }
+
+Functions: ``sin cos tan sqrt``; constants: ``pi``. Numbers are exact decimals.
+
+What was read is a list of steps in postfix order, exactly as written: nothing is simplified, so that values straight
+from the text (:mod:`substructures.expr.direct`) share nothing with the graph that formulas are built in.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+
+from substructures.expr.exact import MAX_EXPONENT
+
+MAX_LENGTH = 10_000
+MAX_DEPTH = 64
+MAX_DIGITS = 400
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*)"
+    r"|(?P<op>\*\*|[-+*/^()]))",
+    re.ASCII,
+)
+FUNCTIONS = ("sin", "cos", "tan", "sqrt")
+RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
+#: operations without operands
+LEAVES = frozenset(("number", "name", "pi"))
+
+
+class ExpressionError(ValueError):
+    """An expression that cannot be read; ``column`` counts from 1, ``name`` is the unknown name, if any."""
+
+    def __init__(self, message: str, column: int, name: str | None = None) -> None:
+        self.column, self.name = column, name
+        super().__init__(f"{message} (column {column})")
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of an expression in postfix order; operands are the results of the steps before it.
+
+    ``op`` with its number of operands, and what ``value`` is: ``number`` 0 (the exact value), ``name`` 0 (the name),
+    ``pi`` 0, ``neg`` 1, ``add sub mul div`` 2, ``pow`` 1 (the integer exponent), ``call`` 1 (the function's name).
+    ``column``: where it stands in the text, from 1.
+    """
+
+    op: str
+    value: Fraction | str | int | None
+    column: int
+
+
+def decimal_number(text: str) -> Fraction:
+    """The exact value of a decimal literal of at most 400 digits (exponent included). Raises ValueError."""
+    value = Decimal(text)
+    exponent = value.as_tuple().exponent
+    if not isinstance(exponent, int) or len(value.as_tuple().digits) + abs(exponent) > MAX_DIGITS:
+        raise ValueError(f"number has more than {MAX_DIGITS} digits")
+    return Fraction(value)
+
+
+class _Reader:
+    def __init__(self, text: str) -> None:
+        self.text, self.depth = text, 0
+        self.tokens = self._tokens()
+        self.at = 0
+        self.steps: list[Step] = []
+
+    def _tokens(self) -> list[tuple[str, str, int]]:
+        """(kind, text, column) of every token, with an end mark."""
+        tokens, position = [], 0
+        end = len(self.text.rstrip())
+        while position < end:
+            match = _TOKEN.match(self.text, position)
+            if match is None:
+                column = position + len(self.text[position:]) - len(self.text[position:].lstrip()) + 1
+                raise ExpressionError(f"unexpected character {self.text[column - 1]!r}", column)
+            kind = str(match.lastgroup)
+            tokens.append((kind, match.group(kind), match.start(kind) + 1))
+            position = match.end()
+        tokens.append(("end", "", end + 1))
+        return tokens
+
+    def take(self, *ops: str) -> str | None:
+        """The operator at hand if it is one of these; then it is passed."""
+        kind, text, _ = self.tokens[self.at]
+        if kind == "op" and text in ops:
+            self.at += 1
+            return text
+        return None
+
+    def fail(self, expected: str) -> ExpressionError:
+        """The error that something else was expected here."""
+        kind, text, column = self.tokens[self.at]
+        found = "the end" if kind == "end" else repr(text)
+        return ExpressionError(f"expected {expected}, found {found}", column)
+
+    def step(self, op: str, column: int, value: Fraction | str | int | None = None) -> None:
+        """One step more."""
+        self.steps.append(Step(op, value, column))
+
+    def sum(self) -> None:
+        """product (('+' or '-') product)*"""
+        self.product()
+        while op := self.take("+", "-"):
+            column = self.tokens[self.at][2]
+            self.product()
+            self.step("add" if op == "+" else "sub", column)
+
+    def product(self) -> None:
+        """sign (('*' or '/') sign)*"""
+        self.sign()
+        while op := self.take("*", "/"):
+            column = self.tokens[self.at][2]
+            self.sign()
+            self.step("mul" if op == "*" else "div", column)
+
+    def sign(self) -> None:
+        """('+' or '-')* power"""
+        minus, column = False, self.tokens[self.at][2]
+        while op := self.take("+", "-"):
+            minus ^= op == "-"
+        self.power()
+        if minus:
+            self.step("neg", column)
+
+    def power(self) -> None:
+        """atom ('^' '-'? integer)?"""
+        self.atom()
+        if not self.take("^", "**"):
+            return
+        negative = self.take("-") is not None
+        kind, text, column = self.tokens[self.at]
+        if kind != "number" or not text.isdigit():
+            raise self.fail("an integer exponent")
+        self.at += 1
+        if len(text) > 4 or int(text) > MAX_EXPONENT:
+            raise ExpressionError(f"exponent {text[:20]} is beyond the limit of {MAX_EXPONENT}", column)
+        if self.tokens[self.at][1] in ("^", "**"):
+            raise ExpressionError("tower of exponents; use parentheses", self.tokens[self.at][2])
+        self.step("pow", column, -int(text) if negative else int(text))
+
+    def atom(self) -> None:
+        """number, name, call or parenthesis"""
+        kind, text, column = self.tokens[self.at]
+        if kind == "number":
+            self.at += 1
+            self.step("number", column, self.number(text, column))
+        elif kind == "name":
+            self.at += 1
+            if text in FUNCTIONS:
+                self.call(text, column)
+            else:
+                self.step(*("pi", column) if text == "pi" else ("name", column, text))
+        elif self.take("("):
+            self.parenthesis()
+        else:
+            raise self.fail("a number, a name or '('")
+
+    def number(self, text: str, column: int) -> Fraction:
+        """An exact number."""
+        try:
+            return decimal_number(text)
+        except (ValueError, ArithmeticError):
+            raise ExpressionError(f"number has more than {MAX_DIGITS} digits", column) from None
+
+    def call(self, name: str, column: int) -> None:
+        """function parenthesis"""
+        if not self.take("("):
+            raise self.fail(f"'(' after {name}")
+        self.parenthesis()
+        self.step("call", column, name)
+
+    def parenthesis(self) -> None:
+        """'(' was passed: sum ')'"""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise ExpressionError(f"more than {MAX_DEPTH} nested parentheses", self.tokens[self.at][2])
+        self.sum()
+        if not self.take(")"):
+            raise self.fail("')'")
+        self.depth -= 1
+
+
+def read(text: str) -> tuple[Step, ...]:
+    """The steps of an expression. Raises ExpressionError with the column.
+
+    >>> [step.op for step in read("2*(l + 1)")]
+    ['number', 'name', 'number', 'add', 'mul']
+    """
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(f"expression has more than {MAX_LENGTH} characters", MAX_LENGTH + 1)
+    reader = _Reader(text)
+    reader.sum()
+    if reader.tokens[reader.at][0] != "end":
+        raise reader.fail("an operator or the end")
+    return tuple(reader.steps)
