@@ -161,6 +161,8 @@ class _Reader:
             self.at += 1
             if text in FUNCTIONS:
                 self.call(text, column)
+            elif self.tokens[self.at][1] == "(":
+                raise ExpressionError(f"unknown function '{text[:80]}'", column, text)
             else:
                 self.step(*("pi", column) if text == "pi" else ("name", column, text))
         elif self.take("("):
