@@ -1,7 +1,7 @@
 """How large the rounding errors of a formula can become: sums of absolute values at two fixed points.
 
-Two formulas that are equal as functions need not be equal in floating point: (q + 4)(q + 9) - (q + 2)(q + 11) is 14, and
-0 at q = 1e9. Beside the value v of a node stands A, the same formula with absolute values added and multiplied
+Two formulas that are equal as functions need not be equal in floating point: (q + 4)(q + 9) - (q + 2)(q + 11) is 14,
+and 0 at q = 1e9. Beside the value v of a node stands A, the same formula with absolute values added and multiplied
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., SIAM 2002, chapter 3): rounding moves the result
 by a small multiple of u A. A node is put for another only where its A is not larger, up to ``SLACK``, where all
 symbols are large, each differently, and where all are small: what is large beside another at one point is small beside

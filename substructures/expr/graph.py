@@ -1,12 +1,12 @@
 """Scalar expressions as a hash-consed graph (notation.md, section 8).
 
-Every node carries the fingerprint of its formula (see :mod:`substructures.expr.fingerprint`): building a formula that is
-equal, as a function, to an existing one (or to its negative) returns the existing one, so that zero and one fold away,
-``sin(q)**2 + cos(q)**2`` is ``1``, rotations are orthonormal and the addition theorems apply themselves, all by one
-dictionary lookup. Equality of functions alone does not suffice for that:
+Every node carries the fingerprint of its formula (see :mod:`substructures.expr.fingerprint`): building a formula that
+is equal, as a function, to an existing one (or to its negative) returns the existing one, so that zero and one fold
+away, ``sin(q)**2 + cos(q)**2`` is ``1``, rotations are orthonormal and the addition theorems apply themselves, all by
+one dictionary lookup. Equality of functions alone does not suffice for that:
 
-* an existing node is taken only where it **asks for no more** than what is built: it depends on no other symbols, divides
-  by nothing else, takes no other roots and logarithms (``Expr.asks``), and rounding moves it no more
+* an existing node is taken only where it **asks for no more** than what is built: it depends on no other symbols,
+  divides by nothing else, takes no other roots and logarithms (``Expr.asks``), and rounding moves it no more
   (:mod:`substructures.expr.bounds`);
 * numbers and symbols are always literal nodes, numbers of at most ``MAX_BITS`` bits;
 * signs follow from the structure, never from fingerprints: a root's square has another one than what is under it.
