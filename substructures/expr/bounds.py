@@ -39,13 +39,13 @@ def is_as_accurate(size: Pair, asked: Pair) -> bool:
 
 
 def quotient(a: Pair, b: Pair, divisor: Pair) -> Pair:
-    """A of a / b, for A_a, A_b and the value of b: (A_a / |b|) (A_b / |b|); NaN where b is zero."""
-    x, y = ((p / abs(d)) * (q / abs(d)) if d else math.nan for p, q, d in zip(a, b, divisor, strict=True))
+    """A of a / b, for A_a, A_b and the value of b: (A_a / |b|) (A_b / |b|); infinite where b is zero."""
+    x, y = ((p / abs(d)) * (q / abs(d)) if d else math.inf for p, q, d in zip(a, b, divisor, strict=True))
     return x, y
 
 
 def partial(op: str, size: Pair, argument: Pair) -> Pair:
-    """A of a function of one operand: |f| + |f'| A, NaN where it has no value."""
+    """A of a function of one operand: |f| + |f'| A, infinite where it has no value."""
     f, slope = _FUNCTIONS[op]
     x, y = (_moved(f, slope, x, s) for x, s in zip(argument, size, strict=True))
     return x, y
@@ -56,7 +56,7 @@ def _moved(f: Callable[[float], float], slope: Callable[[float, float], float], 
         value = f(x)
         return abs(value) + (slope(x, value) * size if size else 0.0)
     except (ValueError, ZeroDivisionError, OverflowError):
-        return math.nan
+        return math.inf
 
 
 def value_of(op: str, *args: Pair) -> Pair:

@@ -275,6 +275,7 @@ class Graph:
         size = _size(op, args)
         found = Expr(self, op, args, None, fp, self._asks(op, args), *size)
         if not found.asks & ~best.asks and is_as_accurate(size, (best.high, best.low)):
+            self.others[best.op, best.args] = best
             self.table[fp] = found
         else:
             self.others[op, args] = found
@@ -335,8 +336,12 @@ class Graph:
         found = self._negated(fp, "add", a, b)
         if found is not None:
             return found
-        if a.is_number and b.is_number:
-            return self.number(a.value + b.value)
+        if a.is_number or b.is_number:
+            # x + 0 is x, also where another node serves best for its fingerprint
+            if a.fp == 0 or b.fp == 0:
+                return b if a.fp == 0 else a
+            if a.is_number and b.is_number:
+                return self.number(a.value + b.value)
         collected = self._collected(a, b)
         if collected is not None:
             return collected
@@ -370,8 +375,11 @@ class Graph:
         found = self._negated(fp, "mul", a, b)
         if found is not None:
             return found
-        if a.is_number and b.is_number:
-            return self.number(a.value * b.value)
+        if a.is_number or b.is_number:
+            if a is self.one or b is self.one:
+                return b if a is self.one else a
+            if a.is_number and b.is_number:
+                return self.number(a.value * b.value)
         if a.negative or b.negative:
             positive = (-a if a.negative else a) * (-b if b.negative else b)
             return positive if a.negative == b.negative else -positive
