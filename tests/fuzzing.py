@@ -34,6 +34,25 @@ PRECISION = 700
 TOLERANCE = 256.0
 
 
+#: equal functions, of which the second one has the larger domain or the smaller rounding errors
+PAIRS = (
+    ("(X^2-Y^2)/(X-Y)", "X+Y"),
+    ("sin(2*X)/sin(X)", "2*cos(X)"),
+    ("((X+4)*(X+9)-(X+2)*(X+11))*Y", "14*Y"),
+    ("(X+1e9)*Y-1e9*Y", "X*Y"),
+    ("(X+Y)^2-(X-Y)^2", "4*X*Y"),
+    ("sqrt(X)*sqrt(X)*(Y+1)", "X*Y+X"),
+    ("(X^3+Y^3)/(X+Y)", "X^2-X*Y+Y^2"),
+    ("(X/Y)*(2*Y+Y^2)", "2*X+X*Y"),
+    ("X*(Y+Z)-X*Z", "X*Y"),
+    ("(X+Z)*(Y-Z)+Z^2-Z*(Y-X)", "X*Y"),
+    ("(1-cos(X)^2)*Y/sin(X)", "sin(X)*Y"),
+    ("((X+Y)/(1+Z^2)+Z*(Z*X+Z*Y)/(1+Z^2))*2", "2*X+2*Y"),
+    ("(X*Z+Y*Z)/Z", "X+Y"),
+    ("sqrt(X)*(sqrt(X)*Y)+Z*X", "X*Y+X*Z"),
+)
+
+
 @dataclass
 class Texts:
     """A source of texts that remembers what it gave."""
@@ -50,6 +69,15 @@ class Texts:
         if len(text) < 600:
             self.known.append(text)
         return text
+
+    def group(self, count: int) -> list[str]:
+        """Texts in any order, two pairs of equal ones among them: the worse of the two may come first."""
+        texts = [self.new() for _ in range(count - 4)]
+        for pair in self.rng.sample(PAIRS, 2):
+            x, y, z = (self.made(self.rng.choice((0, 0, 1))) for _ in range(3))
+            texts += [text.replace("X", f"({x})").replace("Y", f"({y})").replace("Z", f"({z})") for text in pair]
+        self.rng.shuffle(texts)
+        return texts
 
     def made(self, depth: int) -> str:
         """A random text."""

@@ -28,7 +28,7 @@ from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr import bounds
-from substructures.expr.bounds import SLACK, Pair, is_as_accurate
+from substructures.expr.bounds import ZERO, Values, is_as_accurate, larger
 from substructures.expr.exact import MAX_BITS, MAX_EXPONENT, nearest_float, split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 from substructures.expr.patterns import coefficient, constant, has_number, is_combination, square_of_root
@@ -45,13 +45,13 @@ class Expr:
 
     ``is_number``: an exact integer or rational; ``negative``: a negative number, or a node of the form -x.
     ``asks``: what a value of it needs, as bits: symbols, divisors and arguments of partial functions;
-    ``high``, ``low``: how large its rounding errors can become, at the points of :mod:`substructures.expr.bounds`.
+    ``size``: how large its rounding errors can become (:mod:`substructures.expr.bounds`).
     """
 
-    __slots__ = ("args", "asks", "fp", "graph", "high", "index", "is_number", "low", "negative", "op", "value")
+    __slots__ = ("args", "asks", "fp", "graph", "index", "is_number", "negative", "op", "size", "value")
 
     def __init__(
-        self, graph: Graph, op: str, args: tuple[Expr, ...], value: Any, fp: int, asks: int, high: float, low: float
+        self, graph: Graph, op: str, args: tuple[Expr, ...], value: Any, fp: int, asks: int, size: int
     ) -> None:
         self.graph = graph
         self.op = op
@@ -59,8 +59,7 @@ class Expr:
         self.value = value
         self.fp = fp
         self.asks = asks
-        self.high = high
-        self.low = low
+        self.size = size
         self.is_number = value is not None and op != "sym"
         self.negative = value < 0 if self.is_number else op == "neg"
         self.index = len(graph.nodes)
@@ -79,9 +78,9 @@ class Expr:
         if found is not None and (
             not found.args
             or (
-                found.high <= SLACK * (self.high + x.high)
-                and found.low <= SLACK * (self.low + x.low)
-                and (asks := self.asks | x.asks) | found.asks == asks
+                (asks := self.asks | x.asks) | found.asks == asks
+                and is_as_accurate(found.size, larger(self.size, x.size))
+                and not (self.is_number and x.is_number)
             )
         ):
             return found
@@ -107,9 +106,9 @@ class Expr:
         if found is not None and (
             not found.args
             or (
-                found.high <= SLACK * (self.high * x.high)
-                and found.low <= SLACK * (self.low * x.low)
-                and (asks := self.asks | x.asks) | found.asks == asks
+                (asks := self.asks | x.asks) | found.asks == asks
+                and is_as_accurate(found.size, bounds.product(self.size, x.size))
+                and not (self.is_number and x.is_number)
             )
         ):
             return found
@@ -154,31 +153,32 @@ class Expr:
         return f"<{self.op} {self.index}>"
 
 
-def _size(op: str, args: tuple[Expr, ...]) -> Pair:
+def _size(op: str, args: tuple[Expr, ...]) -> int:
     """The size of an operation from those of its operands; of angles it counts where they are no plain combinations."""
     a, b = args[0], args[-1]
-    if op in ("add", "sub", "atan2"):
-        return a.high + b.high, a.low + b.low
+    if op in ("add", "sub"):
+        return larger(a.size, b.size)
     if op == "mul":
-        return a.high * b.high, a.low * b.low
+        return bounds.product(a.size, b.size)
     if op == "neg":
-        return a.high, a.low
+        return a.size
     if op == "div":
-        return bounds.quotient((a.high, a.low), (b.high, b.low), a.graph.points(b))
+        return bounds.quotient(a.size, b.size, a.graph.points(b))
     if op in TURNS:
-        return bounds.ONES if is_combination(a) else (1 + a.high, 1 + a.low)
+        return ZERO if is_combination(a) else larger(ZERO, a.size)
+    if op == "atan2":
+        return larger(ZERO, larger(a.size, b.size))
     # constants are exact
-    return bounds.partial(op, (0.0, 0.0) if a.is_number else (a.high, a.low), a.graph.points(a))
+    return bounds.partial(op, None if a.is_number else a.size, a.graph.points(a))
 
 
-def _point(node: Expr, known: Mapping[Expr, Pair]) -> Pair:
+def _point(node: Expr, known: Mapping[Expr, Values]) -> Values:
     """The values of a node whose operands have theirs."""
     if node.args:
-        return bounds.value_of(node.op, *(known[a] for a in node.args))
+        return bounds.values_of(node.op, *(known[a] for a in node.args))
     if node.op == "sym":
-        return bounds.symbol_pair(node.value)
-    x = nearest_float(node.value)
-    return x, x
+        return bounds.symbol_values(node.value)
+    return (nearest_float(node.value),) * bounds.POINTS
 
 
 class Graph:
@@ -192,7 +192,7 @@ class Graph:
         self.bits: dict[tuple[str, int], int] = {}
         self.numbers: dict[int | Fraction, Expr] = {}
         self.symbols: dict[str, Expr] = {}
-        self._points: dict[Expr, Pair] = {}
+        self._points: dict[Expr, Values] = {}
         self.zero = self.number(0)
         self.one = self.number(1)
 
@@ -217,8 +217,8 @@ class Graph:
         if size > MAX_BITS:
             raise TooLarge("an exact number (in bits)", size, MAX_BITS)
         fp = rational(value)
-        x = abs(nearest_float(value))
-        found = Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp, 0, x, x)
+        size = bounds.number_size(nearest_float(value))
+        found = Expr(self, "int" if isinstance(value, int) else "rat", (), value, fp, 0, size)
         self.numbers[value] = self.table[fp] = found
         return found
 
@@ -231,7 +231,7 @@ class Graph:
         found = self.symbols.get(name)
         if found is None:
             fp = keyed("symbol", name)
-            found = Expr(self, "sym", (), name, fp, self._bit("symbol", fp), *bounds.symbol_pair(name))
+            found = Expr(self, "sym", (), name, fp, self._bit("symbol", fp), bounds.symbol_size(name))
             self.symbols[name] = self.table[fp] = found
         return found
 
@@ -255,13 +255,13 @@ class Graph:
         a, b = args[0], args[-1]
         # what _asks and _size say, for the operations that are asked for most
         if op == "mul":
-            found = Expr(self, op, args, None, fp, a.asks | b.asks, a.high * b.high, a.low * b.low)
+            found = Expr(self, op, args, None, fp, a.asks | b.asks, bounds.product(a.size, b.size))
         elif op in ("add", "sub"):
-            found = Expr(self, op, args, None, fp, a.asks | b.asks, a.high + b.high, a.low + b.low)
+            found = Expr(self, op, args, None, fp, a.asks | b.asks, larger(a.size, b.size))
         elif op == "neg":
-            found = Expr(self, op, args, None, fp, a.asks, a.high, a.low)
+            found = Expr(self, op, args, None, fp, a.asks, a.size)
         else:
-            found = Expr(self, op, args, None, fp, self._asks(op, args), *_size(op, args))
+            found = Expr(self, op, args, None, fp, self._asks(op, args), _size(op, args))
         self.table[fp] = found
         return found
 
@@ -273,15 +273,15 @@ class Graph:
         if other is not None:
             return other
         size = _size(op, args)
-        found = Expr(self, op, args, None, fp, self._asks(op, args), *size)
-        if not found.asks & ~best.asks and is_as_accurate(size, (best.high, best.low)):
+        found = Expr(self, op, args, None, fp, self._asks(op, args), size)
+        if not found.asks & ~best.asks and is_as_accurate(size, best.size):
             self.others[best.op, best.args] = best
             self.table[fp] = found
         else:
             self.others[op, args] = found
         return found
 
-    def points(self, node: Expr) -> Pair:
+    def points(self, node: Expr) -> Values:
         """The values of a node at the points of :mod:`substructures.expr.bounds`."""
         known, stack = self._points, [node]
         while stack:
@@ -296,7 +296,7 @@ class Graph:
         """Whether a node with the fingerprint of op(args) may stand for it: it asks for no more."""
         if found.op == op and found.args == args:
             return True
-        return not found.asks & ~self._asks(op, args) and is_as_accurate((found.high, found.low), _size(op, args))
+        return not found.asks & ~self._asks(op, args) and is_as_accurate(found.size, _size(op, args))
 
     def _asks(self, op: str, args: tuple[Expr, ...]) -> int:
         asks = args[0].asks

@@ -179,7 +179,7 @@ def run(seed: int, count: int, checks: tuple[Check, ...]) -> Counter[str]:
     for group in range(count // 8):
         source = Texts(random.Random(f"{seed} {group}"))  # noqa: S311 -- test data
         try:
-            found = built([source.new() for _ in range(8)])
+            found = built(source.group(8))
         except (ExpressionError, TooLarge):
             continue
         if found is None:
