@@ -19,8 +19,8 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from hashlib import blake2b
 
-POINTS = 16
-WIDTH = 32
+POINTS = 10
+WIDTH = 24
 PARTS = 16
 #: magnitudes of symbols lie between 2^-OCTAVES and 2^OCTAVES
 OCTAVES = 13.0
@@ -43,10 +43,16 @@ def larger(a: int, b: int) -> int:
     return b ^ ((a ^ b) & (above - (above >> (WIDTH - 1))))
 
 
+def smaller(a: int, b: int) -> int:
+    """Of each field the smaller one."""
+    return a ^ b ^ larger(a, b)
+
+
 def product(a: int, b: int) -> int:
     """The size of a product."""
     result = a + b - ZERO
-    return UNKNOWN if result & GUARDS or a == UNKNOWN or b == UNKNOWN or result < 0 else result
+    # a field that left its range, up or down, has its guard bit set
+    return UNKNOWN if result & GUARDS else result
 
 
 def is_as_accurate(size: int, asked: int) -> bool:

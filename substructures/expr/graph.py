@@ -37,7 +37,6 @@ ExactNumber = int | Fraction | Decimal
 #: operations that have no value for some operands (division: see _divisors)
 PARTIAL = frozenset(("sqrt", "log", "asin", "acos", "tan", "atan2"))
 TOTAL = frozenset(("add", "sub", "mul", "neg"))
-TURNS = frozenset(("sin", "cos"))
 
 
 class Expr:
@@ -164,7 +163,10 @@ def _size(op: str, args: tuple[Expr, ...]) -> int:
         return a.size
     if op == "div":
         return bounds.quotient(a.size, b.size, a.graph.points(b))
-    if op in TURNS:
+    if op == "sin":
+        # |sin x| <= min(1, |x|)
+        return bounds.smaller(ZERO, a.size) if is_combination(a) else a.size
+    if op == "cos":
         return ZERO if is_combination(a) else larger(ZERO, a.size)
     if op == "atan2":
         return larger(ZERO, larger(a.size, b.size))
