@@ -41,7 +41,7 @@ class Store:
         part = self.caches.parts.get(digest)
         self.metrics.cache("part", part is not None)
         if part is None and (stored := content.get_part(connection, digest)) is not None:
-            definition = Definition.read(read_json(stored.definition))
+            definition = Definition.stored(read_json(stored.definition))
             part = Part.load(definition, stored.program, read_json(stored.certificate))
             self.caches.parts.put(digest, part)
         return part

@@ -33,7 +33,7 @@ def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a tree and its parts by instance."""
-    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    spec = TreeSpec.stored(read_json(tree.spec.encode()))
     with store.database.read() as connection:
         return spec, parts_of(store, connection, spec)
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Number, Positive, Real
+from substructures.documents.fields import PlainNumber, Positive, Real
 
 
 class LinearisationRequest(DocumentPart):
@@ -24,7 +24,7 @@ class LinearisationRequest(DocumentPart):
     t: Any = 0
     parameters: dict[str, Any] = Field({}, description="in place of their defaults; numbers, or one for each state")
     inputs: dict[str, Any] = Field({}, description="about which is linearised, 0 by default; or one for each state")
-    outputs: dict[str, Number] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
+    outputs: dict[str, PlainNumber] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
     of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
 
 

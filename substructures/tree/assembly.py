@@ -15,6 +15,7 @@ from substructures.part.frames import axis_rotation
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
+from substructures.part.units import described
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.mounted_part import WORLD, MountedPart
@@ -111,11 +112,11 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
 def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
     """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
     result: dict[str, dict[str, object]] = {}
-    for name, parameter in sorted(spec.parameters.items()):
-        scope.declare(name, "parameter", parameter.unit)
-        if parameter.value is not None:
-            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
-        result[name] = parameter.model_dump()
+    for name, each in sorted(described(spec.parameters).items()):
+        scope.declare(name, "parameter", str(each["unit"]))
+        if each["value"] is not None:
+            scope.read(each["value"], f"/parameters/{name}/value", no_names)
+        result[name] = each
     for instance in spec.instances:
         for name, some in sorted(parts[instance.name].parameters.items()):
             full = f"{instance.name}.{name}"

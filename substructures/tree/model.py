@@ -42,6 +42,7 @@ from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
 from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.units import check_tree_units
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
@@ -115,6 +116,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     """
     start = perf_counter()
     assembly = assemble(spec, parts)
+    units = check_tree_units(spec, parts)
+    units.require()
     entries = christoffel_entries(joint_parents(assembly.mounted))
     if entries > MAX_ENTRIES:
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
@@ -131,7 +134,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
     joints = "".join(m.part.joints for m in assembly.mounted)
-    certificate = certify_tree(assembly, names, result, seconds)
+    certificate = certify_tree(assembly, names, result, seconds) | {"converted": units.converted}
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
     rows = tuple(cut.rows for cut in assembly.cuts)

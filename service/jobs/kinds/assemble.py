@@ -80,7 +80,7 @@ def _definition(instance: Instance, versions: Mapping[str, StoredVersion], libra
         return None
     found = _definitions.get(version.digest)
     if found is None:
-        found = Definition.read(read_json(library.blob(version.digest) or b"{}"))
+        found = Definition.stored(read_json(library.blob(version.digest) or b"{}"))
         _definitions.put(version.digest, found)
     return found
 

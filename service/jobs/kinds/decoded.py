@@ -24,7 +24,7 @@ def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
     key = definition, program
     part = _parts.get(key)
     if part is None:
-        part = Part.load(Definition.read(read_json(blobs[definition])), blobs[program], {})
+        part = Part.load(Definition.stored(read_json(blobs[definition])), blobs[program], {})
         _parts.put(key, part)
     return part
 
