@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError
 
-from service.schemas.shapes import Digest, Shape
+from service.schemas.shapes import Digest, Shape, Warned
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.quantities import derivative_directions
@@ -134,6 +134,7 @@ class EvaluationResult(BaseModel):
     count: int
     digest: Digest
     failures: list[Any] = []
+    warnings: list[Warned] = []
     frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
 

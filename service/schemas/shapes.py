@@ -11,6 +11,14 @@ Time = Annotated[str, Field(description="UTC, ISO 8601")]
 Links = dict[str, Any]
 
 
+class Warned(BaseModel):
+    """Something that is allowed and hardly meant."""
+
+    pointer: str = Field(description="RFC 6901 pointer into the document, or into the request of an evaluation")
+    code: str
+    message: str
+
+
 class Shape(BaseModel):
     """Base: no unknown fields."""
 

@@ -287,14 +287,19 @@ def uncounted(parameters: Mapping[str, Mapping[str, Any]]) -> list[Notice]:
 
 def without_effect(definition: Definition, used: Collection[str]) -> list[Notice]:
     """Warnings about parameters and inputs on which neither a formula depends, ``used``: on these, nor a limit."""
-    limits = [str(x) for body in definition.bodies for x in _flat(body.joint.limits)]
-    named = {*used, *(str(step.value) for text in limits for step in _steps(text) if step.op == "name")}
+    named = names_in_limits(definition).union(used)
     return [
         {"pointer": f"/{kind}s/{name}", "code": "no-effect", "message": f"no formula depends on the {kind} '{name}'"}
         for kind, names in (("parameter", definition.parameters), ("input", definition.inputs))
         for name in names
         if name not in named
     ]
+
+
+def names_in_limits(definition: Definition) -> set[str]:
+    """The parameters that limits of joints depend on."""
+    limits = [x for body in definition.bodies for x in _flat(body.joint.limits) if isinstance(x, str)]
+    return {str(step.value) for text in limits for step in _steps(text) if step.op == "name"}
 
 
 def _flat(given: Any) -> Iterator[Any]:

@@ -15,7 +15,7 @@ from substructures.part.frames import axis_rotation
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
-from substructures.part.units import described
+from substructures.part.units import described, si_unit
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.mounted_part import WORLD, MountedPart
@@ -31,6 +31,7 @@ class Assembly:
     gravity: Vector
     parameters: dict[str, dict[str, object]]
     cuts: tuple[Cut, ...]
+    inputs: dict[str, dict[str, object]]
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -73,7 +74,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts)
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts))
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -123,6 +124,15 @@ def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict
             scope.declare(full, "parameter", str(some["unit"]))
             result[full] = some
     return result
+
+
+def _inputs(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, object]]:
+    """All inputs of loads that the definitions declare."""
+    return {
+        tree_name(instance.name, name): {"unit": si_unit(each.unit), "description": each.description}
+        for instance in spec.instances
+        for name, each in parts[instance.name].definition.inputs.items()
+    }
 
 
 class _Bindings:

@@ -7,6 +7,7 @@ from decimal import Decimal
 
 from substructures.documents.units import Dimension
 from substructures.expr.dimensions import Dimensioned
+from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.part.units import (
     ACCELERATION,
@@ -15,6 +16,7 @@ from substructures.part.units import (
     Place,
     UnitCheck,
     dimension_of,
+    names_in_limits,
     parameter_places,
     placement_places,
     vector,
@@ -53,17 +55,32 @@ def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[P
             yield f"/instances/{i}/parameters/{name}", value, dimensions.get(f"{instance.name}.{name}")
 
 
-def bare_numbers(spec: TreeSpec, parts: Mapping[str, Part]) -> list[Notice]:
-    """Warnings about numbers without a unit for parameters that their definition gives in another unit than SI."""
-    message = "the number has no unit and is taken in {unit} (SI); the definition gives '{name}' in {given}"
-    return [
-        {
-            "pointer": f"/instances/{i}/parameters/{name}",
-            "code": "unit-assumed",
-            "message": message.format(unit=described["unit"], name=name, given=described["given"]["unit"]),
-        }
-        for i, instance in enumerate(spec.instances)
-        for name, value in instance.parameters.items()
-        for described in (parts[instance.name].parameters.get(name, {}),)
-        if "given" in described and isinstance(value, int | Decimal)
-    ]
+def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, moves: bool) -> list[Notice]:
+    """Gravity that was not given, parameters and bindings without effect, bindings whose unit is only assumed."""
+    notices = []
+    if moves and "gravity" not in spec.model_fields_set:
+        notices.append(_notice("/gravity", "gravity-not-given", "gravity is not given and is taken as zero"))
+    used = {symbol.name for symbol in program.symbols}
+    for name in spec.parameters:
+        if name not in used:
+            message = f"no formula depends on the parameter '{name}'"
+            notices.append(_notice(f"/parameters/{name}", "no-effect", message))
+    for i, instance in enumerate(spec.instances):
+        part = parts[instance.name]
+        needed = {symbol.name for symbol in part.program.symbols} | names_in_limits(part.definition)
+        for name, value in instance.parameters.items():
+            pointer, given = f"/instances/{i}/parameters/{name}", part.parameters[name].get("given")
+            if name not in needed:
+                message = f"no formula of '{instance.name}' depends on the parameter '{name}'"
+                notices.append(_notice(pointer, "no-effect", message))
+            elif given and isinstance(value, int | Decimal):
+                unit = part.parameters[name]["unit"]
+                message = (
+                    f"{value} has no unit and is taken in {unit} (SI); the definition gives '{name}' in {given['unit']}"
+                )
+                notices.append(_notice(pointer, "unit-assumed", message))
+    return notices
+
+
+def _notice(pointer: str, code: str, message: str) -> Notice:
+    return {"pointer": pointer, "code": code, "message": message}

@@ -49,7 +49,7 @@ from substructures.tree.model import Model
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
-ABOUT = ("coordinates", "digest", "frames", "columns")
+ABOUT = ("coordinates", "digest", "frames", "columns", "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 CAPACITY = 2_000_000
@@ -115,7 +115,7 @@ def _described(
     """The grid or sample, complete; empty when the states are listed."""
     coordinates = summary["coordinates"]
     known = {*coordinates, *summary["parameters"]}
-    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates}
+    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates} | summary.get("inputs", {}).keys()
     if "grid" in item:
         grid = read_grid(item["grid"], known)
         _check_once(request, "/grid", [name for name, _ in grid])
@@ -235,7 +235,7 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
         return dict(request)
     zeros = np.zeros(len(next(iter(columns.values()))))
     rest = {name: x for name, x in columns.items() if name.removesuffix("'") not in model.coordinates}
-    inputs = {name: x for name, x in rest.items() if name.startswith("tau.")}
+    inputs = {name: x for name, x in rest.items() if name in model.input_names}
     return {
         **request,
         "q": {name: columns.get(name, zeros) for name in model.coordinates},
