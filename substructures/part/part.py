@@ -142,6 +142,11 @@ class Part:
         counts = self.program.totals_of(list(groups.values()))
         return [self._formula(*place, count) for place, count in zip(groups, counts, strict=True)]
 
+    def labels(self, axis: str) -> tuple[str, ...]:
+        """What the indices along an axis of :data:`LEADING` mean: bodies that joints carry, ports, coordinates."""
+        known = {"joint": self._joint_bodies, "port": self.ports, "coordinate": self.coordinates}
+        return known.get(axis, ())
+
     def _formula(self, name: str, lead: tuple[int, ...], count: int) -> Formula:
         """Leading axes are joints, coordinates or ports; a formula is what remains for one such index."""
         output, axes = self.program.outputs[name], LEADING.get(name, ())

@@ -84,7 +84,7 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
         pointer = f"/instances/{i}/name"
         if instance.name in index:
             scope.fault(pointer, "duplicate-name", f"duplicate instance '{instance.name}'")
-        if instance.name in ("world", "tau", "t") or instance.name in spec.parameters:
+        if instance.name in ("world", "tau") or instance.name in spec.parameters:
             scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
         index[instance.name] = i
     waiting: dict[int, list[int]] = {}
