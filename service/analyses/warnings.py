@@ -19,10 +19,10 @@ NEAR = ("EquilibriaRequest", "RootLocusRequest")
 
 def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -> list[Notice]:
     """What is hardly meant about the parameters and states of a request, or about the motion that followed from it."""
-    given = getattr(request, "parameters", None) or {}
+    given, inputs = (getattr(request, name, None) or {} for name in ("parameters", "inputs"))
     sources = Sources(source.model, plausibility=source.plausibility)
     if motion is not None:
-        return value_warnings(sources, given, given, motion.q, motion.t)
+        return value_warnings(sources, given, inputs, motion.q, motion.t)
     q: Any = None if type(request).__name__ in NEAR else getattr(request, "q", None)
     states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
-    return value_warnings(sources, given, given, states)
+    return value_warnings(sources, given, inputs, states)

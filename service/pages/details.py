@@ -12,6 +12,7 @@ from service.pages.html import Content, Html, facts, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.views.resources import part_warnings
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.part.part import Part
@@ -51,7 +52,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
             words.coordinates(part.coordinates, part.joints),
             words.parameters(read_json(version.parameters.encode())),
             words.operations(read_json(version.operations.encode()), OF_PART),
-            read_json(version.certificate.encode()),
+            {**read_json(version.certificate.encode()), "warnings": part_warnings(version)},
             _metric(metric, f"{path}/formulas/metric?format=text"),
         ),
     )
@@ -120,7 +121,7 @@ def _sections(
         *(tag("h2", "Certificate"), words.certificate(certificate)),
         *(tag("h2", "Coordinates"), coordinates),
         *(tag("h2", "Metric"), metric),
-        *(tag("h2", "Parameters"), parameters),
+        *(tag("h2", "Parameters"), parameters, words.converted(certificate)),
         *(tag("h2", "Operations"), operations),
     ]
 

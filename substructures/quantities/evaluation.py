@@ -137,7 +137,7 @@ def evaluate(
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
-        tuple(value_warnings(sources, values, parameters or {}, states.q)),
+        tuple(value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q)),
     )
 
 

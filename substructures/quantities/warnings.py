@@ -17,28 +17,35 @@ TOLD = frozenset(("gravity-not-given",))
 
 
 def value_warnings(
-    sources: Sources, values: Mapping[str, Any], given: Collection[str], q: Array, t: Array | None = None
+    sources: Sources,
+    parameters: Mapping[str, Any],
+    inputs: Collection[str],
+    q: Array,
+    t: Array | None = None,
 ) -> list[Notice]:
-    """Impossible bodies with these ``values`` of parameters, those ``given`` without effect, limits left by ``q``
-    (N, n), which are a motion if there are times ``t`` (N,); and gravity that nobody gave.
+    """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
+    limits left by ``q`` (N, n), which is a motion if there are times ``t`` (N,); gravity that nobody gave.
+
+    Pointers lead into the request, and for what is so without it into the document of the tree.
     """
     model, judge = sources.model, sources.judge
     tree: list[Notice] = list(model.certificate.get("warnings", ()))
     notices = [each for each in tree if each["code"] in TOLD]
-    parameters = {name: values[name] for name in given}
     if judge is None:  # what the tree was stored with
         notices += [each for each in tree if each["code"] in BY_VALUE]
     elif parameters:
-        notices += judge.inertias(parameters)
+        known = judge.at_defaults
+        notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters)]
     else:
         notices += judge.at_defaults
-    limiting = frozenset[str]() if judge is None else judge.limiting
-    notices += [_without_effect(name) for name in given if name not in model.effective and name not in limiting]
+    effective = model.effective if judge is None else model.effective | judge.limiting
+    notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
+    notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None:
         notices += judge.left(model.coordinates, q, parameters, t)
     return notices
 
 
-def _without_effect(name: str) -> Notice:
-    message = f"no formula depends on the parameter '{name}'"
-    return {"pointer": f"/parameters/{escape(name)}", "code": "no-effect", "message": message}
+def _without_effect(kind: str, name: str) -> Notice:
+    message = f"no formula depends on the {kind} '{name}'"
+    return {"pointer": f"/{kind}s/{escape(name)}", "code": "no-effect", "message": message}

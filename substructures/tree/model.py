@@ -27,9 +27,10 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.errors import Fault, InvalidDocument, TooLarge, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.syntax import RESERVED
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
@@ -139,6 +140,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     Raises InvalidDocument with pointers into the tree document, or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
+    _require_free_names(spec)
     assembly = assemble(spec, parts)
     units = check_tree_units(spec, parts)
     units.require()
@@ -164,6 +166,17 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     certificate = certify_tree(assembly, names, result, seconds) | told
     rows, described = tuple(cut.rows for cut in assembly.cuts), (assembly.parameters, certificate)
     return Model(result, tuple(names), joints, _frame_names(assembly), *described, rows, assembly.inputs, plausibility)
+
+
+def _require_free_names(spec: TreeSpec) -> None:
+    """Raises InvalidDocument for parameters whose name means something else: t is the time, pi a number."""
+    faults = [
+        Fault(f"/parameters/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions")
+        for name in spec.parameters
+        if name in RESERVED
+    ]
+    if faults:
+        raise InvalidDocument(faults)
 
 
 def model_outputs(
