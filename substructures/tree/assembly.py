@@ -126,6 +126,14 @@ def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict
     return result
 
 
+def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, dict[str, object]]]:
+    """``parameters`` that are not bound and ``inputs`` of a tree, whether or not a formula depends on them."""
+    bound = {f"{instance.name}.{name}" for instance in spec.instances for name in instance.parameters}
+    parameters = _parameters(spec, parts, Scope(Graph()))
+    free = {name: each for name, each in parameters.items() if name not in bound}
+    return {"parameters": free, "inputs": _inputs(spec, parts)}
+
+
 def _inputs(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, object]]:
     """All inputs of loads that the definitions declare."""
     return {

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import select, update
 
 from service.cli.main import main
+from service.database.tables import trees
 from service.operations import catalogue
 from service.store import Store
 from service.summaries import part_content
@@ -233,6 +235,18 @@ def test_what_was_stored_when_units_were_texts_keeps_its_meaning(client: TestCli
     again = _posted(client, "substructures", today)
     assert again["version"] == 2
     assert again["parameters"]["l"]["value"] == 0.0012
+
+
+def test_trees_of_old_accept_what_is_declared(filled: TestClient, store: Store) -> None:
+    """As an older version left it: only what occurs in formulas is noted."""
+    _tree(filled, _pendulum(parameters=PENDULUM["parameters"] | {"idle": {}}, inputs={"wind": {}}))
+    with store.database.write() as connection:
+        summary = json.loads(connection.execute(select(trees.c.summary).where(trees.c.name == "made")).scalar_one())
+        del summary["inputs"], summary["parameters"]["a.idle"]
+        connection.execute(update(trees).where(trees.c.name == "made").values(summary=json.dumps(summary)))
+    store.caches.models._entries.clear()
+    found = _evaluated(filled, "made", parameters={"a.idle": 1}, inputs={"a.wind": 1})
+    assert _codes(found) == [("/parameters/a.idle", "no-effect"), ("/inputs/a.wind", "no-effect")]
 
 
 @pytest.fixture

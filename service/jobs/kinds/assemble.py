@@ -29,9 +29,12 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
     return [{"tree": item, "nodes": limits.job_nodes}]
 
 
-def pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition."""
-    spec = TreeSpec.read(item["tree"])
+def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -> tuple[ItemDocument, tuple[str, ...]]:
+    """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition.
+
+    ``is_stored``: the tree comes out of the store.
+    """
+    spec = TreeSpec.stored(item["tree"]) if is_stored else TreeSpec.read(item["tree"])
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
     faults = [
         Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance))
@@ -116,13 +119,14 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "dof": model.dof,
         "operations": model.operations["total"],
         "parts": {name: part.definition.digest for name, part in parts.items()},
+        "warnings": model.certificate["warnings"],
     }
     return Outcome(summary, files)
 
 
 def tree_parts(item: ItemDocument, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a pinned tree and its parts by instance. Raises InvalidDocument, TooLarge."""
-    spec = TreeSpec.read(item["tree"])
+    spec = TreeSpec.stored(item["tree"])
     return spec, {i.name: _part(k, i, item, blobs) for k, i in enumerate(spec.instances)}
 
 

@@ -43,7 +43,8 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
     kept = ("coordinates", "joints", "frames", "closures", "inputs")
-    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters}
+    told = {"warnings": summary["certificate"].get("warnings", [])}
+    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters, "certificate": told}
 
 
 def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
@@ -51,6 +52,6 @@ def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
     key = item["tree"], item["program"]
     model = _models.get(key)
     if model is None:
-        model = Model.load({**item["model"], "certificate": {}}, blobs[item["program"]])
+        model = Model.load({"certificate": {}, **item["model"]}, blobs[item["program"]])
         _models.put(key, model)
     return model
