@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, mode
 from pydantic_core import PydanticCustomError
 
 from service.schemas.parts import RequestPart
+from service.schemas.shapes import Values
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis import simulate as science
 from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
@@ -100,7 +101,7 @@ class StateRequest(DocumentPart):
 
     q: Any = Field(None, description="coordinates: a list, or an object by name; rad, m")
     qd: Any = Field(None, description="velocities, 0 by default; rad/s, m/s")
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    parameters: Values = Field({}, description="in place of their defaults")
     inputs: dict[str, Signal] = Field({}, description="number, expression in q, q' and t, or table; N m or N")
 
 

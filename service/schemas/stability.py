@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from service.schemas.shapes import Values
 from substructures.documents import DocumentPart
 from substructures.documents.fields import PlainNumber, Positive, Real
 
@@ -36,8 +37,8 @@ class EquilibriaRequest(DocumentPart):
     reach: Positive = Field(1.0, description="m")
     seed: Annotated[int, Field(ge=0)] = 0
     t: Real = 0.0
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+    parameters: Values = Field({}, description="in place of their defaults")
+    inputs: Values = Field({}, description="constant; 0 by default")
 
 
 class RootLocusRequest(DocumentPart):
@@ -46,5 +47,5 @@ class RootLocusRequest(DocumentPart):
     parameter: str
     values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000)]
     q: Any
-    parameters: dict[str, Real] = Field({}, description="of all others, in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+    parameters: Values = Field({}, description="of all others, in place of their defaults")
+    inputs: Values = Field({}, description="constant; 0 by default")

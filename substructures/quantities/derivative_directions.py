@@ -40,7 +40,7 @@ def direction_values(model: Model, along: Direction | None, states: States) -> d
         columns = _columns(model, getattr(along, field), field, count)
         values |= {direction(name + primes): x for name, x in columns.items()}
     # dtau of actuators, du of loads
-    given = given_values(along.inputs, "inputs", "/along/inputs", count, model.input_names)
+    given = given_values(along.inputs, "inputs", "/along/inputs", count, model.input_names, model.units)
     return values | {direction(name): x for name, x in given.items()}
 
 

@@ -142,7 +142,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     start = perf_counter()
     _require_free_names(spec)
     assembly = assemble(spec, parts)
-    units = check_tree_units(spec, parts)
+    units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()})
     units.require()
     entries = christoffel_entries(joint_parents(assembly.mounted))
     if entries > MAX_ENTRIES:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
+from typing import Any
 
 from substructures.documents.units import Dimension
 from substructures.expr.dimensions import Dimensioned
@@ -23,12 +24,18 @@ from substructures.part.units import (
 )
 from substructures.tree.document import TreeSpec
 
+#: parameters of a definition by name, with their SI units
+DescribedParameters = Mapping[str, Mapping[str, Any]]
 
-def check_tree_units(spec: TreeSpec, parts: Mapping[str, Part]) -> UnitCheck:
-    """The units of a tree against their places; names are ``g`` of the tree and ``arm.l1`` of instances."""
+
+def check_tree_units(spec: TreeSpec, parameters: Mapping[str, DescribedParameters]) -> UnitCheck:
+    """The units of a tree against their places; ``parameters``: those of the part of every instance that is known.
+
+    Names are ``g`` of the tree and ``arm.l1`` of instances.
+    """
     units = {name: each.unit for name, each in spec.parameters.items()}
-    for name, part in parts.items():
-        units |= {f"{name}.{parameter}": str(each["unit"]) for parameter, each in part.parameters.items()}
+    for instance, described in parameters.items():
+        units |= {f"{instance}.{name}": str(each["unit"]) for name, each in described.items()}
     known = {name: dimension_of(unit) for name, unit in units.items()}
     check = UnitCheck(lambda name: known.get(name, "unknown"))
     check.check(parameter_places(spec.parameters), True)

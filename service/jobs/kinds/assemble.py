@@ -17,8 +17,10 @@ from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
+from substructures.part.units import described
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
+from substructures.tree.units import check_tree_units
 
 WORLD = "world"
 DEFINITIONS = 1000  # kept decoded
@@ -43,6 +45,10 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
     ]
     found = {name: version for name, version in versions.items() if version is not None}
     faults += _faults(spec, found, library)
+    if not is_stored:
+        definitions = {each.name: _definition(each, found, library) for each in spec.instances}
+        known = {name: described(each.parameters) for name, each in definitions.items() if each is not None}
+        faults += check_tree_units(spec, known).faults
     if faults:
         raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
