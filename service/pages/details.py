@@ -68,7 +68,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
         [
             ("Reference", tag("code", reference)),
             ("Size", size(tree.dof, model.joints)),
-            ("Gravity", f"{', '.join(map(str, summary['gravity']))} (world axes, m/s^2)"),
+            ("Gravity", f"{', '.join(map(_number, summary['gravity']))} (world axes, m/s^2)"),
             ("Changed from", link(base, f"/trees/{base}") if base else None),
             ("Stored", tree.created[:10]),
             ("Digest", tag("code", tree.digest, class_="small")),
@@ -90,6 +90,11 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             _metric(metric, f"{path}/metric?format=text"),
         ),
     )
+
+
+def _number(given: Any) -> str:
+    """A number of a document, with its unit if it has one."""
+    return f"{given['value']} {given['unit']}" if isinstance(given, Mapping) else str(given)
 
 
 def _instance(instance: Mapping[str, Any]) -> tuple[Content, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from time import perf_counter
 from typing import Any
@@ -18,7 +18,7 @@ from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import read_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.topology import BASE, Topology, christoffel_entries, topology
-from substructures.part.units import check_units, described, without_effect
+from substructures.part.units import check_units, described, uncounted, without_effect
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -215,7 +215,9 @@ def _certificate(m: Mechanism, result: Program, seconds: float) -> dict[str, Any
     """What was checked, with all warnings about the definition and what of it was converted to SI."""
     certificate, units = certify_part(m, result, seconds), check_units(m.definition, m.topology)
     unused = without_effect(m.definition, {symbol.name for symbol in result.symbols})
-    warnings = [*certificate["warnings"], *units.warnings, *unused]
+    # contradictions in what was stored when units were texts; new definitions were refused
+    old = [asdict(fault) for fault in units.faults]
+    warnings = [*certificate["warnings"], *units.warnings, *old, *unused]
     return certificate | {"warnings": warnings, "converted": units.converted}
 
 
@@ -226,7 +228,8 @@ def recheck(part: Part) -> dict[str, Any]:
     """
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
-    return _certificate(m, part.program, 0.0)
+    certificate = _certificate(m, part.program, 0.0)
+    return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
 
 
 def told_operations(operations: Mapping[str, int]) -> str:

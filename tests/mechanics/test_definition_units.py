@@ -10,7 +10,7 @@ import pytest
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate
 from substructures.documents import read_json
-from substructures.part.part import Part
+from substructures.part.part import Part, recheck
 from substructures.part.units import counted, uncounted
 from tests.bad_documents import GOOD, TREE, Path, changed
 
@@ -248,3 +248,13 @@ def test_a_tree_in_any_units_has_the_formulas_of_that_in_si() -> None:
 def test_the_documents_of_the_other_tests_have_no_contradictions() -> None:
     part = derive(Definition.read(GOOD))
     couple(TreeSpec.read(TREE), {"one": part, "two": part})
+
+
+def test_verifying_a_part_of_old_tells_what_its_units_say() -> None:
+    old = changed(METRES, (("parameters", "l"), _of(Decimal("1.2"), "mm")), (("bodies", 0, "mass"), "l"))
+    massive = derive(Definition.read(changed(METRES, (("parameters", "l", "unit"), ""), (("bodies", 0, "mass"), "l"))))
+    certificate = recheck(Part.load(Definition.stored(old), massive.program.to_bytes(), {}))
+    assert [(w["pointer"], w["code"]) for w in certificate["warnings"]] == [
+        ("/bodies/0/mass", "unit-mismatch"),
+        ("/parameters/l/unit", "unit-not-counted"),
+    ]
