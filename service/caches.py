@@ -11,7 +11,9 @@ from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
 
+TREES = 1000  # with what judges their values
 PICTURES = 16 * 2**20  # characters
 BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
 
@@ -19,8 +21,8 @@ BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
 @dataclass(frozen=True)
 class Caches:
     """Decoded values: ``parts`` by digest of the definition, ``models`` by that of the tree, ``derived`` programs by
-    model and quantity, ``regressors`` and ``numeric_trees`` by digest of the tree, ``evaluations`` that are at hand by
-    reference and quantities, ``pictures`` in the standard pose by digest, ``blobs`` by digest.
+    model and quantity, ``regressors``, ``numeric_trees`` and ``plausibilities`` by digest of the tree, ``evaluations``
+    that are at hand by reference and quantities, ``pictures`` in the standard pose by digest, ``blobs`` by digest.
     """
 
     parts: Cache[Part]
@@ -28,6 +30,7 @@ class Caches:
     derived: Cache[Program]
     regressors: Cache[RegressorModel]
     numeric_trees: Cache[NumericTree]
+    plausibilities: Cache[Plausibility]
     evaluations: Cache[Any]  # of service.operations.at_hand
     pictures: Cache[str]
     blobs: Cache[bytes]
@@ -41,6 +44,7 @@ class Caches:
             derived=Cache(nodes // 4, len),
             regressors=Cache(nodes // 8, lambda found: len(found.program)),
             numeric_trees=Cache(nodes // 8, NumericTree.weight),
+            plausibilities=Cache(TREES, lambda _: 1),
             evaluations=Cache(nodes // 8, lambda found: found.weight()),
             pictures=Cache(PICTURES, len),
             blobs=Cache(BLOBS, len),

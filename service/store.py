@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from service.caches import Caches
 from service.database.connections import Connection, Database
@@ -17,6 +18,7 @@ from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.quantities.formulas import derived
+from substructures.tree.assembly import declared
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 
@@ -41,7 +43,7 @@ class Store:
         part = self.caches.parts.get(digest)
         self.metrics.cache("part", part is not None)
         if part is None and (stored := content.get_part(connection, digest)) is not None:
-            definition = Definition.read(read_json(stored.definition))
+            definition = Definition.stored(read_json(stored.definition))
             part = Part.load(definition, stored.program, read_json(stored.certificate))
             self.caches.parts.put(digest, part)
         return part
@@ -69,9 +71,19 @@ class Store:
             program = content.get_program(connection, tree.program)
             if program is None:
                 raise LookupError(f"the program of tree {tree.name}@{tree.revision} is missing")
-            model = Model.load(read_json(tree.summary.encode()), program)
+            summary = read_json(tree.summary.encode())
+            if "inputs" not in summary:
+                summary |= self._declared(connection, tree)
+            model = Model.load(summary, program)
             self.caches.models.put(tree.digest, model)
         return model
+
+    def _declared(self, connection: Connection, tree: Tree) -> dict[str, Any]:
+        """All parameters and inputs of a tree that was stored when only those in its formulas were noted."""
+        spec = TreeSpec.stored(read_json(tree.spec.encode()))
+        parts = {each.name: self.part(connection, each.digest) for each in spec.instances}
+        known = {name: part for name, part in parts.items() if part is not None}
+        return declared(spec, known) if len(known) == len(parts) else {}
 
     def coupled(self, spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
         """The model of a tree that is not stored, coupled unless it is remembered. Raises as ``couple`` does."""

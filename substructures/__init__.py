@@ -28,8 +28,8 @@ Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and act
 =============  ================================================================================================
 
 Below all of them: printers (programs as text), compile (programs as machine code), mechanics (one recursion over any
-scalar), expr (formulas as graphs and programs), documents (JSON and YAML with exact numbers). Beside them: catalogue
-(mechanisms with sources), formats (npz, Arrow), client (of the HTTP service).
+scalar), expr (formulas as graphs and programs), documents (JSON and YAML with exact numbers and their units). Beside
+them: catalogue (mechanisms with sources), formats (npz, Arrow), client (of the HTTP service).
 
 >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
 >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))

@@ -68,7 +68,7 @@ def random_definition(rng: np.random.Generator, kind: Kind, name: str = "random"
     # the order of the bodies in the document is free
     shown = [bodies[i] for i in rng.permutation(len(bodies))] if rng.random() < 0.3 else bodies
     definition = {"name": name, "bodies": shown, "ports": random_ports(rng, bodies)}
-    definition["inputs"] = {"u1": {"unit": "N"}, "u2": {}}
+    definition["inputs"] = {"u1": {}, "u2": {}}
     definition["loads"] = random_loads(rng, bodies, kind.loads) + random_springs(rng, bodies, kind.springs)
     return definition
 

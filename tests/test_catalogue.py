@@ -93,6 +93,8 @@ def part(request: pytest.FixtureRequest) -> Part:
 
 def test_entry_derives(part: Part) -> None:
     assert part.dof == len(part.coordinates) == len(part.joints)
+    # neither doubtful units nor parameters without effect
+    assert {warning["code"] for warning in part.certificate["warnings"]} <= {"impossible-inertia"}
     assert part.ports == tuple(port["name"] for port in load(part.name)["ports"])
     assert Part.load(part.definition, part.program.to_bytes(), part.certificate).program == part.program
 

@@ -10,8 +10,9 @@ from pydantic import BaseModel
 
 from service.analyses.formulas import base_of, curvature_of
 from service.analyses.requests import arguments, read_request
-from service.analyses.results import DRAWN, PLAIN, TRAJECTORY
+from service.analyses.results import DRAWN, PLAIN, TRAJECTORY, Answered, trajectory_of
 from service.analyses.source import Source
+from service.analyses.warnings import warnings_of
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
 from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest
@@ -29,6 +30,7 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.quantities.states import read_states
+from substructures.tree.model import Model
 
 
 @dataclass(frozen=True)
@@ -43,13 +45,17 @@ class Analysis:
     media: tuple[str, ...] = PLAIN
     needs_parts: bool = False
 
-    def read(self, body: Any, is_closed: bool) -> BaseModel:
-        """The body of a request about a tree, ``is_closed``: with closures. Raises InvalidDocument with pointers."""
-        return read_request(self.schema, body, is_closed)
+    def read(self, body: Any, model: Model) -> BaseModel:
+        """The body of a request about a tree. Raises InvalidInput with pointers."""
+        return read_request(self.schema, body, bool(model.closures), model.units)
 
-    def compute(self, source: Source, body: Any, report: ProgressReport) -> Any:
-        """The result for the body of a request. Raises InvalidInput with pointers into it, MissingValue, TooLarge."""
-        return self.follow(source, self.read(body, bool(source.model.closures)), report)
+    def compute(self, source: Source, body: Any, report: ProgressReport) -> Answered:
+        """The result for the body of a request, with warnings about it. Raises InvalidInput with pointers into it,
+        MissingValue, TooLarge.
+        """
+        request = self.read(body, source.model)
+        result = self.follow(source, request, report)
+        return Answered(result, warnings_of(source, request, trajectory_of(result)))
 
 
 def _check_size(source: Source, states: int, numbers: int) -> None:
@@ -91,7 +97,7 @@ def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
 
 def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
     n = source.model.dof
-    inputs = sum(s.kind == "input" for s in source.model.program.symbols)
+    inputs = len(source.model.input_names)
     given = {"q": read.q, "qd": read.qd, "qdd": read.qdd}
     states = read_states(source.model, given, source.limits.states).count
     _check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))

@@ -153,6 +153,7 @@ def _with_entries(text: str, program: Program, style: Style, coordinates: Sequen
     members = {
         "coordinates": list(coordinates),
         "symmetry_rule": symmetry_rule(CHRISTOFFEL, "Gamma"),
+        "indices_from": 0,
         "entries": [dict(zip("abc", e["index"], strict=True)) | {"formula": e["formula"]} for e in listed],
     }
     return _joined(members, text)

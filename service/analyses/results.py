@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,23 @@ PROPERTIES: dict[type, dict[str, str]] = {
 }
 
 
+@dataclass(frozen=True)
+class Answered:
+    """A result with warnings about what it was asked for (pointer, code, message)."""
+
+    result: Any
+    warnings: Sequence[Mapping[str, str]] = ()
+
+
 def written(result: Any, media: str, model: Model) -> bytes:
-    """A result in a media type that it can have."""
+    """A result, with its warnings if it is Answered, in a media type that it can have."""
+    warnings: Sequence[Mapping[str, str]] = ()
+    if isinstance(result, Answered):
+        result, warnings = result.result, result.warnings
     if media == JSON:
-        return orjson.dumps(plain(result), option=orjson.OPT_SERIALIZE_NUMPY, default=_listed)
+        return orjson.dumps(_told(result, warnings), option=orjson.OPT_SERIALIZE_NUMPY, default=_listed)
     if media == arrays.MEDIA_TYPE:
-        return _npz(result)
+        return _npz(_told(result, warnings))
     if isinstance(result, RootLocus):
         return draw_root_locus(result).encode()
     motion = trajectory_of(result)
@@ -46,11 +57,17 @@ def written(result: Any, media: str, model: Model) -> bytes:
         raise ValueError(f"no motion to be written as {media}")
     if media == CSV:
         return to_csv(motion).encode()
-    return _arrow(motion) if media == arrow.MEDIA_TYPE else draw_trajectory(motion, model.joints).encode()
+    return _arrow(motion, warnings) if media == arrow.MEDIA_TYPE else draw_trajectory(motion, model.joints).encode()
+
+
+def _told(result: Any, warnings: Sequence[Mapping[str, str]]) -> Any:
+    members = plain(result)
+    return {**members, "warnings": list(warnings)} if isinstance(members, dict) else members
 
 
 def trajectory_of(result: Any) -> Trajectory | None:
     """The motion in a result, if there is one."""
+    result = result.result if isinstance(result, Answered) else result
     motion = result if isinstance(result, Trajectory) else getattr(result, "trajectory", None)
     return motion if isinstance(motion, Trajectory) else None
 
@@ -105,9 +122,9 @@ def _listed(value: Any) -> Any:
     raise TypeError(f"no JSON for {type(value).__name__}")
 
 
-def _npz(result: Any) -> bytes:
+def _npz(members: Mapping[str, Any]) -> bytes:
     """Arrays by the names of the JSON answer, nested ones joined by dots, and ``summary``: the rest, as JSON."""
-    data = arrays.flat(plain(result))
+    data = arrays.flat(members)
     found = {name: np.asarray(x) for name, x in data.items() if _is_array(x)}
     rest = {name: x for name, x in data.items() if name not in found}
     found["summary"] = np.array(orjson.dumps(rest, option=orjson.OPT_SERIALIZE_NUMPY, default=_listed).decode())
@@ -118,8 +135,9 @@ def _is_array(x: Any) -> bool:
     return isinstance(x, np.ndarray) or (isinstance(x, list) and bool(x) and all(isinstance(item, str) for item in x))
 
 
-def _arrow(motion: Trajectory) -> bytes:
+def _arrow(motion: Trajectory, warnings: Sequence[Mapping[str, str]]) -> bytes:
     """A row for every time: t, q, qd, and ``series.<name>``; the rest in the metadata of the schema, as JSON."""
     columns = {"t": motion.t, "q": motion.q, "qd": motion.qd}
     columns |= {f"series.{name}": np.asarray(x, dtype=np.float64) for name, x in motion.series.items()}
-    return b"".join(map(bytes, arrow.write_tables([arrow.ArrowTable(columns)], plain(motion.summary()))))
+    metadata = {**plain(motion.summary()), "warnings": list(warnings)}
+    return b"".join(map(bytes, arrow.write_tables([arrow.ArrowTable(columns)], metadata)))

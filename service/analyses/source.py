@@ -10,11 +10,14 @@ from service.settings import Limits
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
 
 
 @dataclass(frozen=True)
 class Source:
-    """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept."""
+    """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
+    ``plausibility``: what judges values, made when needed.
+    """
 
     model: Model
     digest: str
@@ -22,3 +25,4 @@ class Source:
     limits: Limits
     folder: Path | None = None
     engine: Evaluator = interpreted
+    plausibility: Callable[[], Plausibility] | None = None

@@ -14,7 +14,7 @@ from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.cli.options import Add, add_server, read_document
+from service.cli.options import Add, add_server, read_document, tell_warnings
 from service.operations import models
 from service.operations.analyses import printed
 from service.operations.models import Style
@@ -27,6 +27,7 @@ from substructures.part.part import Part, derive
 from substructures.printers import FORMATS
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.regressor import regressor
+from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
 
@@ -142,6 +143,7 @@ def _summary(told: Mapping[str, Any]) -> None:
         verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
         drift = f"{check['relative']:.2g} (limit {check['limit']:.2g})"
         print(f"{check['name']}: {check['rule']}, {verdict}, {drift}: {check['reason']}")
+    tell_warnings(told)
     for event in told.get("events", []):
         print(f"{event['name']} at t = {event['t']:.9g} s")
     if "t" in told and "q" in told:
@@ -161,6 +163,8 @@ def local_source(path: Path) -> Source:
     spec, limits = TreeSpec.read(read_document(path)), Limits()
     parts = {i.name: _part(k, i, path.parent) for k, i in enumerate(spec.instances)}
     model = couple(spec, parts, limits.program_nodes)
+    # the others come with the result
+    tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
     return Source(model, spec.digest, lambda: regressor(spec, parts, limits.program_nodes), limits)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,6 +32,12 @@ def add_server(command: argparse.ArgumentParser) -> None:
     """The options of every command that talks to a server."""
     command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
     command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
+
+
+def tell_warnings(told: Mapping[str, Any]) -> None:
+    """Print the warnings of an answer with their places, to the stream of errors."""
+    for warning in told.get("warnings", ()):
+        print(f"warning: {warning['pointer'] or '/'}: {warning['message']}", file=sys.stderr)
 
 
 def add_database(command: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from service.cli.options import Add, add_server, read_document
+from service.cli.options import Add, add_server, read_document, tell_warnings
 from service.cli.progress import follow
 from substructures.client import Client
 from substructures.part.definition import Definition
@@ -40,8 +40,10 @@ def _derive(options: argparse.Namespace) -> int:
     for title, figures in (("operations", part.operations), ("certificate", part.certificate)):
         print(f"{title}:")
         for name, figure in figures.items():
-            print(f"  {name}: {figure}")
+            if name != "warnings":
+                print(f"  {name}: {figure}")
     print(f"digest: {part.definition.digest}")
+    tell_warnings(part.certificate)
     return 0
 
 
@@ -54,6 +56,7 @@ def _submit(options: argparse.Namespace) -> int:
             return follow(client, version["id"]) if options.wait else 0
     stored = "stored" if answer.status_code == 201 else "was stored already"
     print(f"{version['name']}@{version['version']} {stored}, {version['digest']}")
+    tell_warnings(version)
     return 0
 
 

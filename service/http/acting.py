@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from dataclasses import replace
 from functools import wraps
 from typing import Annotated, Any
 
@@ -42,6 +43,7 @@ class Act:
         limits = store.settings.limits
         wait = self._prefers("wait=([0-9]{1,6})")
         self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
+        self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
         self._claimed = IdempotencyClaim(request, body, store.database, limits, key)
 
     @property
@@ -107,7 +109,7 @@ class Act:
             for _ in range(ATTEMPTS):
                 found = prepare()
                 try:
-                    return response_of(self._stored(found, keeps))
+                    return response_of(self._told(self._stored(found, keeps)))
                 except Exception as error:
                     if not isinstance(error, StaleError) and not is_conflict(error):
                         raise
@@ -132,6 +134,12 @@ class Act:
         if answer.status == 202:  # a job does not wait until somebody looks for one
             self.store.runtime.wake.set()
         return answer
+
+    def _told(self, answer: Answer | Stream) -> Answer | Stream:
+        """The answer with the preferences that it follows (RFC 7240, section 3)."""
+        is_late = answer.status == 202 and self._prefers("respond-async")
+        applied = ", ".join(filter(None, ("respond-async" if is_late else "", self._waits)))
+        return replace(answer, headers={**answer.headers, "Preference-Applied": applied}) if applied else answer
 
     def _prefers(self, preference: str) -> re.Match[str] | None:
         """The preference (RFC 7240) if it is asked for."""

@@ -21,8 +21,9 @@ from substructures.tree.model import Model
 
 def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
-    columns = sources_of(store, tree, model).columns
-    return Source(model, tree.digest, columns, store.settings.limits, store.kernels.folder, store.kernels)
+    sources = sources_of(store, tree, model)
+    tools = store.settings.limits, store.kernels.folder, store.kernels
+    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:

@@ -62,7 +62,8 @@ def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: Tre
     programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
     columns = sources.columns() if REGRESSOR in programs else None
     regressor = None if columns is None else lambda: columns
-    at_hand = Sources(sources.model, lambda _, source: programs[source][0], regressor)  # nothing is derived anew
+    derived = lambda _, source: programs[source][0]  # noqa: E731 -- nothing is derived anew
+    at_hand = Sources(sources.model, derived, regressor, sources.plausibility)
     found = AtHand(replace(evaluation, sources=at_hand), programs)
     if found.is_ready(store):
         store.caches.evaluations.put(_key(ref, names), found)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import orjson
@@ -13,31 +15,55 @@ from service.negotiation import MEDIA_TYPES
 from service.queries.content import FormulaRow
 from service.refusals import unprocessable
 from substructures.expr.program import Output, Program
+from substructures.part.part import INTERNAL, LEADING, Part
 
 __all__ = [
     "Style",
+    "Wanted",
     "bound",
     "check_quantity",
     "described",
     "model_quantity",
-    "part_entries",
-    "part_quantity",
+    "part_formulas",
     "printed",
     "quantities",
 ]
 
 
-def part_quantity(program: Program, rows: Sequence[FormulaRow]) -> Program:
-    """The program of all outputs that the rows belong to."""
-    return program.select(list(dict.fromkeys(row.output for row in rows)))
-
-
-def part_entries(program: Program, rows: Sequence[FormulaRow], component: str | None) -> Program:
-    """The program of stored formulas, or of one component of each.
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which formulas of a part: of a quantity all, or those of a body, a coordinate, a component.
 
     ``component`` is an index such as ``1`` or ``0,2``, counted from 0: into the vector or tensor that a formula is, or
-    into the array whose elements are stored one by one (metric, christoffel). Raises Refused 422.
+    into the array whose elements are stored one by one (metric, christoffel).
     """
+
+    quantity: str
+    body: str | None = None
+    coordinate: str | None = None
+    component: str | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all formulas of the quantity are wanted."""
+        return self.body is self.coordinate is self.component is None
+
+
+def part_formulas(part: Part, rows: Sequence[FormulaRow], wanted: Wanted, first: int) -> Program | None:
+    """The program of the stored formulas ``rows`` that were wanted; of those that vanish, which are not stored, zeros.
+
+    ``first``: what indices in the names of single formulas count from. None for what the part does not have. Raises
+    Refused 422 for a component that there is not.
+    """
+    names = [name for name in part.program.outputs if name not in INTERNAL]
+    names = [name for name in names if {name, name.partition(".")[0]} & set(quantities(wanted.quantity))]
+    if wanted.is_whole:
+        return part.program.select(names) if names else None
+    return _entries(part.program, rows, wanted.component, first) if rows else _zeros(part, names, wanted, first)
+
+
+def _entries(program: Program, rows: Sequence[FormulaRow], component: str | None, first: int) -> Program:
+    """The program of stored formulas, or of one component of each. Raises Refused 422."""
     outputs: dict[str, Output] = {}
     operations = list(program.operations)
 
@@ -51,9 +77,37 @@ def part_entries(program: Program, rows: Sequence[FormulaRow], component: str | 
         whole = program.outputs[row.output]
         if component is not None:
             lead = lead + _component(component, shape) if shape else _component(component, whole.shape)
-        name = row.output + (f"[{','.join(map(str, lead))}]" if lead else "")
-        outputs[name] = _slice(whole, lead, negated)
+        outputs[_called(row.output, lead, first)] = _slice(whole, lead, negated)
     return Program(program.symbols, tuple(operations), outputs).select(list(outputs))
+
+
+def _zeros(part: Part, names: Sequence[str], wanted: Wanted, first: int) -> Program | None:
+    """Formulas that vanish, by the places that they would have."""
+    outputs: dict[str, Output] = {}
+    for name in names:
+        shape, axes = part.program.outputs[name].shape, [a for a in LEADING.get(name, ()) if part.labels(a)]
+        places = [
+            _places(part.labels(axis), wanted.coordinate if axis == "coordinate" else wanted.body) for axis in axes
+        ]
+        if (wanted.body and not {"joint", "port"} & set(axes)) or (wanted.coordinate and "coordinate" not in axes):
+            continue
+        for lead in product(*places):
+            rest = shape[len(lead) :]
+            if wanted.component is None:
+                outputs[_called(name, lead, first)] = Output(rest, (), ())
+            else:
+                single = len(LEADING.get(name, ())) == len(shape)  # elements are stored one by one
+                index = _component(wanted.component, shape if single else rest)
+                outputs[_called(name, index if single else lead + index, first)] = Output((), (), ())
+    return Program((), (), outputs) if outputs else None
+
+
+def _places(labels: Sequence[str], label: str | None) -> list[int]:
+    return [i for i, each in enumerate(labels) if label in (None, each)]
+
+
+def _called(output: str, lead: Sequence[int], first: int) -> str:
+    return output + (f"[{','.join(str(i + first) for i in lead)}]" if lead else "")
 
 
 def _component(text: str, shape: tuple[int, ...]) -> tuple[int, ...]:

@@ -92,6 +92,6 @@ def _stored(store: Store, connection: Connection, version: Version) -> Part:
 
 
 def _tree_scene(store: Store, tree: Tree) -> Scene:
-    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    spec = TreeSpec.stored(read_json(tree.spec.encode()))
     with store.database.read() as connection:
         return Scene(spec, trees.parts_of(store, connection, spec), store.model(connection, tree))

@@ -12,11 +12,22 @@ from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
 
 
 def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     """What quantities of a tree are computed from."""
-    return Sources(model, store.derived, lambda: _regressor(store, tree))
+    return Sources(model, store.derived, lambda: _regressor(store, tree), lambda: plausibility_of(store, tree, model))
+
+
+def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
+    """What judges the values that a tree is evaluated with."""
+    found = model.plausibility or store.caches.plausibilities.get(tree.digest)
+    if found is None:
+        spec, parts = tree_parts(store, tree)
+        found = Plausibility(spec, {name: part.definition for name, part in parts.items()})
+        store.caches.plausibilities.put(tree.digest, found)
+    return found
 
 
 def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
@@ -33,7 +44,7 @@ def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a tree and its parts by instance."""
-    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    spec = TreeSpec.stored(read_json(tree.spec.encode()))
     with store.database.read() as connection:
         return spec, parts_of(store, connection, spec)
 

@@ -21,6 +21,7 @@ from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.part import Part, derive
+from substructures.part.units import counted
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
 
@@ -110,7 +111,21 @@ def _existing(store: Store, text: str, if_match: str | None) -> tuple[trees.Tree
     if if_match not in (None, "*", tree_tag(base)):
         detail = f"the tree '{text}' is not what If-Match says; it is {tree_tag(base)} now"
         raise Refused(412, "precondition-failed", detail, headers={"ETag": tree_tag(base)})
-    return base, read_json(base.spec.encode())
+    return base, _current(base)
+
+
+def _current(tree: trees.Tree) -> dict[str, Any]:
+    """The document of a stored tree as one of today: units that did not count when it was stored become words, and
+    gravity that was given as zero stays given.
+    """
+    spec: dict[str, Any] = counted(read_json(tree.spec.encode()))
+    for instance in spec.get("instances", ()):
+        if "definition" in instance:
+            instance["definition"] = counted(instance["definition"])
+    warnings = read_json(tree.summary.encode())["certificate"].get("warnings")
+    if warnings is not None and all(warning["code"] != "gravity-not-given" for warning in warnings):
+        spec.setdefault("gravity", [0, 0, 0])
+    return spec
 
 
 def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_exact: bool = False) -> Revision:

@@ -12,6 +12,7 @@ from service.pages.html import Content, Html, facts, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.views.resources import part_warnings
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.part.part import Part
@@ -51,7 +52,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
             words.coordinates(part.coordinates, part.joints),
             words.parameters(read_json(version.parameters.encode())),
             words.operations(read_json(version.operations.encode()), OF_PART),
-            read_json(version.certificate.encode()),
+            {**read_json(version.certificate.encode()), "warnings": part_warnings(version)},
             _metric(metric, f"{path}/formulas/metric?format=text"),
         ),
     )
@@ -67,7 +68,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
         [
             ("Reference", tag("code", reference)),
             ("Size", size(tree.dof, model.joints)),
-            ("Gravity", f"{', '.join(map(str, summary['gravity']))} (world axes, m/s^2)"),
+            ("Gravity", f"{', '.join(map(_number, summary['gravity']))} (world axes, m/s^2)"),
             ("Changed from", link(base, f"/trees/{base}") if base else None),
             ("Stored", tree.created[:10]),
             ("Digest", tag("code", tree.digest, class_="small")),
@@ -89,6 +90,11 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             _metric(metric, f"{path}/metric?format=text"),
         ),
     )
+
+
+def _number(given: Any) -> str:
+    """A number of a document, with its unit if it has one."""
+    return f"{given['value']} {given['unit']}" if isinstance(given, Mapping) else str(given)
 
 
 def _instance(instance: Mapping[str, Any]) -> tuple[Content, ...]:
@@ -120,7 +126,7 @@ def _sections(
         *(tag("h2", "Certificate"), words.certificate(certificate)),
         *(tag("h2", "Coordinates"), coordinates),
         *(tag("h2", "Metric"), metric),
-        *(tag("h2", "Parameters"), parameters),
+        *(tag("h2", "Parameters"), parameters, words.converted(certificate)),
         *(tag("h2", "Operations"), operations),
     ]
 

@@ -30,10 +30,31 @@ def parameters(given: Mapping[str, Mapping[str, Any]]) -> Html:
     if not given:
         return tag("p", "None.", class_="quiet")
     rows = [
-        (tag("code", name), _value(each.get("value")), each.get("unit", ""), each.get("description", ""))
+        (
+            tag("code", name),
+            [_value(each.get("value")), _given(each)],
+            each.get("unit", ""),
+            each.get("description", ""),
+        )
         for name, each in given.items()
     ]
     return table(("name", "default", "unit", "description"), rows)
+
+
+def _given(each: Mapping[str, Any]) -> Content:
+    """What was given in another unit than SI."""
+    given = each.get("given", {})
+    return tag("span", f" ({given['value']} {given['unit']})", class_="quiet") if "value" in given else ""
+
+
+def converted(report: Mapping[str, Any]) -> Html:
+    """The numbers of a document that were given in other units than SI, both ways; parameters have a table."""
+    rows = [
+        (tag("code", each["pointer"]), f"{each['value']} {each['unit']}", f"{each['si']} {each['si_unit']}")
+        for each in report.get("converted", ())
+        if not each["pointer"].startswith("/parameters/")
+    ]
+    return table(("place", "given", "SI"), rows) if rows else Html()
 
 
 def _value(value: Any) -> Content:

@@ -19,6 +19,7 @@ from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
 from service.views.resources import dump, formulas_view
 from substructures.part.outputs import with_own_inertia
+from substructures.printers.render import first_index
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -52,21 +53,18 @@ def get_formula(
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
         rows = content.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
-        if not rows:
-            raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
         part = store.part(connection, version.digest)
     if part is None:
         raise LookupError(f"the part {version.digest} is missing")
+    wanted = models.Wanted(quantity, body, coordinate, component)
+    chosen = models.part_formulas(part, rows, wanted, first_index(style.format))
+    if chosen is None:
+        raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
     tag = etag(version.digest, quantity, str((body, coordinate, component, inertia)), *style.identity)
 
     def make() -> Answer:
-        """Select, bind and print."""
-        if body is coordinate is component is None:
-            chosen = models.part_quantity(part.program, rows)
-        else:
-            chosen = models.part_entries(part.program, rows, component)
-        if inertia == "own":
-            chosen = with_own_inertia(part, chosen)
-        return models.printed(models.bound(chosen, part.parameters, style.bind), style, part.coordinates)
+        """Bind and print."""
+        found = with_own_inertia(part, chosen) if inertia == "own" else chosen
+        return models.printed(models.bound(found, part.parameters, style.bind), style, part.coordinates)
 
     return conditional(request, tag, is_pinned(ref), make)

@@ -14,11 +14,12 @@ from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, mode
 from pydantic_core import PydanticCustomError
 
 from service.schemas.parts import RequestPart
+from service.schemas.shapes import Values
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis import simulate as science
 from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number, Positive, Real
+from substructures.documents.fields import Name, PlainNumber, Positive, Real
 from substructures.errors import InvalidArgument
 
 MAX_EVENTS = 100
@@ -67,14 +68,14 @@ def _kind(value: Any) -> str:
 
 
 #: a number, an expression, or a table
-Signal = Annotated[Annotated[Number, Tag("number")] | Annotated[Table, Tag("table")], Discriminator(_kind)]
+Signal = Annotated[Annotated[PlainNumber, Tag("number")] | Annotated[Table, Tag("table")], Discriminator(_kind)]
 
 
 class Event(RequestPart):
     """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
 
     name: Name
-    quantity: Number
+    quantity: PlainNumber
     level: Real = 0.0
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"
@@ -100,7 +101,7 @@ class StateRequest(DocumentPart):
 
     q: Any = Field(None, description="coordinates: a list, or an object by name; rad, m")
     qd: Any = Field(None, description="velocities, 0 by default; rad/s, m/s")
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    parameters: Values = Field({}, description="in place of their defaults")
     inputs: dict[str, Signal] = Field({}, description="number, expression in q, q' and t, or table; N m or N")
 
 
@@ -115,7 +116,7 @@ class SpanRequest(StateRequest):
     step: Positive | None = Field(None, description="s")
     count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
     events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = ()
-    series: dict[Name, Number] = Field({}, max_length=MAX_EVENTS, description="expressions to be followed")
+    series: dict[Name, PlainNumber] = Field({}, max_length=MAX_EVENTS, description="expressions to be followed")
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-10
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
     max_step: Positive | None = Field(None, description="s")

@@ -9,16 +9,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError, WithJsonSchema
 
-from service.schemas.shapes import Digest, Shape
+from service.schemas.shapes import Digest, Shape, Warned, values_with_units
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
 
 Column = float | list[float]
-ValueColumns = Annotated[dict[str, Column], SkipValidation]
+
+
+_COLUMN: list[dict[str, Any]] = [{"type": "number"}, {"items": {"type": "number"}, "type": "array"}]
+ValueColumns = Annotated[dict[str, Any], SkipValidation, WithJsonSchema(values_with_units(_COLUMN))]
 StateColumns = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation]
 _NEEDED = {
     "quantities": "a list of quantities is needed",
@@ -134,6 +137,7 @@ class EvaluationResult(BaseModel):
     count: int
     digest: Digest
     failures: list[Any] = []
+    warnings: list[Warned] = []
     frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
 

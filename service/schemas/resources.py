@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.schemas.shapes import Digest, Links, Shape, Time
+from service.schemas.shapes import Digest, Links, Shape, Time, Warned
 
 
 class ProblemError(Shape):
@@ -36,9 +36,10 @@ class Problem(BaseModel):
 class ParameterView(BaseModel):
     """A named constant and its default value."""
 
-    value: float | int | str | None = Field(None, description="default, in the unit given")
-    unit: str = ""
+    value: float | int | str | None = Field(None, description="default, in SI")
+    unit: str = Field("", description="SI")
     description: str = ""
+    given: dict[str, Any] | None = Field(None, description="value and unit, where they were given in another unit")
 
 
 class VersionView(Shape):
@@ -58,6 +59,7 @@ class VersionView(Shape):
     parameters: dict[str, ParameterView]
     operations: dict[str, Any] = Field(description="operation counts of the stored program")
     certificate: dict[str, Any] = Field(description="what was checked when this was stored, with figures")
+    warnings: list[Warned]
     program: Digest
     created: Time
     aliases: list[str]
@@ -158,6 +160,8 @@ class TreeView(Shape):
     )
     operations: dict[str, Any]
     certificate: dict[str, Any]
+    warnings: list[Warned]
+    inputs: dict[str, ParameterView] = Field({}, description="of loads, whether or not a formula depends on them")
     program: Digest
     created: Time
     based_on: int | None = Field(description="the revision that was changed")

@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from service.schemas.shapes import Values
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Number, Positive, Real
+from substructures.documents.fields import PlainNumber, Positive, Real
 
 
 class LinearisationRequest(DocumentPart):
@@ -24,7 +25,7 @@ class LinearisationRequest(DocumentPart):
     t: Any = 0
     parameters: dict[str, Any] = Field({}, description="in place of their defaults; numbers, or one for each state")
     inputs: dict[str, Any] = Field({}, description="about which is linearised, 0 by default; or one for each state")
-    outputs: dict[str, Number] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
+    outputs: dict[str, PlainNumber] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
     of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
 
 
@@ -36,8 +37,8 @@ class EquilibriaRequest(DocumentPart):
     reach: Positive = Field(1.0, description="m")
     seed: Annotated[int, Field(ge=0)] = 0
     t: Real = 0.0
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+    parameters: Values = Field({}, description="in place of their defaults")
+    inputs: Values = Field({}, description="constant; 0 by default")
 
 
 class RootLocusRequest(DocumentPart):
@@ -46,5 +47,5 @@ class RootLocusRequest(DocumentPart):
     parameter: str
     values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000)]
     q: Any
-    parameters: dict[str, Real] = Field({}, description="of all others, in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+    parameters: Values = Field({}, description="of all others, in place of their defaults")
+    inputs: Values = Field({}, description="constant; 0 by default")

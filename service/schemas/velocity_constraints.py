@@ -9,7 +9,7 @@ from pydantic import Field
 from service.schemas.parts import RequestPart
 from substructures.analysis.equations import velocity_constraints as science
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number
+from substructures.documents.fields import Name, PlainNumber
 
 FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
@@ -44,9 +44,11 @@ class Rolling(RequestPart):
     type: Literal["rolling"]
     name: Name
     frame: FrameName
-    radius: Number = Field(description="m")
+    radius: PlainNumber = Field(description="m")
     shape: Literal["disc", "sphere"] = "disc"
-    normal: tuple[Number, Number, Number] = Field((0, 0, 1), description="of the plane in the world (constant)")
+    normal: tuple[PlainNumber, PlainNumber, PlainNumber] = Field(
+        (0, 0, 1), description="of the plane in the world (constant)"
+    )
 
     def value(self) -> science.Rolling:
         """As the science takes it."""

@@ -13,8 +13,22 @@ from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.catalogue import Version
 from service.queries.content import FormulaRow
 from service.queries.trees import Tree
+from substructures.part.units import Notice, uncounted
 
 _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
+
+
+def part_warnings(version: Version) -> list[Notice]:
+    """Warnings about a definition; of one that was stored when units were texts, also about these."""
+    certificate = orjson.loads(version.certificate)
+    old = [] if "converted" in certificate else uncounted(orjson.loads(version.parameters))
+    return [*certificate.get("warnings", ()), *old]
+
+
+def tree_warnings(tree: Tree) -> list[Notice]:
+    """Warnings about a tree."""
+    found: list[Notice] = orjson.loads(tree.summary)["certificate"].get("warnings", [])
+    return found
 
 
 def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
@@ -29,6 +43,7 @@ def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
         "dof": version.dof,
         "joints": version.joints,
         **{name: orjson.Fragment(getattr(version, name)) for name in _STORED},
+        "warnings": part_warnings(version),
         "program": version.program,
         "created": version.created,
         "aliases": aliases,
@@ -111,6 +126,7 @@ def tree_view(tree: Tree) -> bytes:
         "program": tree.program,
         "created": tree.created,
         "based_on": tree.based_on,
+        "warnings": tree_warnings(tree),
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
         | {"kernels": f"{path}/kernels"}
         | {name: f"{path}/{name}" for name in (*quantities, "picture")},

@@ -192,5 +192,9 @@ def joined_parts(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     failures = [
         {**failure, "state": failure["state"] + part["range"][0]} for part in parts for failure in part["failures"]
     ]
+    warnings: list[Any] = []
+    for part in parts:
+        warnings += [warning for warning in part.get("warnings", ()) if warning not in warnings]
     whole = nested({**columns[0], **arrays})
-    return {**whole, "count": sum(part["count"] for part in parts), "failures": failures}
+    told = {"failures": failures, "warnings": warnings}
+    return {**whole, "count": sum(part["count"] for part in parts), **told}

@@ -1,8 +1,9 @@
-"""Types of fields that documents share: names, exact and finite numbers, vectors."""
+"""Types of fields that documents share: names, exact and finite numbers with their units, vectors."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
 
@@ -10,11 +11,65 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from substructures.documents.schema import DocumentPart
+from substructures.documents.units import Unit, UnknownUnitError, read_unit
+
 NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
 
 
+_EITHER = [{"type": "number"}, {"type": "string", "maxLength": 10000}]
+
+
+class Quantity(DocumentPart):
+    """A number with its unit, exact in SI: 1200 mm is 6/5 m. ``value``: a number or a constant expression."""
+
+    value: Annotated[int | Decimal | str, WithJsonSchema({"anyOf": _EITHER})]
+    unit: str = Field(max_length=64)
+
+    @property
+    def measure(self) -> Unit:
+        """The unit, read. Raises UnknownUnitError."""
+        return read_unit(self.unit)
+
+    @property
+    def si(self) -> int | Decimal | str:
+        """How many SI units it is: a number, or a constant expression (``"1/6*pi"`` of 30 deg)."""
+        return self.measure.in_si(self.value)
+
+    def __str__(self) -> str:
+        """As people write it."""
+        return f"{self.value} {self.unit}"
+
+
+def unit_of(text: str) -> Unit:
+    """The unit of a field. Raises PydanticCustomError."""
+    try:
+        return read_unit(text)
+    except UnknownUnitError as error:
+        raise PydanticCustomError("unknown-unit", "{message}", {"message": str(error)}) from None
+
+
+def _quantity(given: Mapping[Any, Any]) -> Quantity:
+    if set(given) != {"value", "unit"} or not isinstance(given["unit"], str):
+        raise PydanticCustomError("number-expected", "expected a number, an expression, or 'value' and 'unit'")
+    unit_of(given["unit"])
+    return Quantity(value=_plain_number(given["value"]), unit=given["unit"])
+
+
+def in_si(value: Any) -> Any:
+    """The SI value of a number of a document; what has no unit is SI."""
+    return value.si if isinstance(value, Quantity) else value
+
+
 def _number(value: Any) -> Any:
+    """Exact number or expression text, with a unit or without."""
+    if isinstance(value, Mapping):
+        return _quantity(value)
+    return value if isinstance(value, Quantity) else _plain_number(value)
+
+
+def _plain_number(value: Any) -> Any:
     """Exact number or expression text; floats are taken by their shortest decimal text."""
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str)):
         raise PydanticCustomError("number-expected", "expected a number or an expression")
@@ -38,10 +93,10 @@ def _real(value: Any) -> float:
     return number
 
 
+#: a number that has no unit of its own
+PlainNumber = Annotated[int | Decimal | str, BeforeValidator(_plain_number), WithJsonSchema({"anyOf": _EITHER})]
 Number = Annotated[
-    int | Decimal | str,
-    BeforeValidator(_number),
-    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "maxLength": 10000}]}),
+    Annotated[int | Decimal | str, WithJsonSchema({"anyOf": _EITHER})] | Quantity, BeforeValidator(_number)
 ]
 Real = Annotated[float, BeforeValidator(_real), WithJsonSchema({"type": "number"})]
 Positive = Annotated[Real, Field(gt=0)]

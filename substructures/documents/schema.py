@@ -31,6 +31,11 @@ class Document(DocumentPart):
         """The document from plain data. Raises InvalidDocument with a pointer to every fault."""
         return read_model(cls, data)
 
+    @classmethod
+    def stored(cls, data: Any) -> Self:
+        """The document from what was stored: as :meth:`read`, and what older versions accepted keeps its meaning."""
+        return read_model(cls, data, stored=True)
+
     @cached_property
     def _canonical(self) -> bytes:
         return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
@@ -48,12 +53,15 @@ class Document(DocumentPart):
 M = TypeVar("M", bound=BaseModel)
 
 
-def read_model(model: type[M], data: Any) -> M:
-    """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers."""
+def read_model(model: type[M], data: Any, *, stored: bool = False) -> M:
+    """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers.
+
+    ``stored``: the data were accepted before, perhaps by an older version (``stored`` of the validation context).
+    """
     if not isinstance(data, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
     try:
-        return model.model_validate(data)
+        return model.model_validate(data, context={"stored": True} if stored else None)
     except ValidationError as error:
         raise InvalidDocument(_faults(error, data)) from None
 

@@ -199,16 +199,24 @@ def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def as_npz(answer: Mapping[str, Any]) -> Npz:
-    """The answer as npz: arrays by name, nested names joined by dots, ``failures`` as parallel arrays."""
+    """The answer as npz: arrays by name, nested names joined by dots, ``failures``, ``warnings`` as parallel arrays."""
     rows = answer["failures"]
     failures = {"state": np.array([row["state"] for row in rows], np.int64)}
-    failures |= {key: np.array([row[key] for row in rows], np.str_) for key in ("quantity", "code", "message")}
-    return write_npz(flat({**answer, "failures": failures}))
+    failures |= _texts(rows, ("quantity", "code", "message"))
+    warnings = _texts(answer.get("warnings", ()), ("pointer", "code", "message"))
+    return write_npz(flat({**answer, "failures": failures, "warnings": warnings}))
+
+
+def _texts(rows: Sequence[Mapping[str, Any]], keys: Sequence[str]) -> dict[str, np.ndarray[Any, Any]]:
+    """Members of rows as parallel arrays."""
+    return {key: np.array([row[key] for row in rows], np.str_) for key in keys}
 
 
 def as_answer(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
     """The inverse of :func:`as_npz`: the answer as JSON would have it, with arrays for the quantities."""
     result = nested({name: a if a.dtype.kind == "f" else a.tolist() for name, a in arrays.items()})
-    failures = result["failures"]
-    rows = zip(*failures.values(), strict=True)
-    return {**result, "failures": [dict(zip(failures, row, strict=True)) for row in rows]}
+    return {**result, **{name: _rows(result.get(name, {})) for name in ("failures", "warnings")}}
+
+
+def _rows(columns: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

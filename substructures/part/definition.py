@@ -6,22 +6,63 @@ Meaning is checked when formulas are derived: names and expressions by :mod:`sub
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from substructures.documents import Document, DocumentPart
-from substructures.documents.fields import LibraryName, Name, Number, NumberVector
+from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, unit_of
+from substructures.documents.units import UnknownUnitError, read_unit
 
 MAX_BODIES = 500
 
 
-class Parameter(DocumentPart):
-    """A named constant; without a value it has to be given with every evaluation."""
+class Measured(DocumentPart):
+    """Something with a unit. In what was stored before units counted, a unit is any text, and numbers are SI."""
 
-    value: Number | None = Field(None, description="default, in the unit given; a number or a constant expression")
-    unit: str = Field("", max_length=64, description="SI unit")
+    unit: str = Field("", max_length=64, description="unit; of numbers without one it is the SI unit of this dimension")
+
+    @field_validator("unit")
+    @classmethod
+    def _known(cls, unit: str, info: ValidationInfo) -> str:
+        if unit and not is_stored(info):
+            unit_of(unit)
+        return unit
+
+
+class Parameter(Measured):
+    """A named constant; without a value it has to be given with every evaluation.
+
+    ``{"value": 1200, "unit": "mm"}`` is kept as ``{"value": {"value": 1200, "unit": "mm"}, "unit": "m"}``: what was
+    given, and the unit of the symbol that stands for it in formulas, which is always SI.
+    """
+
+    value: Number | None = Field(None, description="default; a number or a constant expression")
     description: str = Field("", max_length=2000)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_given_unit(cls, data: Any, info: ValidationInfo) -> Any:
+        if is_stored(info) or not isinstance(data, Mapping) or data.get("value") is None:
+            return data
+        value, text = data["value"], data.get("unit", "")
+        try:
+            unit = read_unit(text) if text else None
+            if isinstance(value, Mapping | Quantity):
+                given = value["unit"] if isinstance(value, Mapping) else value.unit
+                unit = unit or read_unit(given)
+                return {**data, "unit": text if text and unit.is_si else unit.si}
+        except (UnknownUnitError, LookupError, TypeError, AttributeError):
+            return data  # the fields say what is wrong with them
+        if unit is None or unit.is_si:
+            return data
+        return {**data, "value": {"value": value, "unit": text}, "unit": unit.si}
+
+
+def is_stored(info: ValidationInfo) -> bool:
+    """Whether what is read comes out of the store, where it was checked when it went in."""
+    return bool(info.context and info.context.get("stored"))
 
 
 class Placement(DocumentPart):
@@ -139,10 +180,9 @@ class JointLoad(DocumentPart):
 Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad, Field(discriminator="type")]
 
 
-class Input(DocumentPart):
+class Input(Measured):
     """A named input of the loads; 0 when not given."""
 
-    unit: str = Field("", max_length=64)
     description: str = Field("", max_length=2000)
 
 

@@ -17,6 +17,7 @@ from substructures.part.definition import Definition, ForceLoad, JointLoad, Spri
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
 from substructures.part.scope import Lookup, Scope
+from substructures.part.units import si_unit
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def load_names(scope: Scope, m: Mechanism) -> Lookup:
         if name == "t":
             return scope.declare("t", "time", "s")
         if name in m.definition.inputs:
-            return scope.declare(name, "input", m.definition.inputs[name].unit)
+            return scope.declare(name, "input", si_unit(m.definition.inputs[name].unit))
         if name in coordinates:
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:

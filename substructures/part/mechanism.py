@@ -25,6 +25,7 @@ from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.scope import Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
+from substructures.part.units import si_unit
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -90,7 +91,7 @@ def mechanism(definition: Definition) -> Mechanism:
 def _scope(definition: Definition, layout: Topology) -> Scope:
     scope = Scope(Graph())
     for name, parameter in sorted(definition.parameters.items()):
-        scope.declare(name, "parameter", parameter.unit)
+        scope.declare(name, "parameter", si_unit(parameter.unit))
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)
     for joint in layout.joints:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from time import perf_counter
 from typing import Any
@@ -16,8 +16,9 @@ from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import read_loads, wrench_places
-from substructures.part.mechanism import mechanism
+from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.topology import BASE, Topology, christoffel_entries, topology
+from substructures.part.units import check_units, described, uncounted, without_effect
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -121,8 +122,8 @@ class Part:
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:
-        """Parameters with default value, unit and description."""
-        return {name: p.model_dump() for name, p in self.definition.parameters.items()}
+        """Parameters with default value and unit in SI, description, and what was ``given`` in another unit."""
+        return described(self.definition.parameters)
 
     @cached_property
     def operations(self) -> dict[str, int]:
@@ -140,6 +141,11 @@ class Part:
         }
         counts = self.program.totals_of(list(groups.values()))
         return [self._formula(*place, count) for place, count in zip(groups, counts, strict=True)]
+
+    def labels(self, axis: str) -> tuple[str, ...]:
+        """What the indices along an axis of :data:`LEADING` mean: bodies that joints carry, ports, coordinates."""
+        known = {"joint": self._joint_bodies, "port": self.ports, "coordinate": self.coordinates}
+        return known.get(axis, ())
 
     def _formula(self, name: str, lead: tuple[int, ...], count: int) -> Formula:
         """Leading axes are joints, coordinates or ports; a formula is what remains for one such index."""
@@ -188,6 +194,7 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     """
     start = perf_counter()
     m = mechanism(definition)
+    check_units(definition, m.topology).require()
     # a definition of 500 bodies may have millions: refused before any work is done
     entries = christoffel_entries([(j.parent, j.s) for j in m.topology.joints])
     if entries > MAX_ENTRIES:
@@ -201,7 +208,17 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     if len(result) > max_nodes:
         raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
-    return Part(definition, result, certify_part(m, result, seconds))
+    return Part(definition, result, _certificate(m, result, seconds))
+
+
+def _certificate(m: Mechanism, result: Program, seconds: float) -> dict[str, Any]:
+    """What was checked, with all warnings about the definition and what of it was converted to SI."""
+    certificate, units = certify_part(m, result, seconds), check_units(m.definition, m.topology)
+    unused = without_effect(m.definition, {symbol.name for symbol in result.symbols})
+    # contradictions in what was stored when units were texts; new definitions were refused
+    old = [asdict(fault) for fault in units.faults]
+    warnings = [*certificate["warnings"], *units.warnings, *old, *unused]
+    return certificate | {"warnings": warnings, "converted": units.converted}
 
 
 def recheck(part: Part) -> dict[str, Any]:
@@ -211,7 +228,8 @@ def recheck(part: Part) -> dict[str, Any]:
     """
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
-    return certify_part(m, part.program, 0.0)
+    certificate = _certificate(m, part.program, 0.0)
+    return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
 
 
 def told_operations(operations: Mapping[str, int]) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
 
+from substructures.documents.fields import in_si
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
@@ -53,8 +54,9 @@ class Scope:
             raise InvalidDocument(self.faults)
 
     def read(self, value: Any, pointer: str, lookup: Lookup | None = None) -> Expr:
-        """An exact number, or an expression in the known names; zero after a fault."""
+        """An exact number in SI, or an expression in the known names; zero after a fault."""
         try:
+            value = in_si(value)
             if isinstance(value, str):
                 return parse(self.graph, value, lookup or self.names.get)
             if isinstance(value, Decimal):

@@ -11,6 +11,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from substructures.array import Array
+from substructures.documents.fields import in_si
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.quantities.evaluation import evaluate
@@ -65,8 +66,9 @@ def _pose(parts: Mapping[str, Part], model: Model) -> list[float]:
 
 
 def _middle(limits: Any, slides: bool) -> float:
-    if limits and not any(isinstance(limit, str) for limit in limits):
-        low, high = map(float, limits)
+    ends = [in_si(limit) for limit in limits or ()]
+    if ends and not any(isinstance(limit, str) for limit in ends):
+        low, high = map(float, ends)
         if slides or high - low < 2 * pi / 3:
             return low + 0.6 * (high - low)
     return SLIDE if slides else ANGLE

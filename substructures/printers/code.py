@@ -74,7 +74,7 @@ class Code(Language):
         lines.append("outputs:")
         for output, array in self.program.outputs.items():
             shape = " x ".join(map(str, array.shape)) or "scalar"
-            rule = "; " + symmetry_rule(array.symmetry) if array.shape else ""
+            rule = f", indices from {self.first}; {symmetry_rule(array.symmetry)}" if array.shape else ""
             lines.append(f"  {self.variables[output]}  {comment(output)}: {shape}{rule}")
         return [f"{indent}{self.mark} {line}" for line in lines]
 

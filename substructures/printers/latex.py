@@ -25,6 +25,7 @@ class Latex(Language):
 
     media = "application/x-latex; charset=utf-8"
     width = 300
+    first = 1
     functions: ClassVar[Mapping[str, str]] = _NAMED
 
     def __init__(self, program: Program) -> None:
@@ -88,6 +89,8 @@ class Latex(Language):
             f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"
             for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
+        if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
+            lines.append("% indices from 1; elements that are not listed are 0")
         rows = [f"{self.letter}_{{{n}}} &= {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             rows += self._rows(output, array, listing.entries[output])

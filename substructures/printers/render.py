@@ -62,6 +62,11 @@ def render(program: Program, format: str, form: str = "compact", name: str = "mo
     return language.render(_listing(program, language, form, limit), name)
 
 
+def first_index(format: str) -> int:  # noqa: A002 -- the name in the contract
+    """What indices count from in one of FORMATS: 1 where people or the language do, else 0."""
+    return LANGUAGES[format].first if format in LANGUAGES else 0
+
+
 def entries(
     program: Program,
     output: str,

@@ -52,6 +52,8 @@ class Text(Language):
             if array.shape:
                 shape = " x ".join(map(str, array.shape))
                 lines.append(f"# {title}: {shape}, indices from 1; {symmetry_rule(array.symmetry, title)}")
+            elif "[" in output:
+                lines.append(f"# {title}: one element, indices from 1")
             for index, text in zip(array.index, listing.entries[output], strict=True):
                 place = "[" + ", ".join(str(i + 1) for i in index) + "]" if index else ""
                 lines.append(f"{title}{place} = {text}")

@@ -9,7 +9,7 @@ import numpy as np
 
 from substructures.errors import InvalidArgument, InvalidInput
 from substructures.quantities.derivatives import direction
-from substructures.quantities.states import StateInput, States, ValueInput, given_values, input_names, read_states
+from substructures.quantities.states import StateInput, States, ValueInput, given_values, read_states
 from substructures.tree.model import Model
 
 #: what follows the name of a coordinate in that of its position, velocity and acceleration
@@ -34,13 +34,13 @@ def direction_values(model: Model, along: Direction | None, states: States) -> d
     if along is None:
         raise InvalidArgument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
     count = states.count
-    values: dict[str, Any] = {direction(name): 0.0 for name in input_names(model)}
+    values: dict[str, Any] = {direction(name): 0.0 for name in model.input_names}
     for field, primes in PRIMES.items():
         # dq, dq', dq'' are the symbols d.arm.q1, d.arm.q1', d.arm.q1''
         columns = _columns(model, getattr(along, field), field, count)
         values |= {direction(name + primes): x for name, x in columns.items()}
     # dtau of actuators, du of loads
-    given = given_values(along.inputs, "inputs", "/along/inputs", count, input_names(model))
+    given = given_values(along.inputs, "inputs", "/along/inputs", count, model.input_names, model.units)
     return values | {direction(name): x for name, x in given.items()}
 
 

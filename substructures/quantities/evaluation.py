@@ -37,6 +37,7 @@ from substructures.quantities.table import (
     read_quantities,
     steps,
 )
+from substructures.quantities.warnings import value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
@@ -136,6 +137,7 @@ def evaluate(
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
+        tuple(value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q)),
     )
 
 

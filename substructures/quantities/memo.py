@@ -24,8 +24,10 @@ class Known:
 
 
 def known_model(model: Model) -> Known:
-    """A model: its program, the meaning of its axes, and the names of the rows of its closures."""
-    return Known(f"{model.program.digest} {model.coordinates} {model.joints} {model.closures}", model)
+    """A model: its program, the meaning of its axes, the names of the rows of its closures, and all that is declared,
+    also what has no effect."""
+    axes = f"{model.coordinates} {model.joints} {model.closures}"
+    return Known(f"{model.program.digest} {axes} {sorted(model.units.items())}", model)
 
 
 class ProgramCache:

@@ -42,7 +42,8 @@ class Evaluation:
     ``Omega`` (N, frames, n, 3); ``result["momentum"]`` one of ``linear`` and ``angular`` (N, 3).
 
     ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor. ``count`` = N;
-    ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states.
+    ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states;
+    ``warnings`` (pointer, code, message): parameters that no body can have, limits that states leave, and more.
     """
 
     coordinates: tuple[str, ...]
@@ -53,6 +54,7 @@ class Evaluation:
     frames: tuple[str, ...] | None = None
     columns: ParameterColumns | None = None
     single: bool = False
+    warnings: tuple[Mapping[str, str], ...] = ()
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
@@ -61,7 +63,8 @@ class Evaluation:
     def __repr__(self) -> str:
         shapes = ", ".join(f"{name} {shape}" for name, shape in _shapes(self.quantities))
         failed = f", {len(self.failures)} failures" if self.failures else ""
-        return f"Evaluation of {self.count} state(s) of {listed(self.coordinates)}{failed}\n  {shapes}"
+        warned = "".join(f"\n  warning: {warning['message']}" for warning in self.warnings)
+        return f"Evaluation of {self.count} state(s) of {listed(self.coordinates)}{failed}\n  {shapes}{warned}"
 
     def plain(self, digest: str | None = None) -> dict[str, Any]:
         """Plain data by name: what was asked, quantities, failures; arrays stay arrays.
@@ -74,6 +77,7 @@ class Evaluation:
             about["frames"] = list(self.frames)
         if self.columns is not None:
             about["columns"] = {"names": list(self.columns.names), "units": list(self.columns.units)}
+        about["warnings"] = [dict(warning) for warning in self.warnings]
         return {**about, **self.quantities, "failures": [asdict(failure) for failure in self.failures]}
 
 

@@ -6,9 +6,11 @@ inputs, parameters``. What is wrong with one is an InvalidArgument, whose pointe
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
@@ -17,19 +19,24 @@ from numpy.typing import ArrayLike
 
 from substructures.array import Array
 from substructures.documents import escape
+from substructures.documents.fields import in_si
+from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, listed
+from substructures.expr.dimensions import Dimensioned
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
 from substructures.expr.syntax import ExpressionError
 from substructures.part.scope import no_names
+from substructures.part.units import dimension_of
 from substructures.tree.model import Model
 
 #: states: (n,), (N, n), or by coordinate name a number or (N,) numbers
 StateInput = ArrayLike | Mapping[str, ArrayLike]
 #: by name: one number, or (N,), one for every state
 ValueInput = Mapping[str, ArrayLike]
+NO_UNITS: Mapping[str, str] = {}
 #: arguments by name
 ArgumentsByName = Mapping[str, Any]
 
@@ -83,7 +90,9 @@ def longest(given: ArgumentsByName) -> int:
 
 
 def _entries(given: Any) -> int:
-    """The length of a list, 0 if it is none."""
+    """The length of a list, also of one with a unit, 0 if it is none."""
+    if isinstance(given, Mapping):
+        given = given.get("value")
     return len(given) if isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim) else 0
 
 
@@ -169,19 +178,14 @@ def known_values(
             values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
     t = numeric(0 if given.get("t") is None else given["t"], "/t")
     values["t"] = _per_state(t, count, "/t")
-    inputs = input_names(model)
+    inputs = model.input_names
     values |= dict.fromkeys(inputs, 0.0)
     # default values, correctly rounded
     values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
-    values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs)
-    values |= given_values(given.get("parameters"), "parameters", "/parameters", count, parameters)
+    units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
+    values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
+    values |= given_values(given.get("parameters"), "parameters", "/parameters", count, parameters, units)
     return values
-
-
-def input_names(model: Model) -> list[str]:
-    """The inputs of loads, and every actuator (also where it does no work)."""
-    named = [s.name for s in model.program.symbols if s.kind == "input"]
-    return list(dict.fromkeys([*named, *(f"tau.{name}" for name in model.coordinates)]))
 
 
 def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:
@@ -191,8 +195,12 @@ def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -
             raise MissingValue(name)
 
 
-def given_values(given: Any, field: str, place: str, count: int, known: Collection[str]) -> dict[str, Any]:
-    """Numbers by name, one or one for every state; ``field``: what they are, ``place``: pointer to the object."""
+def given_values(
+    given: Any, field: str, place: str, count: int, known: Collection[str], units: Mapping[str, str] = NO_UNITS
+) -> dict[str, Any]:
+    """Numbers by name in SI, one or one for every state, or ``{"value", "unit"}`` of these; ``field``: what they are,
+    ``place``: pointer to the object, ``units``: SI units by name.
+    """
     if not isinstance(given or {}, Mapping):
         raise InvalidArgument.at(place, "object-expected", "an object of numbers by name is needed")
     result = {}
@@ -201,8 +209,33 @@ def given_values(given: Any, field: str, place: str, count: int, known: Collecti
         if name not in known:
             message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
             raise InvalidArgument.at(pointer, f"unknown-{field[:-1]}", message)
-        result[name] = _per_state(numeric(value, pointer), count, pointer)
+        plain = si_numbers(value, units.get(name, ""), pointer) if isinstance(value, Mapping) else value
+        result[name] = _per_state(numeric(plain, pointer), count, pointer)
     return result
+
+
+def si_numbers(given: Mapping[str, Any], unit: str, pointer: str) -> Any:
+    """Numbers in SI from ``{"value", "unit"}``; ``unit``: that of what they are for, empty where it is not known.
+
+    Raises InvalidArgument: ``number-expected``, ``unknown-unit``, ``unit-mismatch``.
+    """
+    if set(given) != {"value", "unit"} or not isinstance(given["unit"], str):
+        raise InvalidArgument.at(pointer, "number-expected", "a number is needed, or 'value' and 'unit'")
+    try:
+        found = read_unit(given["unit"])
+    except UnknownUnitError as error:
+        raise InvalidArgument.at(pointer, "unknown-unit", str(error)) from None
+    expected = dimension_of(unit)
+    if isinstance(expected, Dimensioned) and expected.dimension != found.dimension:
+        raise InvalidArgument.at(pointer, "unit-mismatch", f"{expected} expected, found {given['unit']}")
+    values = numeric(given["value"], pointer + "/value")
+    return values * found.scale if values.ndim else _scaled(given["value"], found)
+
+
+def _scaled(given: Any, unit: Unit) -> float:
+    """One number in SI, correctly rounded; a float stands for its shortest decimal text."""
+    exact = Fraction(repr(float(given)) if isinstance(given, float | np.floating) else str(given)) * unit.factor
+    return float(exact) * math.pi**unit.pi if unit.pi else float(exact)
 
 
 def _per_state(values: Array, count: int, pointer: str) -> Array:
@@ -214,7 +247,8 @@ def _per_state(values: Array, count: int, pointer: str) -> Array:
 
 @lru_cache(maxsize=100_000)
 def default_number(value: Any) -> float:
-    """A default as a double: a number, or a constant expression in the grammar."""
+    """A default as a double, in SI: a number, or a constant expression in the grammar."""
+    value = in_si(value)
     if not isinstance(value, str):
         return float(value)
     graph = Graph()

@@ -14,6 +14,7 @@ from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import KINEMATICS, Model
+from substructures.tree.plausibility import Plausibility
 
 MODEL, REGRESSOR = "model", "regressor"
 
@@ -58,12 +59,19 @@ class Sources:
     """The programs that quantities come from, made when they are first needed.
 
     ``derive``: a program of :data:`substructures.quantities.formulas.DERIVED`; ``regressor``: for the quantities
-    ``regressor`` and ``inertial_parameters``, which need the parts of the tree.
+    ``regressor`` and ``inertial_parameters``, which need the parts of the tree; ``plausibility``: of values, from the
+    definitions of these.
     """
 
     model: Model
     derive: Callable[[Model, str], Program] = kept
     regressor: Callable[[], RegressorModel] | None = None
+    plausibility: Callable[[], Plausibility] | None = None
+
+    @property
+    def judge(self) -> Plausibility | None:
+        """What says whether values are plausible; None of a model out of a store without its parts."""
+        return self.model.plausibility if self.plausibility is None else self.plausibility()
 
     def program(self, source: str) -> Program:
         """The program of this name. Raises TooLarge, and InvalidInput for closures and trees without their parts."""

@@ -38,6 +38,10 @@ class Workspace:
         for name, joint in zip(model.coordinates, model.joints, strict=True):
             self.symbols[name] = Symbol(name, "coordinate", UNITS[joint])
             self.symbols[f"{name}'"] = Symbol(f"{name}'", "velocity", f"{UNITS[joint]}/s")
+        # so may parameters and inputs be without effect
+        for kind, declared in (("parameter", model.parameters), ("input", model.inputs)):
+            for name, given in declared.items():
+                self.symbols.setdefault(name, Symbol(name, kind, str(given.get("unit", ""))))
         self._found: dict[str, Entries] = {}
 
     @cached_property

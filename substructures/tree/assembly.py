@@ -15,6 +15,7 @@ from substructures.part.frames import axis_rotation
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
+from substructures.part.units import described, si_unit
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.mounted_part import WORLD, MountedPart
@@ -30,6 +31,7 @@ class Assembly:
     gravity: Vector
     parameters: dict[str, dict[str, object]]
     cuts: tuple[Cut, ...]
+    inputs: dict[str, dict[str, object]]
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -72,7 +74,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts)
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts))
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -82,7 +84,7 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
         pointer = f"/instances/{i}/name"
         if instance.name in index:
             scope.fault(pointer, "duplicate-name", f"duplicate instance '{instance.name}'")
-        if instance.name in ("world", "tau", "t") or instance.name in spec.parameters:
+        if instance.name in ("world", "tau") or instance.name in spec.parameters:
             scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
         index[instance.name] = i
     waiting: dict[int, list[int]] = {}
@@ -111,17 +113,34 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
 def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
     """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
     result: dict[str, dict[str, object]] = {}
-    for name, parameter in sorted(spec.parameters.items()):
-        scope.declare(name, "parameter", parameter.unit)
-        if parameter.value is not None:
-            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
-        result[name] = parameter.model_dump()
+    for name, each in sorted(described(spec.parameters).items()):
+        scope.declare(name, "parameter", str(each["unit"]))
+        if each["value"] is not None:
+            scope.read(each["value"], f"/parameters/{name}/value", no_names)
+        result[name] = each
     for instance in spec.instances:
         for name, some in sorted(parts[instance.name].parameters.items()):
             full = f"{instance.name}.{name}"
             scope.declare(full, "parameter", str(some["unit"]))
             result[full] = some
     return result
+
+
+def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, dict[str, object]]]:
+    """``parameters`` that are not bound and ``inputs`` of a tree, whether or not a formula depends on them."""
+    bound = {f"{instance.name}.{name}" for instance in spec.instances for name in instance.parameters}
+    parameters = _parameters(spec, parts, Scope(Graph()))
+    free = {name: each for name, each in parameters.items() if name not in bound}
+    return {"parameters": free, "inputs": _inputs(spec, parts)}
+
+
+def _inputs(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, object]]:
+    """All inputs of loads that the definitions declare."""
+    return {
+        tree_name(instance.name, name): {"unit": si_unit(each.unit), "description": each.description}
+        for instance in spec.instances
+        for name, each in parts[instance.name].definition.inputs.items()
+    }
 
 
 class _Bindings:

@@ -31,6 +31,11 @@ class Instance(DocumentPart):
         {}, max_length=5000, description="numbers, or expressions in other parameters"
     )
 
+    @property
+    def digest(self) -> str:
+        """The digest of the definition, empty where the reference is not pinned to one."""
+        return self.definition.digest if self.definition else str(self.substructure).partition("@")[2]
+
     @model_validator(mode="after")
     def _one_source(self) -> Instance:
         if (self.substructure is None) == (self.definition is None):

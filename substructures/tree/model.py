@@ -27,9 +27,10 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.errors import Fault, InvalidDocument, TooLarge, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.syntax import RESERVED
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
@@ -42,15 +43,19 @@ from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
 from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.plausibility import Plausibility
+from substructures.tree.units import check_tree_units, tree_warnings
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
+EFFORTS = {"R": "N m", "P": "N"}
 MOMENTUM = ("linear_momentum", "angular_momentum")
 
 
 @dataclass(frozen=True)
 class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
-    the rows of the closure outputs are."""
+    the rows of the closure outputs are; ``parameters``, ``inputs`` (of loads): all that are declared and not bound,
+    whether or not a formula depends on them; ``plausibility``: of values, unknown of a model out of a store."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -59,6 +64,8 @@ class Model:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     certificate: Mapping[str, Any] = field(hash=False)
     closures: tuple[ClosureRows, ...] = ()
+    inputs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+    plausibility: Plausibility | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -76,6 +83,24 @@ class Model:
         """Number of coordinates."""
         return len(self.coordinates)
 
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The SI units of parameters and inputs by name; empty where none was given."""
+        efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
+        declared = {**self.parameters, **self.inputs}
+        return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
+
+    @cached_property
+    def effective(self) -> frozenset[str]:
+        """The symbols that the formulas depend on."""
+        return frozenset(s.name for s in self.program.symbols)
+
+    @cached_property
+    def input_names(self) -> tuple[str, ...]:
+        """All inputs: those in the formulas in the order of the program's symbols, then those without effect."""
+        named = [s.name for s in self.program.symbols if s.kind == "input"]
+        return tuple(dict.fromkeys([*named, *self.inputs, *(f"tau.{name}" for name in self.coordinates)]))
+
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
         closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
@@ -84,6 +109,7 @@ class Model:
             "joints": self.joints,
             "frames": list(self.frames),
             "parameters": {name: dict(p) for name, p in self.parameters.items()},
+            "inputs": {name: dict(given) for name, given in self.inputs.items()},
             "certificate": dict(self.certificate),
             "operations": self.operations,
         }
@@ -94,7 +120,7 @@ class Model:
         names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
         described = (summary["parameters"], summary["certificate"])
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        return cls(Program.from_bytes(program_bytes), *names, *described, closures)
+        return cls(Program.from_bytes(program_bytes), *names, *described, closures, summary.get("inputs", {}))
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
@@ -114,7 +140,10 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     Raises InvalidDocument with pointers into the tree document, or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
+    _require_free_names(spec)
     assembly = assemble(spec, parts)
+    units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()})
+    units.require()
     entries = christoffel_entries(joint_parents(assembly.mounted))
     if entries > MAX_ENTRIES:
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
@@ -131,11 +160,23 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
     joints = "".join(m.part.joints for m in assembly.mounted)
-    certificate = certify_tree(assembly, names, result, seconds)
-    used = {s.name for s in result.symbols}
-    parameters = {name: value for name, value in assembly.parameters.items() if name in used}
-    rows = tuple(cut.rows for cut in assembly.cuts)
-    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows)
+    plausibility = Plausibility(spec, {name: part.definition for name, part in parts.items()})
+    warnings = [*units.warnings, *tree_warnings(spec, parts, result, bool(names)), *plausibility.at_defaults]
+    told = {"warnings": warnings, "converted": units.converted}
+    certificate = certify_tree(assembly, names, result, seconds) | told
+    rows, described = tuple(cut.rows for cut in assembly.cuts), (assembly.parameters, certificate)
+    return Model(result, tuple(names), joints, _frame_names(assembly), *described, rows, assembly.inputs, plausibility)
+
+
+def _require_free_names(spec: TreeSpec) -> None:
+    """Raises InvalidDocument for parameters whose name means something else: t is the time, pi a number."""
+    faults = [
+        Fault(f"/parameters/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions")
+        for name in spec.parameters
+        if name in RESERVED
+    ]
+    if faults:
+        raise InvalidDocument(faults)
 
 
 def model_outputs(

@@ -161,7 +161,7 @@ def test_a_disc_and_a_rod_are_possible() -> None:
 
 
 def test_parameters_with_impossible_defaults_are_a_warning() -> None:
-    given = changed(GOOD, (("parameters", "free", "value"), -1), (("bodies", 0, "inertia", "zz"), "l"))
+    given = changed(GOOD, (("parameters", "free", "value"), -1), (("bodies", 0, "inertia", "zz"), "l*free*l"))
     warnings = derive(Definition.read(given)).certificate["warnings"]
     assert [(w["pointer"], w["code"]) for w in warnings] == [
         ("/bodies/0/mass", "negative-mass"),

@@ -23,6 +23,8 @@ TREES: list[tuple[str, Path, Any, str, str]] = [
     ("illegal instance", (*INSTANCE, "name"), "two.x", "string-pattern-mismatch", "two.x"),
     ("reserved instance", (*INSTANCE, "name"), "world", "reserved-name", "world"),
     ("instance named as a parameter", (*INSTANCE, "name"), "g", "reserved-name", "g"),
+    ("parameter named as the time", ("parameters", "t"), {"value": 3}, "reserved-name", "t"),
+    ("parameter named as a number", ("parameters", "pi"), {"value": 3}, "reserved-name", "pi"),
     ("unknown parameter", (*INSTANCE, "parameters", "mass"), 3, "unknown-parameter", "mass"),
     ("binding with an unknown name", (*INSTANCE, "parameters", "l"), "2*three.l", "unknown-name", "three.l"),
     ("binding that does not parse", (*INSTANCE, "parameters", "l"), "2*(", "bad-expression", "column 4"),

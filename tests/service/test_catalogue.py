@@ -9,6 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.schemas.resources import AliasView, FormulaIndex, VersionPage, VersionView
+from substructures.printers import FORMATS
 
 from .conftest import PENDULUM, SLIDER, at_once
 
@@ -104,6 +105,70 @@ def test_single_formulas(filled: TestClient) -> None:
         assert filled.get(f"{base}/Omega", params=wrong).status_code == 404
     assert filled.get(f"{base}/Omega", params={"component": "7"}).status_code == 422
     assert filled.get(f"{base}/nothing").status_code == 404
+
+
+#: a pendulum has neither products of its one joint with others, nor springs; its mass centre hangs on its axis
+VANISHING = {
+    "kappa": [1, 1, 3],
+    "christoffel": [1, 1, 1],
+    "potential": [],
+    "U?body=rod&coordinate=q": [3],
+    "U?body=rod&coordinate=q&component=1": [],
+    "christoffel?component=0,0,0": [],
+    "kappa?coordinate=q": [3],
+}
+
+
+@pytest.mark.parametrize("what", VANISHING)
+def test_formulas_that_vanish_are_zeros(filled: TestClient, what: str) -> None:
+    answer = filled.get(f"/v1/substructures/pendulum/formulas/{what}")
+    assert answer.status_code == 200, answer.text
+    assert [(o["shape"], o["entries"]) for o in answer.json()["outputs"].values()] == [(VANISHING[what], [])]
+    for form in FORMATS:
+        assert filled.get(f"/v1/substructures/pendulum/formulas/{what}", params={"format": form}).status_code == 200
+
+
+def test_groups_have_their_vanishing_members(filled: TestClient) -> None:
+    outputs = filled.get("/v1/substructures/pendulum/formulas/interface").json()["outputs"]
+    assert {"f", "n", "K", "kappa", "F", "N", "composite.m", "composite.s", "composite.J"} == outputs.keys()
+
+
+@pytest.mark.parametrize("what", ["kappa?body=nobody", "U?coordinate=x", "nothing", "frame.E", "potential?body=rod"])
+def test_what_a_part_does_not_have_is_not_found(filled: TestClient, what: str) -> None:
+    answer = filled.get(f"/v1/substructures/pendulum/formulas/{what}")
+    assert (answer.status_code, answer.json()["code"]) == (404, "unknown-formula")
+
+
+@pytest.mark.parametrize("what", ["kappa?component=3", "christoffel?component=0,0,1", "potential?component=0"])
+def test_components_beyond_a_formula_that_vanishes(filled: TestClient, what: str) -> None:
+    answer = filled.get(f"/v1/substructures/pendulum/formulas/{what}")
+    assert (answer.status_code, answer.json()["code"]) == (422, "component")
+
+
+def test_every_format_counts_in_one_way_and_says_so(filled: TestClient) -> None:
+    """F of joint 1 for coordinate 1 is (-m l cos q, -m l sin q, 0); places in the query count from 0."""
+
+    def printed(form: str, **query: Any) -> str:
+        answer = filled.get("/v1/substructures/pendulum/formulas/F", params={"format": form, **query})
+        assert answer.status_code == 200
+        return answer.text
+
+    text = printed("text", coordinate="q")
+    assert "F[1,1]: 3, indices from 1" in text
+    assert "F[1,1][2] = -sin(q)" in text
+    assert "F[1,1,2]: one element, indices from 1" in printed("text", coordinate="q", component=1)
+    assert "F[1, 1, 2] = -sin(q)" in printed("text")
+    latex = printed("latex")
+    assert "% indices from 1" in latex
+    assert "F_{112} &= -" in latex
+    document = json.loads(printed("json", coordinate="q", component=1))
+    assert list(document["outputs"]) == ["F[0,0,1]"]
+    assert json.loads(printed("json"))["outputs"]["F"]["index"] == [[0, 0, 0], [0, 0, 1]]
+    from_zero, from_one = ("python", "c", "sympy"), ("matlab", "julia")
+    assert all("indices from 0" in printed(form) for form in from_zero)
+    assert all("indices from 1" in printed(form) for form in from_one)
+    whole = filled.get("/v1/trees/cell/christoffel").json()
+    assert whole["indices_from"] == 0
 
 
 def test_formulas_stand_alone_unless_asked_otherwise(filled: TestClient) -> None:

@@ -265,3 +265,23 @@ def test_no_limit_breaks_a_server(tmp_path: Path) -> None:
         assert client.get("/v1/limits").json().items() >= largest.items()
         answer = client.post("/v1/substructures", json=PENDULUM, headers={"Idempotency-Key": "a"})
         assert answer.status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("prefer", "status", "applied"),
+    [
+        ("respond-async", 202, "respond-async"),
+        ("wait=5", 200, "wait=5"),
+        ("wait=5, respond-async", 202, "respond-async, wait=5"),
+        ("wait=0", 202, "wait=0"),
+        ("wait=100000", 200, None),
+        ("handling=strict", 200, None),
+        ("", 200, None),
+    ],
+)
+def test_preferences_that_were_followed_are_told(
+    filled: TestClient, prefer: str, status: int, applied: str | None
+) -> None:
+    body = {"quantities": ["metric"], "q": [0]}
+    answer = filled.post("/v1/trees/cell/evaluations", json=body, headers={"Prefer": prefer})
+    assert (answer.status_code, answer.headers.get("preference-applied")) == (status, applied)

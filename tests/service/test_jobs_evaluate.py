@@ -154,3 +154,19 @@ def test_one_row_of_coordinates_and_many_times_are_many_states(library: MemoryLi
     made = outcomes(library, "evaluate", {"items": [{"tree": "cell", "request": request}]}, Limits(job_states=2))
     assert [outcome.summary["range"] for outcome in made] == [[0, 2], [2, 3]]
     assert joined(made, "metric").shape == (3, 1, 1)
+
+
+def test_items_tell_warnings(library: MemoryLibrary) -> None:
+    item = {
+        "tree": "bounded",
+        "request": {"quantities": ["metric"], "parameters": {"p.m": {"value": -500, "unit": "g"}}},
+    }
+    grid = {"a.x": [0, 1, 3]}
+    (made,) = outcomes(library, "evaluate", {"items": [{**item, "grid": grid}]})
+    found = [(warning["pointer"], warning["code"]) for warning in made.summary["warnings"]]
+    impossible = [("/parameters", "negative-mass"), ("/parameters", "impossible-inertia")]
+    assert found == [("/gravity", "gravity-not-given"), *impossible, ("/q", "limits-left")]
+    assert list(read_npz(io.BytesIO(made.files["result"]), 2**20)["warnings.code"]) == [code for _, code in found]
+    request = {"q": [1.9, 0], "qd": [1, 0], "span": [0, 1]}
+    (motion,) = outcomes(library, "simulate", {"items": [{"tree": "bounded", "request": request}]})
+    assert [warning["code"] for warning in motion.summary["warnings"]] == ["gravity-not-given", "limits-left"]

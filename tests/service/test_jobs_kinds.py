@@ -15,7 +15,7 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE
-from .job_outcomes import known_library, outcomes, quiet
+from .job_outcomes import faults, known_library, outcomes, quiet
 from .jobs_library import MemoryLibrary
 
 
@@ -143,3 +143,19 @@ def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFi
     assert outcome.problem is not None
     assert (outcome.problem["status"], outcome.problem["code"]) == (500, "internal-error")
     assert "KeyError" in caplog.text
+
+
+def test_units_are_checked_before_anything_is_queued(library: MemoryLibrary) -> None:
+    """A definition and a tree in other units are taken; contradictions are refused with their places."""
+    lengths = {"l": {"value": 1200, "unit": "mm"}, "m": {"unit": "kg"}}
+    given = {**PENDULUM, "name": "mm", "parameters": lengths}
+    (made,) = outcomes(library, "derive", {"items": [given]})
+    assert made.summary["name"] == "mm"
+    wrong = {**given, "bodies": [{**PENDULUM["bodies"][0], "mass": {"value": 3, "unit": "furlong"}}]}
+    assert faults(library, "derive", {"items": [wrong]}) == {("/bodies/0/mass", "unit-mismatch")}
+    bound = {**TREE["instances"][0], "parameters": {"l": {"value": 2, "unit": "cm"}}}
+    tree = {**TREE, "name": "mm", "instances": [bound]}
+    (made,) = outcomes(library, "assemble", {"items": [tree]})
+    assert made.summary["warnings"] == []
+    tree["gravity"] = [0, {"value": 1, "unit": "N"}, 0]
+    assert faults(library, "assemble", {"items": [tree]}) == {("/gravity/1", "unit-mismatch")}

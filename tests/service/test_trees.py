@@ -176,3 +176,21 @@ def test_hosts_in_a_cycle(filled: TestClient, rows: Any) -> None:
     assert answer.status_code == 422
     assert answer.json()["errors"][0]["pointer"] == "/instances/0/at"
     assert rows() == before
+
+
+def test_an_instance_may_be_called_t(filled: TestClient) -> None:
+    """The time is ``t``, what belongs to an instance of this name ``t.<name>``: they are never taken for each other."""
+    slow = {**SLIDER, "name": "driven", "loads": [{"type": "joint", "coordinate": "x", "force": "3*t"}]}
+    assert filled.post("/v1/substructures", json=slow).status_code == 201
+    body = {"name": "clock", "gravity": [0, 0, 0], "instances": [{"name": "t", "substructure": "driven"}]}
+    tree = filled.post("/v1/trees", json=body)
+    assert tree.status_code == 201, tree.text
+    assert tree.json()["coordinates"] == ["t.x"]
+    request = {"quantities": ["forces"], "q": [0.5], "t": 2, "parameters": {"t.k": 4}, "inputs": {"tau.t.x": 1}}
+    # tau + 3 t - k x
+    assert filled.post("/v1/trees/clock/evaluations", json=request).json()["forces"] == [5.0]
+    text = filled.get("/v1/trees/clock/forces", params={"format": "text"}).text
+    assert "forces[1] = 3*t + tau.t.x - t.k*t.x" in text
+    motion = {"q": [0], "span": [0, 1], "parameters": {"t.k": 0}, "inputs": {"tau.t.x": "t.x' - t.x'"}}
+    found = filled.post("/v1/trees/clock/simulations", json=motion).json()
+    assert found["q"][-1][0] == pytest.approx(3 / 0.5 / 6, rel=1e-8)  # m x'' = 3 t

@@ -13,13 +13,13 @@ from typing import Any
 import orjson
 
 from service.analyses.numbers import ANALYSES
-from service.analyses.results import JSON, MEDIA_TYPES, trajectory_of, written
+from service.analyses.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
-from service.jobs.kinds.values import check_analysis
+from service.jobs.kinds.values import check_analysis, without_formulas
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import InvalidDocument
@@ -27,7 +27,7 @@ from substructures.errors import InvalidDocument
 #: analyses that begin at one state, and those whose coordinates are only where something is looked for
 MOTIONS = ("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states")
 NEAR = ("equilibria", "root-loci")
-TOLD = ("status", "message", "is_right", "cost")
+TOLD = ("status", "message", "is_right", "cost", "warnings")
 
 
 def analysis_kind(name: str | None = None) -> Kind:
@@ -75,7 +75,7 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
         raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
     for request, place in zip(given, places, strict=True):
         with inside(place):
-            ANALYSES[name].read(request, "closures" in summary)
+            ANALYSES[name].read(request, without_formulas(summary))
             if name not in NEAR:
                 check_analysis(summary, request, name in MOTIONS, not ANALYSES[name].needs_parts)
     return given
@@ -97,6 +97,6 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     return Outcome({**summary, **{key: told[key] for key in TOLD if key in told}}, {"result": data})
 
 
-def _brief(result: Any) -> Any:
-    motion = trajectory_of(result)
-    return result if motion is None else motion.summary()
+def _brief(found: Answered) -> Answered:
+    motion = trajectory_of(found)
+    return found if motion is None else Answered(motion.summary(), found.warnings)

@@ -17,8 +17,10 @@ from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
+from substructures.part.units import described
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
+from substructures.tree.units import check_tree_units
 
 WORLD = "world"
 DEFINITIONS = 1000  # kept decoded
@@ -29,9 +31,12 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
     return [{"tree": item, "nodes": limits.job_nodes}]
 
 
-def pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition."""
-    spec = TreeSpec.read(item["tree"])
+def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -> tuple[ItemDocument, tuple[str, ...]]:
+    """References become ``name@sha256:...``; ``programs`` says which program belongs to which definition.
+
+    ``is_stored``: the tree comes out of the store.
+    """
+    spec = TreeSpec.stored(item["tree"]) if is_stored else TreeSpec.read(item["tree"])
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
     faults = [
         Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance))
@@ -40,6 +45,10 @@ def pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tup
     ]
     found = {name: version for name, version in versions.items() if version is not None}
     faults += _faults(spec, found, library)
+    if not is_stored:
+        definitions = {each.name: _definition(each, found, library) for each in spec.instances}
+        known = {name: described(each.parameters) for name, each in definitions.items() if each is not None}
+        faults += check_tree_units(spec, known).faults
     if faults:
         raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
@@ -80,7 +89,7 @@ def _definition(instance: Instance, versions: Mapping[str, StoredVersion], libra
         return None
     found = _definitions.get(version.digest)
     if found is None:
-        found = Definition.read(read_json(library.blob(version.digest) or b"{}"))
+        found = Definition.stored(read_json(library.blob(version.digest) or b"{}"))
         _definitions.put(version.digest, found)
     return found
 
@@ -116,13 +125,14 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "dof": model.dof,
         "operations": model.operations["total"],
         "parts": {name: part.definition.digest for name, part in parts.items()},
+        "warnings": model.certificate["warnings"],
     }
     return Outcome(summary, files)
 
 
 def tree_parts(item: ItemDocument, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a pinned tree and its parts by instance. Raises InvalidDocument, TooLarge."""
-    spec = TreeSpec.read(item["tree"])
+    spec = TreeSpec.stored(item["tree"])
     return spec, {i.name: _part(k, i, item, blobs) for k, i in enumerate(spec.instances)}
 
 

@@ -24,7 +24,7 @@ def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
     key = definition, program
     part = _parts.get(key)
     if part is None:
-        part = Part.load(Definition.read(read_json(blobs[definition])), blobs[program], {})
+        part = Part.load(Definition.stored(read_json(blobs[definition])), blobs[program], {})
         _parts.put(key, part)
     return part
 
@@ -42,8 +42,9 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
-    kept = ("coordinates", "joints", "frames", "closures")
-    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters}
+    kept = ("coordinates", "joints", "frames", "closures", "inputs")
+    told = {"warnings": summary["certificate"].get("warnings", [])}
+    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters, "certificate": told}
 
 
 def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
@@ -51,6 +52,6 @@ def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
     key = item["tree"], item["program"]
     model = _models.get(key)
     if model is None:
-        model = Model.load({**item["model"], "certificate": {}}, blobs[item["program"]])
+        model = Model.load({"certificate": {}, **item["model"]}, blobs[item["program"]])
         _models.put(key, model)
     return model

@@ -20,9 +20,10 @@ from substructures.expr.syntax import ExpressionError
 from substructures.part.definition import Definition
 from substructures.part.part import derive
 from substructures.part.topology import topology
+from substructures.part.units import check_units
 
 #: fields of bodies and ports that are no expressions in parameters, or none that deriving reads
-TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits")
+TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits", "unit")
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
@@ -31,7 +32,7 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
 
 def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     definition = Definition.read(item["definition"])
-    topology(definition)
+    check_units(definition, topology(definition)).require()
     plain = read_json(definition.canonical())
     faults = [
         fault

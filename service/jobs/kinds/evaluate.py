@@ -19,12 +19,12 @@ import numpy as np
 
 from service.cache import Cache
 from service.jobs.engine import Outcome
-from service.jobs.kinds.decoded import model_of, summary_of
+from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
-from service.jobs.kinds.trees import pinned, regressor_of
+from service.jobs.kinds.trees import pinned, sources_of
 from service.jobs.kinds.values import check_described, check_states
 from service.schemas.jobs import ItemDocument
 from service.schemas.numbers import EvaluationRequest
@@ -39,7 +39,6 @@ from substructures.formats.columns import request_of
 from substructures.quantities.evaluation import (
     QUANTITIES,
     REGRESSOR,
-    Sources,
     evaluate,
     interpreted,
     numbers_per_state,
@@ -49,7 +48,7 @@ from substructures.tree.model import Model
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
-ABOUT = ("coordinates", "digest", "frames", "columns")
+ABOUT = ("coordinates", "digest", "frames", "columns", "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 CAPACITY = 2_000_000
@@ -115,7 +114,7 @@ def _described(
     """The grid or sample, complete; empty when the states are listed."""
     coordinates = summary["coordinates"]
     known = {*coordinates, *summary["parameters"]}
-    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates}
+    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates} | summary.get("inputs", {}).keys()
     if "grid" in item:
         grid = read_grid(item["grid"], known)
         _check_once(request, "/grid", [name for name, _ in grid])
@@ -182,10 +181,10 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """File ``result``: the answer of an evaluation, and the states where they were described as ``states.<name>``."""
-    model = model_of(item, blobs)
+    sources = sources_of(item, blobs)
+    model = sources.model
     progress(0.1)
     columns = _columns(item)
-    sources = Sources(model, regressor=lambda: regressor_of(item, blobs)) if "parts" in item else None
     request = EvaluationRequest.read(_with_columns(model, _uploaded(item, blobs), columns))
     answer = evaluate(model, **request.arguments(), evaluator=_evaluator, sources=sources).plain()
     progress(0.9)
@@ -196,6 +195,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "media_type": FORMATS[item["format"]],
         "bytes": len(data),
         "failures": len(answer["failures"]),
+        "warnings": answer["warnings"],
     }
     return Outcome(summary, {"result": data})
 
@@ -235,7 +235,7 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
         return dict(request)
     zeros = np.zeros(len(next(iter(columns.values()))))
     rest = {name: x for name, x in columns.items() if name.removesuffix("'") not in model.coordinates}
-    inputs = {name: x for name, x in rest.items() if name.startswith("tau.")}
+    inputs = {name: x for name, x in rest.items() if name in model.input_names}
     return {
         **request,
         "q": {name: columns.get(name, zeros) for name in model.coordinates},

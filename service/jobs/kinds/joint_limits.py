@@ -15,7 +15,7 @@ from substructures.tree.document import Instance, TreeSpec
 
 def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, float] | None]:
     """By coordinate of the tree; -pi to pi for a revolute joint without limits, None where a range has to be given."""
-    spec = TreeSpec.read(read_json(tree.spec.encode()))
+    spec = TreeSpec.stored(read_json(tree.spec.encode()))
     result = {}
     for instance in spec.instances:
         definition = _definition(instance, library)
@@ -31,7 +31,7 @@ def _definition(instance: Instance, library: Library) -> Definition:
     content = library.blob(digest)
     if content is None:
         raise LookupError(f"the definition {digest} is missing")
-    return Definition.read(read_json(content))
+    return Definition.stored(read_json(content))
 
 
 def _limits(definition: Definition, joint: JointEntry) -> tuple[float, float] | None:

@@ -13,25 +13,58 @@ from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json
+from substructures.part.definition import Definition
+from substructures.quantities.evaluation import Sources
 from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.plausibility import Plausibility
 
 CAPACITY = 2_000_000  # operations
 
+TREES = 200  # with what judges their values
+
+_plausibilities: Cache[Plausibility] = Cache(TREES, lambda _: 1)
 _regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 
 
 def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
-    """The item with its tree pinned, and the digests of the blobs that it needs.
+    """The item with its tree pinned, and the digests of the blobs that it needs: program and definitions.
 
     ``has_parts``: also the parts, from which the regressor is derived with at most ``nodes`` operations. Raises
     InvalidDocument.
     """
     tree = known_tree(item, library)
-    found = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree)}
+    spec = read_json(tree.spec.encode())
+    found = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "model": pinned_model(tree), "spec": spec}
     if not has_parts:
-        return {**item, **found}, (tree.program,)
-    parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": nodes}, library)
+        references = (instance.get("substructure", "") for instance in spec.get("instances", ()))
+        definitions = dict.fromkeys(digest for each in references if (digest := each.partition("@")[2]))
+        return {**item, **found}, (tree.program, *definitions)
+    parts, blobs = pinned_tree({"tree": spec, "nodes": nodes}, library, is_stored=True)
     return {**item, **found, "parts": parts}, (tree.program, *blobs)
+
+
+def plausibility_of(item: ItemDocument, blobs: Blobs) -> Plausibility:
+    """What judges the values that the tree of an item is evaluated with."""
+    found = _plausibilities.get(item["tree"])
+    if found is None:
+        spec = TreeSpec.stored(item["spec"])
+        found = Plausibility(spec, {each.name: _definition(each, blobs) for each in spec.instances})
+        _plausibilities.put(item["tree"], found)
+    return found
+
+
+def _definition(instance: Instance, blobs: Blobs) -> Definition:
+    if instance.definition is not None:
+        return instance.definition
+    return Definition.stored(read_json(blobs[instance.digest]))
+
+
+def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
+    """What quantities of the tree of an item are computed from. Raises InvalidProgram."""
+    regressor = (lambda: regressor_of(item, blobs)) if "parts" in item else None
+    plausibility = (lambda: plausibility_of(item, blobs)) if "spec" in item else None
+    return Sources(model_of(item, blobs), regressor=regressor, plausibility=plausibility)
 
 
 def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
@@ -47,4 +80,6 @@ def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
 def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> Source:
     """What analyses of the tree of an item work on. Raises InvalidProgram."""
     digest = item["tree"].partition("@")[2]
-    return Source(model_of(item, blobs), digest, lambda: regressor_of(item, blobs), Limits(**limits))
+    sources = sources_of(item, blobs)
+    judge = sources.plausibility
+    return Source(sources.model, digest, lambda: regressor_of(item, blobs), Limits(**limits), plausibility=judge)

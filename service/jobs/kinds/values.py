@@ -7,19 +7,21 @@ from typing import Any
 
 from service.schemas.numbers import EvaluationRequest
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, listed
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, read_quantities
 from substructures.quantities.states import States, given_values, read_states
+from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
 
 Request = Mapping[str, Any]
 
 
 def without_formulas(summary: Mapping[str, Any]) -> Model:
-    """The model of a stored summary with an empty program, for checks of names and lengths."""
+    """The model of a stored summary with an empty program, for checks of names, units and lengths."""
     names = tuple(summary["coordinates"]), summary["joints"], tuple(summary["frames"])
-    return Model(Program((), (), {}), *names, summary["parameters"], {})
+    closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
+    return Model(Program((), (), {}), *names, summary["parameters"], {}, closures, summary.get("inputs", {}))
 
 
 def check_states(summary: Mapping[str, Any], request: EvaluationRequest) -> States:
@@ -39,8 +41,9 @@ def check_analysis(summary: Mapping[str, Any], request: Request, is_motion: bool
         states = {name: request.get(name) for name in ("q", "qd", "qdd")}
         read_states(without_formulas(summary), states, 1 if is_motion else None)
     given, known = request.get("parameters"), summary["parameters"]
+    unknown = f"unknown parameter '{{}}'; there are {listed(known)}"
     faults = [
-        Fault("/parameters" + pointer_step(name), "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        Fault("/parameters" + pointer_step(name), "unknown-parameter", unknown.format(name[:80]))
         for name in (given if has_all and isinstance(given, Mapping) else ())
         if name not in known
     ]
@@ -70,4 +73,4 @@ def _check_values(summary: Mapping[str, Any], request: EvaluationRequest, count:
         known = list(given) if isinstance(given, Mapping) else []
         if field == "parameters" and all(quantity.source != REGRESSOR for quantity in quantities):
             known = list(summary["parameters"])  # the regressor has more of them; inputs of loads are in the formulas
-        given_values(given, field, f"/{field}", count, known)
+        given_values(given, field, f"/{field}", count, known, without_formulas(summary).units)

@@ -34,7 +34,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """File ``certificate``. Raises VerificationFailed, InvalidProgram."""
-    definition = Definition.read(read_json(blobs[item["substructure"].partition("@")[2]]))
+    definition = Definition.stored(read_json(blobs[item["substructure"].partition("@")[2]]))
     part = Part.load(definition, blobs[item["program"]], {})  # never one that was decoded before
     if part.program.digest != item["program"]:
         raise InvalidProgram(f"the stored program has the digest {part.program.digest}, not {item['program']}")

@@ -158,3 +158,7 @@ def declared(model: Model, scope: Scope, symbols: Mapping[str, Symbol]) -> None:
         scope.declare(f"{name}'", "velocity", f"{unit}/s")
         scope.declare(f"{name}''", "acceleration", f"{unit}/s^2")
     scope.declare("t", "time", "s")
+    for kind, unused in (("parameter", model.parameters), ("input", model.inputs)):
+        for name, given in unused.items():
+            if name not in scope.names:
+                scope.declare(name, kind, str(given.get("unit", "")))

@@ -42,6 +42,7 @@ def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | No
     kinds |= {f"{name}'": Symbol(f"{name}'", "velocity") for name in model.coordinates}
     kinds |= {name: Symbol(name, "parameter", str(p.get("unit", ""))) for name, p in model.parameters.items()}
     if inputs:
+        kinds |= {name: Symbol(name, "input", str(given.get("unit", ""))) for name, given in model.inputs.items()}
         kinds |= {s.name: s for s in model.program.symbols if s.kind == "input"}
 
     def lookup(name: str) -> Expr | None:

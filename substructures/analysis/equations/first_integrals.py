@@ -70,10 +70,12 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     What the reactions of closures could change, whatever they are, is not constant.
     Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
-    known = {s.name for s in model.program.symbols if s.kind == "input"}
+    known = model.input_names
     inputs, zero = list(inputs), list(zero)
     faults = [
-        Fault(f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'")
+        Fault(
+            f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(some)}"
+        )
         for field, names, some in (("inputs", inputs, known), ("parameters", zero, model.parameters))
         for name in names
         if name not in some

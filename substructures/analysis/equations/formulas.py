@@ -30,8 +30,8 @@ def require_tree(model: Model) -> None:
 
 
 def inputs_of(model: Model) -> tuple[str, ...]:
-    """All inputs: actuators and inputs of loads, in the order of the program's symbols."""
-    return tuple(s.name for s in model.program.symbols if s.kind == "input")
+    """All inputs: actuators and inputs of loads, in the order of the program's symbols; then those without effect."""
+    return model.input_names
 
 
 def multipliers_of(model: Model) -> tuple[str, ...]:

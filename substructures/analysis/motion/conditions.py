@@ -17,7 +17,7 @@ from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument
+from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.quantities.states import read_states, symbol_values
@@ -139,20 +139,21 @@ def read_conditions(
     # what moves is no constant of the kernels
     for name in (*state_names(model), "t", *formulas, *curves):
         values.pop(name, None)
-    inputs = {s.name for s in model.program.symbols if s.kind == "input"} | set(model.parameters)
+    inputs = {*model.input_names, *model.parameters}
     zero = frozenset(name for name, x in values.items() if x == 0 and name in inputs)
     x = np.concatenate([states.q[0], states.qd[0]])
     return Conditions(model, x, values, zero, formulas, curves, tuple(events), tuple(followed), expressions)
 
 
 def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]) -> dict[str, Curve]:
-    known = {s.name for s in model.program.symbols if s.kind == "input"}
-    known |= {f"tau.{name}" for name in model.coordinates}
+    known = model.input_names
     curves = {}
     for name, one in given.items():
         pointer = f"/inputs/{escape(name)}"
         if name not in known:
-            raise InvalidArgument.at(pointer, "unknown-input", f"unknown input '{name[:80]}'")
+            raise InvalidArgument.at(
+                pointer, "unknown-input", f"unknown input '{name[:80]}'; there are {listed(known)}"
+            )
         if isinstance(one, Table):
             require_covered(one, span, pointer)
             curves[name] = Curve(one)
@@ -160,8 +161,9 @@ def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]
 
 
 def _check_names(model: Model, parameters: Mapping[str, float], series: Mapping[str, object]) -> None:
+    unknown = f"unknown parameter '{{}}'; there are {listed(model.parameters)}"
     faults = [
-        Fault(f"/parameters/{escape(name)}", "unknown-parameter", f"unknown parameter '{name[:80]}'")
+        Fault(f"/parameters/{escape(name)}", "unknown-parameter", unknown.format(name[:80]))
         for name in parameters
         if name not in model.parameters
     ]

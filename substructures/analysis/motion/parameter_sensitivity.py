@@ -28,7 +28,7 @@ from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
-from substructures.errors import Fault, InvalidArgument
+from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
@@ -68,7 +68,11 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
 def _require_parameters(model: Model, names: Sequence[str], argument: str) -> None:
     """Raises InvalidArgument for names that are no parameters of the model."""
     faults = [
-        Fault(f"/{argument}/{i}", "unknown-parameter", f"unknown parameter '{str(name)[:80]}'")
+        Fault(
+            f"/{argument}/{i}",
+            "unknown-parameter",
+            f"unknown parameter '{str(name)[:80]}'; there are {listed(model.parameters)}",
+        )
         for i, name in enumerate(names)
         if name not in model.parameters
     ]

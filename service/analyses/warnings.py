@@ -1,0 +1,28 @@
+"""Warnings about requests for analyses: impossible bodies, parameters without effect, joint limits that are left."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from service.analyses.source import Source
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.states import read_states
+from substructures.quantities.warnings import Notice, value_warnings
+
+#: requests whose coordinates are only where something is looked for
+NEAR = ("EquilibriaRequest", "RootLocusRequest")
+
+
+def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -> list[Notice]:
+    """What is hardly meant about the parameters and states of a request, or about the motion that followed from it."""
+    given, inputs = (getattr(request, name, None) or {} for name in ("parameters", "inputs"))
+    sources = Sources(source.model, plausibility=source.plausibility)
+    if motion is not None:
+        return value_warnings(sources, given, inputs, motion.q, motion.t)
+    q: Any = None if type(request).__name__ in NEAR else getattr(request, "q", None)
+    states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
+    return value_warnings(sources, given, inputs, states)

@@ -1,0 +1,51 @@
+"""Warnings about the values that a model is evaluated with."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from substructures.array import Array
+from substructures.documents import escape
+from substructures.quantities.table import Sources
+
+Notice = Mapping[str, str]
+#: warnings about a tree that its parameters decide, so that those given here are looked at instead
+BY_VALUE = frozenset(("negative-mass", "negative-armature", "impossible-inertia"))
+#: warnings about a tree that concern whoever evaluates it
+TOLD = frozenset(("gravity-not-given",))
+
+
+def value_warnings(
+    sources: Sources,
+    parameters: Mapping[str, Any],
+    inputs: Collection[str],
+    q: Array,
+    t: Array | None = None,
+) -> list[Notice]:
+    """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
+    limits left by ``q`` (N, n), which is a motion if there are times ``t`` (N,); gravity that nobody gave.
+
+    Pointers lead into the request, and for what is so without it into the document of the tree.
+    """
+    model, judge = sources.model, sources.judge
+    tree: list[Notice] = list(model.certificate.get("warnings", ()))
+    notices = [each for each in tree if each["code"] in TOLD]
+    if judge is None:  # what the tree was stored with
+        notices += [each for each in tree if each["code"] in BY_VALUE]
+    elif parameters:
+        known = judge.at_defaults
+        notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters)]
+    else:
+        notices += judge.at_defaults
+    effective = model.effective if judge is None else model.effective | judge.limiting
+    notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
+    notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
+    if judge is not None:
+        notices += judge.left(model.coordinates, q, parameters, t)
+    return notices
+
+
+def _without_effect(kind: str, name: str) -> Notice:
+    message = f"no formula depends on the {kind} '{name}'"
+    return {"pointer": f"/{kind}s/{escape(name)}", "code": "no-effect", "message": message}

@@ -1,0 +1,231 @@
+"""What values may be beside being numbers: masses and inertias of rigid bodies, coordinates within their limits.
+
+Computed straight from the definitions and the bindings of a tree, never through stored formulas. What is wrong is no
+error but a warning ``{"pointer", "code", "message"}``: the equations hold for any numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.array import Array
+from substructures.documents.fields import in_si
+from substructures.expr.direct import value
+from substructures.expr.syntax import ExpressionError
+from substructures.part.definition import Body, Definition
+from substructures.part.topology import topology
+from substructures.part.units import Notice, names_in_limits
+from substructures.tree.document import TreeSpec
+
+#: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
+ROUNDING = 1e-9
+Indices = NDArray[np.intp]
+UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
+
+
+class _Values(Mapping[str, Any]):
+    """Values of parameters by their names in a tree: given, bound, or by default; computed when asked for."""
+
+    def __init__(self, texts: Mapping[str, Any], given: Mapping[str, Any]) -> None:
+        self._texts, self._found = texts, dict(given)
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._found:
+            self._found[name] = value(self._texts[name], self)
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._texts, **self._found})
+
+    def __len__(self) -> int:
+        return len({**self._texts, **self._found})
+
+
+class _OfInstance(Mapping[str, Any]):
+    """The same by their names in one definition."""
+
+    def __init__(self, tree: Mapping[str, Any], instance: str, names: Iterable[str]) -> None:
+        self._tree, self._instance, self._names = tree, instance, frozenset(names)
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._tree[f"{self._instance}.{name}"]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+@dataclass(frozen=True)
+class Plausibility:
+    """A tree document with the definitions of its instances by name."""
+
+    spec: TreeSpec
+    definitions: Mapping[str, Definition] = field(hash=False)
+
+    @cached_property
+    def _texts(self) -> dict[str, Any]:
+        """Bindings and defaults by name in the tree, in SI."""
+        texts = {name: each.value for name, each in self.spec.parameters.items()}
+        for instance in self.spec.instances:
+            own = self.definitions[instance.name].parameters
+            given = {name: each.value for name, each in own.items()} | instance.parameters
+            texts |= {f"{instance.name}.{name}": x for name, x in given.items()}
+        return {name: in_si(x) for name, x in texts.items() if x is not None}
+
+    @cached_property
+    def at_defaults(self) -> tuple[Notice, ...]:
+        """:meth:`inertias` where no parameter is given."""
+        return tuple(self.inertias({}))
+
+    @cached_property
+    def limiting(self) -> frozenset[str]:
+        """The parameters that limits depend on."""
+        pairs = self.definitions.items()
+        return frozenset(f"{instance}.{name}" for instance, each in pairs for name in names_in_limits(each))
+
+    @cached_property
+    def limits_at_defaults(self) -> dict[str, tuple[Any, Any, str]]:
+        """:meth:`limits` where no parameter is given."""
+        return self.limits({})
+
+    def inertias(self, given: Mapping[str, Any]) -> list[Notice]:
+        """Bodies and rotors that there cannot be with the parameters ``given`` (numbers, or (N,)) and defaults.
+
+        Pointers lead into the tree document, to the instance.
+        """
+        values, notices = _Values(self._texts, given), []
+        for i, instance in enumerate(self.spec.instances):
+            definition = self.definitions[instance.name]
+            names = _OfInstance(values, instance.name, definition.parameters)
+            for body in definition.bodies:
+                for code, message in _faults(body, names):
+                    told = f"instance '{instance.name}', body '{body.name}': {message}"
+                    notices.append({"pointer": f"/instances/{i}", "code": code, "message": told})
+        return notices
+
+    def limits(self, given: Mapping[str, Any]) -> dict[str, tuple[Any, Any, str]]:
+        """Lowest and highest value of every coordinate that has limits, and its unit; (N,) where parameters are."""
+        values, found = _Values(self._texts, given), {}
+        for instance in self.spec.instances:
+            definition = self.definitions[instance.name]
+            names = _OfInstance(values, instance.name, definition.parameters)
+            for joint in topology(definition).joints:
+                limits = definition.bodies[joint.body].joint.limits
+                pair = limits[joint.step] if limits and isinstance(limits[0], tuple) else limits
+                low, high = (_value(x, names) for x in pair or (None, None))
+                if low is not None and high is not None:
+                    found[f"{instance.name}.{joint.coordinate}"] = low, high, UNITS[joint.s]
+        return found
+
+    def left(
+        self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any], t: Array | None = None
+    ) -> list[Notice]:
+        """Coordinates beyond their limits in states ``q`` (N, n); ``t`` (N,): their times, if they are a motion."""
+        limits = self.limits(given) if given else self.limits_at_defaults
+        ends = _ends(limits, coordinates) if given else self._ends_at_defaults(coordinates)
+        if ((q >= ends[0]) & (q <= ends[1])).all():
+            return []
+        notices = []
+        for a, name in enumerate(coordinates):
+            if name not in limits:
+                continue
+            low, high, unit = limits[name]
+            bad = np.flatnonzero((q[:, a] < low) | (q[:, a] > high))
+            if len(bad):
+                first = int(bad[0])
+                where = f"at t = {t[first]:.6g} s" if t is not None else f"in state {first}"
+                range_ = " to ".join(f"{np.broadcast_to(x, len(q))[first]:.6g}" for x in (low, high))
+                message = (
+                    f"'{name}' is {q[first, a]:.6g} {unit} {where}{_more(len(bad))}; its joint has limits {range_}"
+                )
+                notices.append({"pointer": "/q", "code": "limits-left", "message": message})
+        return notices
+
+    def _ends_at_defaults(self, coordinates: tuple[str, ...]) -> tuple[Array, Array]:
+        if coordinates not in self._kept:
+            self._kept[coordinates] = _ends(self.limits_at_defaults, coordinates)
+        return self._kept[coordinates]
+
+    @cached_property
+    def _kept(self) -> dict[tuple[str, ...], tuple[Array, Array]]:
+        return {}
+
+
+def _ends(limits: Mapping[str, tuple[Any, Any, str]], coordinates: Sequence[str]) -> tuple[Array, Array]:
+    """Lower and upper limits (n,), or (N, n) where parameters differ from state to state; infinite without limits."""
+    none = (-np.inf, np.inf, "")
+    low, high = (np.broadcast_arrays(*(limits.get(name, none)[k] for name in coordinates)) for k in (0, 1))
+    return np.stack(low, -1) if low else np.zeros(0), np.stack(high, -1) if high else np.zeros(0)
+
+
+def _more(count: int) -> str:
+    return f" (and in {count - 1} more)" if count > 1 else ""
+
+
+def _value(given: Any, names: Mapping[str, Any]) -> Any:
+    """The value, None of what is not given or names a parameter without one."""
+    try:
+        return None if given is None else value(in_si(given), names)
+    except ExpressionError:
+        return None
+
+
+def _faults(body: Body, names: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Code and message of what a body cannot have; numbers alone were looked at when formulas were derived."""
+    tensor = body.inertia
+    inertia = [getattr(tensor, e) for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    armature = body.joint.armature
+    for given in armature if isinstance(armature, tuple) else (armature,):
+        if isinstance(given, str):
+            yield from _negative("armature", _value(given, names), "kg m^2")
+    if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
+        return
+    numbers = [_value(x, names) for x in (body.mass, *body.com, *inertia)]
+    if isinstance(body.mass, str):
+        yield from _negative("mass", numbers[0], "kg")
+    if all(x is not None for x in numbers):
+        m, x, y, z, *moments = np.broadcast_arrays(*numbers)
+        yield from _impossible(moments, (m, (x, y, z)) if tensor.about == "origin" else None)
+
+
+def _negative(what: str, given: Any, unit: str) -> Iterator[tuple[str, str]]:
+    if given is None:
+        return
+    found = np.atleast_1d(given)
+    bad = np.flatnonzero(~(found >= 0))
+    if len(bad):
+        is_what = "is negative" if found[bad[0]] < 0 else "is not a number"
+        yield f"negative-{what}", f"the {what} {found[bad[0]]:g} {unit} {is_what}{_place(found, bad)}"
+
+
+def _place(found: Array, bad: Indices) -> str:
+    return f", in state {bad[0]}{_more(len(bad))}" if len(found) > 1 else ""
+
+
+def _impossible(moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | None) -> Iterator[tuple[str, str]]:
+    """The tensor about the mass centre must have principal moments that obey the triangle inequality."""
+    xx, yy, zz, xy, xz, yz = moments
+    Theta = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
+    # J = tr(Theta)/2 1 - Theta has no negative eigenvalue;   about another point J_C = J - m h h^T
+    J = np.trace(Theta, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - Theta
+    if shift is not None:
+        h = np.stack(shift[1], -1)
+        J = J - shift[0][..., None, None] * h[..., :, None] * h[..., None, :]
+    J = J.reshape(-1, 3, 3)
+    finite = np.isfinite(J).all(axis=(1, 2))
+    eigenvalues = np.linalg.eigvalsh(np.where(finite[:, None, None], J, 0.0))
+    bad = np.flatnonzero(~finite | (eigenvalues[:, 0] < -ROUNDING * np.abs(eigenvalues).max(axis=1)))
+    if len(bad):
+        shown = ", ".join(f"{x:.6g}" for x in np.sort(eigenvalues[bad[0]].sum() - eigenvalues[bad[0]]))
+        message = f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre"
+        yield "impossible-inertia", f"{message} (triangle inequality){_place(J, bad)}"
