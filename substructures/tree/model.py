@@ -131,7 +131,7 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
     joints = "".join(m.part.joints for m in assembly.mounted)
-    certificate = certify_tree(assembly, names, result, seconds)
+    certificate = certify_tree(spec, {name: part.definition for name, part in parts.items()}, result, seconds)
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
     rows = tuple(cut.rows for cut in assembly.cuts)

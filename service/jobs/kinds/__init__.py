@@ -19,8 +19,8 @@ from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
+from substructures.certificate.compare import VerificationFailed
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
-from substructures.part.certificate import VerificationFailed
 
 __all__ = ["KINDS", "Library", "expand", "resolve", "run"]
 
