@@ -136,11 +136,10 @@ def _part(store: Store, connection: Connection, index: int, instance: Instance) 
     pointer = f"/instances/{index}/substructure"
     ref = parse_reference(instance.substructure or "")
     version = versions.resolve(connection, ref) if ref is not None else None
-    part = store.part(connection, version.digest) if version is not None else None
-    if part is None:
+    if version is None:
         message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
-    return part
+    return store.required_part(connection, version.digest)
 
 
 def _derived(store: Store, index: int, instance: Instance) -> Part:

@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
 
 from service.database.tables import tree_names, tree_parts, trees
+from service.integrity import checked
 from service.queries.common import insert_missing
 from service.references import Reference
 
@@ -45,7 +46,7 @@ def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -
 
 
 def resolve(connection: Connection, ref: Reference) -> Tree | None:
-    """The revision that a reference means, the latest for a bare name."""
+    """The revision that a reference means, the latest for a bare name. Raises Refused (``damaged-content``)."""
     if ref.digest is not None:
         row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
     elif ref.number is not None:
@@ -54,7 +55,11 @@ def resolve(connection: Connection, ref: Reference) -> Tree | None:
         return None
     else:
         row = connection.execute(_LATEST, {"name": ref.name}).first()
-    return None if row is None else Tree(*row)
+    if row is None:
+        return None
+    tree = Tree(*row)
+    checked(f"the document of tree {tree.name}@{tree.revision}", tree.digest, tree.spec.encode())
+    return tree
 
 
 def page(connection: Connection, after: str | None, size: int) -> list[Tree]:

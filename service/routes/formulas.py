@@ -54,9 +54,7 @@ def get_formula(
         rows = content.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
         if not rows:
             raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
-        part = store.part(connection, version.digest)
-    if part is None:
-        raise LookupError(f"the part {version.digest} is missing")
+        part = store.required_part(connection, version.digest)
     tag = etag(version.digest, quantity, str((body, coordinate, component, inertia)), *style.identity)
 
     def make() -> Answer:
