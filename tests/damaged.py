@@ -54,6 +54,8 @@ def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Gene
         more = [("rat", str(NUDGE.numerator), str(NUDGE.denominator)), ("mul", entry, n)]
         entries[k] = n + 1
     elif kind == "left out":
+        if name in ("E.turn", "E.tilt") and program.operations[entry] == ("int", "1"):
+            return None  # a factor of E that is left out is the identity, as it was
         entries, index = [*entries[:k], *entries[k + 1 :]], (*index[:k], *index[k + 1 :])
     else:
         others = [i for i, other in enumerate(entries) if other != entry]

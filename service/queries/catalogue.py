@@ -123,6 +123,15 @@ def _check_content(connection: Connection, ref: Reference) -> None:
         raise missing(f"the definition of {ref.name}@{row.version}", row.digest)
 
 
+def all_contents(connection: Connection) -> dict[str, str]:
+    """The digests of all definitions with the names of their versions; without one if a tree brought it along."""
+    query = select(versions.c.digest, versions.c.name, versions.c.version)
+    ordered = connection.execute(query.order_by(versions.c.name, versions.c.version))
+    named = {digest: f"{name}@{number}" for digest, name, number in ordered}
+    others = connection.execute(select(parts.c.digest).order_by(parts.c.digest)).scalars()
+    return named | {digest: "" for digest in others if digest not in named}
+
+
 def all_versions(connection: Connection) -> list[tuple[str, int]]:
     """Name and number of every version that is not withdrawn."""
     query = select(versions.c.name, versions.c.version).where(versions.c.yanked.is_(None))

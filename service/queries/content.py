@@ -112,6 +112,11 @@ def get_part(connection: Connection, digest: str) -> StoredPart | None:
     return StoredPart(definition, _unpacked(row.program, row.content), row.certificate.encode())
 
 
+def get_row(connection: Connection, digest: str) -> Mapping[str, Any]:
+    """All columns of a part, as they are stored. Raises NoResultFound."""
+    return dict(connection.execute(select(parts).where(parts.c.digest == digest)).mappings().one())
+
+
 def get_definition(connection: Connection, digest: str) -> bytes | None:
     """The definition of a part as stored. Raises Refused (``damaged-content``)."""
     text = connection.execute(select(parts.c.definition).where(parts.c.digest == digest)).scalar()

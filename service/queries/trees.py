@@ -62,6 +62,19 @@ def resolve(connection: Connection, ref: Reference) -> Tree | None:
     return tree
 
 
+def all_revisions(connection: Connection) -> list[tuple[str, int]]:
+    """Name and number of every revision."""
+    query = select(trees.c.name, trees.c.revision).order_by(trees.c.name, trees.c.revision)
+    return [(name, number) for name, number in connection.execute(query)]
+
+
+def replace_model(connection: Connection, tree: Tree) -> None:
+    """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
+    chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
+    values = {"program": tree.program, "dof": tree.dof, "summary": tree.summary}
+    connection.execute(update(trees).where(chosen).values(**values))
+
+
 def page(connection: Connection, after: str | None, size: int) -> list[Tree]:
     """Up to ``size`` latest revisions whose names follow ``after``."""
     query = _all().join(tree_names, _is_latest())

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Mapping
+from typing import Any
 
 from flint import arb
 
-from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame, coordinates_of, massless
-from substructures.certificate.closures import closure_outputs
+from substructures.certificate.bodies import (
+    CHAINS,
+    GROUND,
+    NONE,
+    Bodies,
+    Frame,
+    coordinates_of,
+    in_order,
+    massless,
+)
+from substructures.certificate.closures import ROWS, closure_outputs
 from substructures.certificate.dynamics import carried_by_joints, velocity_forces
 from substructures.certificate.linear import Ball, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import forces
@@ -55,6 +65,30 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
     if tree.get("closures"):
         closure_outputs(result, bodies, tree["closures"], numbers, rates)
     return result
+
+
+def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures."""
+    coordinates, kinds, frames = [], "", []
+    for instance in hosts_first(tree):
+        name, definition = instance["name"], definitions[instance["name"]]
+        bodies = in_order(definition)
+        for body in bodies:
+            coordinates += [f"{name}.{c}" for c in coordinates_of(body)]
+            kinds += "".join("P" if prismatic else "R" for prismatic, _ in CHAINS[body["joint"]["type"]])
+        ports = definition.get("ports", ())
+        frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
+    closures = [
+        {
+            "name": c["name"],
+            "type": c["type"],
+            "from": c["from"],
+            "to": c.get("to", "world"),
+            "rows": [*ROWS[c["type"]]],
+        }
+        for c in tree.get("closures", ())
+    ]
+    return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures}
 
 
 def hosts_first(tree: Plain) -> list[Plain]:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from time import perf_counter
 from typing import Any
 
-from substructures.certificate.compare import TOLERANCE, compare
+from substructures.certificate.compare import TOLERANCE, VerificationFailed, compare
 from substructures.certificate.states import STATES
-from substructures.certificate.tree_outputs import tree_outputs, tree_symbols
+from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
 from substructures.expr.program import Program
 from substructures.part.certificate import defaults_of, plain
 from substructures.part.definition import Definition
@@ -16,14 +16,22 @@ from substructures.tree.document import TreeSpec
 
 
 def certify_tree(
-    spec: TreeSpec, definitions: Mapping[str, Definition], result: Program, seconds: float
+    spec: TreeSpec,
+    definitions: Mapping[str, Definition],
+    summary: Mapping[str, Any],
+    result: Program,
+    seconds: float = 0.0,
 ) -> dict[str, Any]:
     """Compare every output of a coupled tree with the documents (certificate.md); ``definitions``: by instance.
 
+    ``summary``: what the axes of the outputs are called, as :meth:`substructures.tree.model.Model.summary` says it.
     Raises VerificationFailed for a wrong formula, also where a part's stored program was wrong.
     """
     start = perf_counter()
     tree, parts = plain(spec), {name: plain(definition) for name, definition in definitions.items()}
+    for name, said in described(tree, parts).items():
+        if summary.get(name, []) != said:
+            raise VerificationFailed(f"the {name} of the model are not those of the documents: {said}")
     kinds = tree_symbols(tree, parts)
     defaults = defaults_of(tree)
     for name, part in parts.items():

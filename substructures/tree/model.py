@@ -22,7 +22,7 @@ closure.*              m ...        of a tree with closures: see :mod:`substruct
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
 from typing import Any
@@ -76,13 +76,18 @@ class Model:
         """Number of coordinates."""
         return len(self.coordinates)
 
-    def summary(self) -> dict[str, Any]:
-        """Plain data that is stored beside the program."""
+    def described(self) -> dict[str, Any]:
+        """What the axes of the outputs are, as plain data."""
         closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
         return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
             "frames": list(self.frames),
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data that is stored beside the program."""
+        return self.described() | {
             "parameters": {name: dict(p) for name, p in self.parameters.items()},
             "certificate": dict(self.certificate),
             "operations": self.operations,
@@ -131,11 +136,12 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
     joints = "".join(m.part.joints for m in assembly.mounted)
-    certificate = certify_tree(spec, {name: part.definition for name, part in parts.items()}, result, seconds)
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
     rows = tuple(cut.rows for cut in assembly.cuts)
-    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows)
+    model = Model(result, tuple(names), joints, _frame_names(assembly), parameters, {}, rows)
+    definitions = {name: part.definition for name, part in parts.items()}
+    return replace(model, certificate=certify_tree(spec, definitions, model.described(), result, seconds))
 
 
 def model_outputs(

@@ -14,6 +14,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
+from service.cli.main import main
 from service.database.packed import pack, unpack
 from service.settings import Settings
 from substructures.expr.program import Program
@@ -93,12 +94,8 @@ def gone_part(connection: sqlite3.Connection) -> None:
     connection.execute("DELETE FROM parts")
 
 
-GETS_PART = (
-    "/v1/substructures/pendulum/formulas/metric",
-    "/substructures/pendulum",
-    "/v1/substructures/pendulum/picture",
-)
-GETS_TREE = ("/v1/trees/cell/metric", "/trees/cell", "/v1/trees/cell/picture")
+GETS_PART = ("/v1/substructures/pendulum/formulas/metric", "/substructures/pendulum")
+GETS_TREE = ("/v1/trees/cell/metric", "/trees/cell")
 EVALUATION = {"q": [0.3], "quantities": ["metric"]}
 REGRESSOR = {"q": [0.3], "qd": [0], "qdd": [0], "quantities": ["regressor"]}
 
@@ -126,7 +123,7 @@ def refused(answer: Any, code: str) -> None:
 )
 def test_a_damaged_part_is_refused_by_name(template: Path, tmp_path: Path, damage: Damage, code: str) -> None:
     with opened(template, tmp_path, damage) as client:
-        for path in GETS_PART[:2] if damage is not gone_part else ():
+        for path in GETS_PART if damage is not gone_part else ():
             refused(client.get(path), code)
         refused(client.post("/v1/trees/cell/couplings", json=HAND), code)
         refused(client.post("/v1/trees/cell/evaluations", json=REGRESSOR), code)
@@ -139,7 +136,7 @@ def test_a_damaged_part_is_refused_by_name(template: Path, tmp_path: Path, damag
 )
 def test_a_damaged_tree_is_refused_by_name(template: Path, tmp_path: Path, damage: Damage, code: str) -> None:
     with opened(template, tmp_path, damage) as client:
-        for path in GETS_TREE[:2]:
+        for path in GETS_TREE:
             refused(client.get(path), code)
         refused(client.post("/v1/trees/cell/evaluations", json=EVALUATION), code)
 
@@ -162,3 +159,95 @@ def test_submitting_the_definition_again_mends_it(template: Path, tmp_path: Path
         assert (answer.status_code, answer.json()["version"]) == (200, 1)
         assert client.get("/v1/substructures/pendulum/formulas/metric").status_code == 200
         assert client.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+
+
+def wrong_formula(connection: sqlite3.Connection, table: str) -> None:
+    """A wrong program under the digest that it has: as an older version may have derived it."""
+    (old,) = connection.execute(f"SELECT program FROM {table} ORDER BY digest LIMIT 1").fetchone()  # noqa: S608
+    doubled(connection, old)
+    (content, nodes) = connection.execute("SELECT content, nodes FROM programs WHERE digest = ?", (old,)).fetchone()
+    new = Program.from_bytes(unpack(content)).digest
+    connection.execute("INSERT INTO programs VALUES (?, ?, ?, '')", (new, content, nodes))
+    connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))  # noqa: S608
+
+
+def other_axes(connection: sqlite3.Connection) -> None:
+    connection.execute("""UPDATE trees SET summary = replace(summary, '"joints":"R"', '"joints":"P"')""")
+
+
+def other_defaults(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE trees SET summary = replace(summary, '9.81', '9.82')")
+
+
+def other_index(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE formulas SET body = 'nose' WHERE body = 'rod' AND output = 'R'")
+
+
+def other_columns(connection: sqlite3.Connection) -> None:
+    connection.execute("""UPDATE parts SET coordinates = '["nose"]' WHERE coordinates = '["q"]'""")
+
+
+WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
+    (lambda c: wrong_formula(c, "parts"), ("substructure",), True),
+    (lambda c: wrong_formula(c, "trees"), ("tree cell@1",), True),
+    (wrong_part, ("substructure pendulum@1",), True),
+    (wrong_tree, ("tree cell@1",), True),
+    (torn_program, ("substructure pendulum@1",), True),
+    (gone_program, ("substructure pendulum@1",), True),
+    (gone_tree_program, ("tree cell@1",), True),
+    (other_axes, ("tree cell@1", "joints"), True),
+    (other_defaults, ("tree cell@1", "parameters"), True),
+    (other_index, ("substructure", "index"), True),
+    (other_columns, ("substructure pendulum@1", "coordinates"), True),
+    (other_definition, ("substructure pendulum@1",), False),
+    (broken_definition, ("substructure pendulum@1", "tree cell@1"), False),
+    (gone_part, ("substructure pendulum@1", "submit it again"), False),
+    (other_tree, ("tree cell@1",), False),
+]
+
+
+@pytest.mark.parametrize(("damage", "told", "can_mend"), WRONG)
+def test_verify_finds_and_mends(
+    template: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    damage: Damage,
+    told: tuple[str, ...],
+    can_mend: bool,
+) -> None:
+    """``substructures verify`` tells of it by name, also while a server runs; --repair mends what has its document."""
+    address = f"sqlite:///{tmp_path / 'store.db'}"
+    with opened(template, tmp_path, lambda _: None):
+        assert main(["verify", "--database", address]) == 0
+        assert "3 verified, 0 wrong" in capsys.readouterr().out
+    with opened(template, tmp_path, damage) as client:
+        assert main(["verify", "--database", address]) == 1
+        found = capsys.readouterr().out
+        assert all(words in found for words in told), found
+        assert main(["verify", "--database", address, "--repair"]) == int(not can_mend)
+        assert ("derived anew" in capsys.readouterr().out) or not can_mend
+        assert main(["verify", "--database", address]) == int(not can_mend)
+        if can_mend:
+            assert client.get("/v1/trees/cell/metric").status_code == 200
+            assert client.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("damage", "item", "code"),
+    [
+        (lambda c: wrong_formula(c, "parts"), {"substructure": "*"}, "verification-failed"),
+        (lambda c: wrong_formula(c, "trees"), {"tree": "*"}, "verification-failed"),
+        (wrong_tree, {"tree": "cell"}, "damaged-content"),
+        (other_axes, {"tree": "cell@1"}, "verification-failed"),
+        (gone_tree_program, {"tree": "cell"}, "missing-content"),
+    ],
+)
+def test_the_verify_job_finds(template: Path, tmp_path: Path, damage: Damage, item: dict[str, str], code: str) -> None:
+    with opened(template, tmp_path, damage) as client:
+        job = submitted(client, {"kind": "verify", "items": [item]})
+        finished(client, job)
+        items = client.get(f"/v1/jobs/{job}/items").json()["items"]
+        assert code in {(each["problem"] or {}).get("code") for each in items}
+    with opened(template, tmp_path, lambda _: None) as client:
+        job = submitted(client, {"kind": "verify", "items": [{"tree": "*"}, {"substructure": "*"}]})
+        assert finished(client, job)["state"] == "succeeded"
