@@ -82,7 +82,7 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
 def _definiteness(report: Mapping[str, Any]) -> list[str]:
     if "positive_definite" not in report:
         return []
-    where = "at the default values of the parameters and random states"
+    where = "at the default values of the parameters and a random state"
     match report["positive_definite"]:
         case True:
             return [f"The metric is positive definite {where}."]

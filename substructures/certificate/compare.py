@@ -114,13 +114,15 @@ class _Comparison:
         zero, worst = arb(0), self.errors.get(name, 0.0)
         for index in some:
             a, b = stored.get(index, zero), values.entries.get(index, zero)
-            difference = float((a - b).abs_upper())
-            # what is not finite, or zero beside a ball, is looked at below
-            if difference <= abs(float(b)) * PRECISE:
-                worst = max(worst, difference / abs(float(b))) if difference else worst
-                self.broken.discard((name, index))
+            difference, size = float((a - b).abs_upper()), abs(float(b))
+            # what is not finite, or a zero that is none exactly, is looked at below
+            if not difference <= size * PRECISE:
+                worst = max(worst, self._element(name, index, a, b, values, unsure, last))
                 continue
-            worst = max(worst, self._element(name, index, a, b, values, unsure, last))
+            if difference > worst * size:
+                worst = difference / size
+            if self.broken:
+                self.broken.discard((name, index))
         self.errors[name] = worst
 
     def _element(

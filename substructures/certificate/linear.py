@@ -16,6 +16,10 @@ Ball = Any
 Matrix = Any
 
 
+_IDENTITY = arb_mat(3, 3, [1, 0, 0, 0, 1, 0, 0, 0, 1])
+_AXES = tuple(arb_mat(3, 1, [int(axis == i) for i in range(3)]) for axis in range(3))
+
+
 def vector(x: Ball, y: Ball, z: Ball) -> Matrix:
     """Three components."""
     return arb_mat(3, 1, [x, y, z])
@@ -27,13 +31,13 @@ def zeros(rows: int, columns: int) -> Matrix:
 
 
 def identity() -> Matrix:
-    """The 3 x 3 unit matrix."""
-    return arb_mat(3, 3, [1, 0, 0, 0, 1, 0, 0, 0, 1])
+    """The 3 x 3 unit matrix, which is not to be changed."""
+    return _IDENTITY
 
 
 def unit(axis: int) -> Matrix:
-    """The first, second or third axis."""
-    return arb_mat(3, 1, [int(axis == i) for i in range(3)])
+    """The first, second or third axis, which is not to be changed."""
+    return _AXES[axis]
 
 
 def skew(a: Matrix) -> Matrix:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 
 from substructures.certificate.linear import Ball, Matrix, vector
 from substructures.expr.direct import ball
@@ -22,8 +23,8 @@ class Numbers:
 
     def read(self, given: Any) -> Ball:
         """A number or an expression."""
-        if isinstance(given, int):
-            return arb(given)
+        if isinstance(given, (int, Decimal)):
+            return arb(fmpq(*given.as_integer_ratio()))
         # most texts are one name
         return self.names[given] if given in self.names else ball(given, self.names, ctx.prec)
 

@@ -36,7 +36,10 @@ class Outputs(dict[str, Values]):
 
     def array(self, name: str, shape: tuple[int, ...], symmetry: str = "none") -> dict[tuple[int, ...], Ball]:
         """The elements of an array, to be filled in."""
-        return self.setdefault(name, Values(shape, symmetry)).entries
+        found = self.get(name)
+        if found is None:
+            found = self[name] = Values(shape, symmetry)
+        return found.entries
 
     def matrix(self, name: str, shape: tuple[int, ...], index: tuple[int, ...], value: Matrix) -> None:
         """A matrix (of one column: a vector) at an index of the leading axes."""

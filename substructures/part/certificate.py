@@ -53,11 +53,11 @@ def defaults_of(definition: Plain, prefix: str = "") -> dict[str, Any]:
 
 
 def _positive_definite(definition: Plain) -> bool | None:
-    """Whether the own metric is positive definite at the default values and random states; None without defaults."""
+    """Whether the own metric is positive definite at the default values and a random state; None without defaults."""
     defaults = defaults_of(definition)
     if len(defaults) < len(definition.get("parameters", ())):
         return None
-    states = next(draws(part_symbols(definition), defaults))
+    states = next(draws(part_symbols(definition), defaults))[:1]
     balls = [metric_alone(definition, {**{n: arb(x) for n, x in s.items()}, **defaults}) for s in states]
     metric = np.array([[[float(x) for x in row] for row in g] for g in balls])
     if not np.isfinite(metric).all():
