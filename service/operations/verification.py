@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from service.database.connections import Connection, Database
 from service.database.packed import pack
+from service.integrity import checked, digest_of
 from service.operations.catalogue import mend_part
 from service.queries import catalogue, content, trees
 from service.queries.trees import Tree
-from service.references import Reference
 from service.refusals import Refused
 from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
@@ -119,10 +119,12 @@ def _mend_part(connection: Connection, digest: str) -> None:
 
 
 def _tree(connection: Connection, reference: str) -> tuple[Tree, TreeSpec]:
+    """A revision whose document is sound."""
     name, _, number = reference.partition("@")
-    tree = trees.resolve(connection, Reference(name, number=int(number)))
+    tree = trees.get_damaged(connection, name, int(number))
     if tree is None:
         raise ValueError("it is gone from the store")
+    checked("its document", tree.digest, tree.spec.encode())
     return tree, TreeSpec.read(read_json(tree.spec.encode()))
 
 
@@ -140,6 +142,7 @@ def _definitions(connection: Connection, spec: TreeSpec) -> dict[str, Definition
 def _check_tree(connection: Connection, reference: str) -> None:
     """Raises what is wrong with a tree, its program and its summary."""
     tree, spec = _tree(connection, reference)
+    checked("its summary", tree.summary_digest, tree.summary.encode())
     data = content.get_program(connection, tree.program)
     if data is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
@@ -158,8 +161,6 @@ def _mend_tree(connection: Connection, reference: str) -> None:
         parts[name] = derive(definition) if stored is None else Part.load(definition, stored.program, {})
     model = couple(spec, parts)
     content.replace_program(connection, model.program.digest, pack(model.program), len(model.program))
-    summary = tree_summary(spec, model).decode()
-    program, dof = model.program.digest, model.dof
-    trees.replace_model(
-        connection, Tree(tree.name, tree.revision, tree.digest, tree.spec, program, dof, summary, "", None)
-    )
+    summary = tree_summary(spec, model)
+    coupled = replace(tree, program=model.program.digest, dof=model.dof, summary=summary.decode())
+    trees.replace_model(connection, replace(coupled, summary_digest=digest_of(summary)))

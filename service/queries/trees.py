@@ -27,6 +27,7 @@ class Tree:
     summary: str
     created: str
     based_on: int | None
+    summary_digest: str
 
 
 def lock_name(connection: Connection, name: str) -> int:
@@ -59,6 +60,7 @@ def resolve(connection: Connection, ref: Reference) -> Tree | None:
         return None
     tree = Tree(*row)
     checked(f"the document of tree {tree.name}@{tree.revision}", tree.digest, tree.spec.encode())
+    checked(f"the summary of tree {tree.name}@{tree.revision}", tree.summary_digest, tree.summary.encode())
     return tree
 
 
@@ -68,10 +70,17 @@ def all_revisions(connection: Connection) -> list[tuple[str, int]]:
     return [(name, number) for name, number in connection.execute(query)]
 
 
+def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None:
+    """A revision as it is stored, whatever its digests say."""
+    row = connection.execute(_BY_NUMBER, {"name": name, "number": revision}).first()
+    return None if row is None else Tree(*row)
+
+
 def replace_model(connection: Connection, tree: Tree) -> None:
     """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
     chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
-    values = {"program": tree.program, "dof": tree.dof, "summary": tree.summary}
+    names = ("program", "dof", "summary", "summary_digest")
+    values = {name: getattr(tree, name) for name in names}
     connection.execute(update(trees).where(chosen).values(**values))
 
 

@@ -297,3 +297,16 @@ def test_damage_of_twenty_mechanisms_is_found() -> None:
     print(f"{sum(counts.values()):,} damages: {dict(counts)}")
     assert not missed
     assert len(definitions) == 20
+
+
+def test_older_certificates_are_read() -> None:
+    """Certificates that know of two outputs only, of none, and of one without a value."""
+    part = derive(Definition.read(PART))
+    for errors, told in (
+        ({"metric": 1e-16, "christoffel": 2e-16}, "2e-16"),
+        ({}, "not verified"),
+        ({"metric": None}, "not"),
+    ):
+        older = Part.load(part.definition, part.program.to_bytes(), {"direct_form": {"max_relative_error": errors}})
+        assert told in repr(older)
+    assert "not verified" in repr(Part.load(part.definition, part.program.to_bytes(), {}))

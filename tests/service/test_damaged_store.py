@@ -16,6 +16,7 @@ from fastapi.testclient import TestClient
 from service.app import open_store
 from service.cli.main import main
 from service.database.packed import pack, unpack
+from service.integrity import digest_of
 from service.settings import Settings
 from substructures.expr.program import Program
 
@@ -132,7 +133,12 @@ def test_a_damaged_part_is_refused_by_name(template: Path, tmp_path: Path, damag
 
 @pytest.mark.parametrize(
     ("damage", "code"),
-    [(wrong_tree, "damaged-content"), (other_tree, "damaged-content"), (gone_tree_program, "missing-content")],
+    [
+        (wrong_tree, "damaged-content"),
+        (other_tree, "damaged-content"),
+        (lambda c: other_summary(c), "damaged-content"),
+        (gone_tree_program, "missing-content"),
+    ],
 )
 def test_a_damaged_tree_is_refused_by_name(template: Path, tmp_path: Path, damage: Damage, code: str) -> None:
     with opened(template, tmp_path, damage) as client:
@@ -171,12 +177,24 @@ def wrong_formula(connection: sqlite3.Connection, table: str) -> None:
     connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))  # noqa: S608
 
 
-def other_axes(connection: sqlite3.Connection) -> None:
+def other_summary(connection: sqlite3.Connection) -> None:
     connection.execute("""UPDATE trees SET summary = replace(summary, '"joints":"R"', '"joints":"P"')""")
 
 
+def with_its_digest(connection: sqlite3.Connection, before: str, after: str) -> None:
+    """Another summary, as an older version may have written it."""
+    (summary,) = connection.execute("SELECT summary FROM trees").fetchone()
+    wrong = summary.replace(before, after)
+    assert wrong != summary
+    connection.execute("UPDATE trees SET summary = ?, summary_digest = ?", (wrong, digest_of(wrong.encode())))
+
+
+def other_axes(connection: sqlite3.Connection) -> None:
+    with_its_digest(connection, '"joints":"R"', '"joints":"P"')
+
+
 def other_defaults(connection: sqlite3.Connection) -> None:
-    connection.execute("UPDATE trees SET summary = replace(summary, '9.81', '9.82')")
+    with_its_digest(connection, '"value":9.81', '"value":9.82')
 
 
 def other_index(connection: sqlite3.Connection) -> None:
@@ -195,6 +213,7 @@ WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
     (torn_program, ("substructure pendulum@1",), True),
     (gone_program, ("substructure pendulum@1",), True),
     (gone_tree_program, ("tree cell@1",), True),
+    (other_summary, ("tree cell@1", "summary"), True),
     (other_axes, ("tree cell@1", "joints"), True),
     (other_defaults, ("tree cell@1", "parameters"), True),
     (other_index, ("substructure", "index"), True),
