@@ -7,6 +7,7 @@ from typing import Any
 
 from service.caches import Caches
 from service.database.connections import Connection, Database
+from service.integrity import missing, reading
 from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
@@ -39,23 +40,31 @@ class Store:
         self.database.close()
 
     def part(self, connection: Connection, digest: str) -> Part | None:
-        """The part with this digest, decoded; None when it is not stored."""
+        """The part with this digest, decoded; None when it is not stored. Raises Refused for damaged content."""
         part = self.caches.parts.get(digest)
         self.metrics.cache("part", part is not None)
         if part is None and (stored := content.get_part(connection, digest)) is not None:
-            definition = Definition.stored(read_json(stored.definition))
-            part = Part.load(definition, stored.program, read_json(stored.certificate))
+            with reading("a part", digest):
+                definition = Definition.stored(read_json(stored.definition))
+                part = Part.load(definition, stored.program, read_json(stored.certificate))
             self.caches.parts.put(digest, part)
         return part
 
+    def required_part(self, connection: Connection, digest: str) -> Part:
+        """The part of a version that is stored. Raises Refused for content that is damaged or gone."""
+        part = self.part(connection, digest)
+        if part is None:
+            raise missing("a definition", digest)
+        return part
+
     def blob(self, digest: str) -> bytes:
-        """The definition, the program or the uploaded states with this digest. Raises LookupError."""
+        """The definition, the program or the uploaded states with this digest. Raises Refused as :meth:`part`."""
         blob = self.caches.blobs.get(digest)
         if blob is None:
             with self.database.read() as connection:
                 blob = content.get_blob(connection, digest)
             if blob is None:
-                raise LookupError(f"{digest} is not in the store")
+                raise missing("a content", digest)
             self.caches.blobs.put(digest, blob)
         return blob
 
@@ -64,17 +73,19 @@ class Store:
         self.caches.parts.put(part.definition.digest, part)
 
     def model(self, connection: Connection, tree: Tree) -> Model:
-        """The model of a revision, decoded."""
+        """The model of a revision, decoded. Raises Refused for content that is damaged or gone."""
         model = self.caches.models.get(tree.digest)
         self.metrics.cache("model", model is not None)
         if model is None:
             program = content.get_program(connection, tree.program)
+            what = f"the program of tree {tree.name}@{tree.revision}"
             if program is None:
-                raise LookupError(f"the program of tree {tree.name}@{tree.revision} is missing")
-            summary = read_json(tree.summary.encode())
-            if "inputs" not in summary:
-                summary |= self._declared(connection, tree)
-            model = Model.load(summary, program)
+                raise missing(what, tree.program)
+            with reading(what, tree.program):
+                summary = read_json(tree.summary.encode())
+                if "inputs" not in summary:
+                    summary |= self._declared(connection, tree)
+                model = Model.load(summary, program)
             self.caches.models.put(tree.digest, model)
         return model
 

@@ -31,6 +31,7 @@ COMMANDS = (
     Command("jobs", "jobs", "submit, watch and read batch jobs"),
     Command("backup", "backup", "copy the SQLite store to a file, also while a server runs"),
     Command("restore", "backup", "put a backup in the place of the SQLite store"),
+    Command("verify", "verify", "verify every part and tree of a store against its documents"),
     Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals"),
     Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion"),
     Command("openapi", "openapi", "print the OpenAPI document"),

@@ -16,5 +16,8 @@ def pack(program: Program) -> bytes:
 
 
 def unpack(content: bytes) -> bytes:
-    """The canonical bytes of a packed program."""
-    return zlib_ng.decompress(content)
+    """The canonical bytes of a packed program. Raises ValueError for what is none."""
+    try:
+        return zlib_ng.decompress(content)
+    except zlib_ng.error as error:  # type: ignore[misc]
+        raise ValueError(str(error)) from None

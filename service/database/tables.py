@@ -161,6 +161,7 @@ trees = Table(
     _text("summary"),  # what Model.load needs beside the program, with gravity and instances as shown
     _text("created"),
     _number("based_on", nullable=True),  # the revision that was changed
+    Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of ``summary``
     Index(None, "digest"),
     Index(None, "created"),
 )

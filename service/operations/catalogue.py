@@ -19,11 +19,13 @@ from substructures.part.part import derive
 
 @dataclass(frozen=True, slots=True)
 class PartSubmission:
-    """A definition ready to be stored; ``content`` is None when that is stored already."""
+    """A definition ready to be stored; ``content`` is None when that is stored already. ``is_mended``: what is stored
+    is damaged, and the content takes its place."""
 
     name: str
     digest: str
     content: PartContent | None
+    is_mended: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +38,20 @@ class Page:
 
 
 def prepare(store: Store, definition: Definition) -> PartSubmission:
-    """Derive, verify and certify a definition unless its content is known. Raises InvalidDocument, TooLarge."""
+    """Derive, verify and certify a definition unless its content is known and sound.
+
+    Raises InvalidDocument, TooLarge.
+    """
+    is_mended = False
     with store.database.read() as connection:
-        if content.has_part(connection, definition.digest):
-            return PartSubmission(definition.name, definition.digest, None)
+        try:
+            if content.get_part(connection, definition.digest) is not None:
+                return PartSubmission(definition.name, definition.digest, None)
+        except Refused:  # damaged, or gone in part
+            is_mended = True
     part = derive(definition, store.settings.limits.program_nodes)
     store.remember_part(part)
-    return PartSubmission(definition.name, definition.digest, part_content(part))
+    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended)
 
 
 def store_part(connection: Connection, part: PartContent) -> None:
@@ -51,10 +60,16 @@ def store_part(connection: Connection, part: PartContent) -> None:
     content.put_part(connection, part.row, part.tags, [content.FormulaRow(*values) for values in part.formulas])
 
 
+def mend_part(connection: Connection, part: PartContent) -> None:
+    """Write a part that was derived anew over what is stored."""
+    formulas = [content.FormulaRow(*values) for values in part.formulas]
+    content.replace_part(connection, part.row, part.program, part.nodes, formulas)
+
+
 def submit(connection: Connection, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
     """Store a submission; the version, and whether it is new."""
     if submission.content is not None:
-        store_part(connection, submission.content)
+        (mend_part if submission.is_mended else store_part)(connection, submission.content)
     number, is_new = catalogue.add_version(connection, submission.name, submission.digest)
     return _resolved(connection, Reference(submission.name, number=number)), is_new
 

@@ -75,6 +75,8 @@ def prepare_one(
     try:
         return prepare(store, {"kind": kind, "items": [item]}, members)
     except (InvalidInput, Refused) as error:
+        if isinstance(error, Refused) and error.status >= 500:
+            raise
         raise InvalidDocument(Fault(f.pointer.removeprefix(place), f.code, f.message) for f in error.faults) from None
 
 

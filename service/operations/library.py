@@ -33,6 +33,10 @@ class StoreLibrary:
         """References ``name@3`` to all versions that are not withdrawn."""
         return [f"{name}@{number}" for name, number in catalogue.all_versions(self._connection)]
 
+    def trees(self) -> Sequence[str]:
+        """References ``name@3`` to all revisions of trees."""
+        return [f"{name}@{number}" for name, number in trees.all_revisions(self._connection)]
+
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""
         return content.get_blob(self._connection, digest)

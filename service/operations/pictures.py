@@ -9,14 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.database.connections import Connection
-from service.operations import trees
 from service.operations.evaluations import check_size
+from service.operations.sources import tree_parts
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.refusals import unprocessable
 from service.store import Store
-from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.pictures.tree import picture
 from substructures.quantities.evaluation import Sources
@@ -77,21 +75,14 @@ def _draw(store: Store, digest: str, scene: Scene, pose: PoseValues | None) -> s
 
 def _part_scene(store: Store, version: Version) -> Scene:
     with store.database.read() as connection:
-        part = _stored(store, connection, version)
+        part = store.required_part(connection, version.digest)
     instance = {"name": INSTANCE, "substructure": f"{version.name}@{version.digest}"}
     spec = TreeSpec.read({"name": version.name, "instances": [instance]})
     parts = {INSTANCE: part}
     return Scene(spec, parts, store.coupled(spec, parts))
 
 
-def _stored(store: Store, connection: Connection, version: Version) -> Part:
-    part = store.part(connection, version.digest)
-    if part is None:
-        raise LookupError(f"the part {version.digest} is missing")
-    return part
-
-
 def _tree_scene(store: Store, tree: Tree) -> Scene:
-    spec = TreeSpec.stored(read_json(tree.spec.encode()))
+    spec, parts = tree_parts(store, tree)
     with store.database.read() as connection:
-        return Scene(spec, trees.parts_of(store, connection, spec), store.model(connection, tree))
+        return Scene(spec, parts, store.model(connection, tree))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from service.integrity import reading
 from service.operations.trees import parts_of
 from service.queries.trees import Tree
 from service.store import Store
@@ -43,10 +44,12 @@ def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
 
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
-    """The document of a tree and its parts by instance."""
-    spec = TreeSpec.stored(read_json(tree.spec.encode()))
-    with store.database.read() as connection:
-        return spec, parts_of(store, connection, spec)
+    """The document of a stored tree and its parts by instance. Raises Refused for content that is damaged or gone."""
+    # a part that is not found was there when the tree was stored
+    with reading(f"the document of tree {tree.name}@{tree.revision}", tree.digest):
+        spec = TreeSpec.stored(read_json(tree.spec.encode()))
+        with store.database.read() as connection:
+            return spec, parts_of(store, connection, spec)
 
 
 def _regressor(store: Store, tree: Tree) -> RegressorModel:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from service.answers import etag
 from service.database.connections import Connection
 from service.database.packed import pack
+from service.integrity import digest_of
 from service.operations import catalogue
 from service.queries import catalogue as versions
 from service.queries import content, trees
@@ -151,11 +151,10 @@ def _part(store: Store, connection: Connection, index: int, instance: Instance) 
     pointer = f"/instances/{index}/substructure"
     ref = parse_reference(instance.substructure or "")
     version = versions.resolve(connection, ref) if ref is not None else None
-    part = store.part(connection, version.digest) if version is not None else None
-    if part is None:
+    if version is None:
         message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
-    return part
+    return store.required_part(connection, version.digest)
 
 
 def _derived(store: Store, index: int, instance: Instance) -> Part:
@@ -194,7 +193,7 @@ def store(
 
     Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned.
     """
-    name, digest = coupled.name, "sha256:" + hashlib.sha256(coupled.spec).hexdigest()
+    name, digest = coupled.name, digest_of(coupled.spec)
     latest = trees.lock_name(connection, name)
     if base is None and latest:
         current = trees.resolve(connection, Reference(name))
@@ -206,7 +205,7 @@ def store(
         catalogue.store_part(connection, part)
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
-    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base)
+    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary))
     trees.add_revision(connection, tree, coupled.parts)
     return tree, True
 

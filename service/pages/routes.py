@@ -51,9 +51,7 @@ def substructure(ref: str, request: Request, store: StoreOf) -> Response:
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
         names = aliases.aliases_of(connection, (version.name, version.version))[0]
-        part = store.part(connection, version.digest)
-    if part is None:
-        raise LookupError(f"the part {version.digest} is missing")
+        part = store.required_part(connection, version.digest)
     metric = with_own_inertia(part, part.program.select(["metric"])) if part.dof else None
     return answer(request, part_page(version, names, part, metric))
 

@@ -90,11 +90,12 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
         if name not in known
     ]
     if known:
-        figures = "; ".join(f"{_NAMES.get(name, name)} {float(error):.1e}" for name, error in known.items())
+        worst = max(known, key=lambda name: float(known[name]))
         sentences.insert(
             0,
-            f"Compared with an independent direct computation at {states} random states; largest deviation relative"
-            f" to the largest entry: {figures} (refused beyond {allowed}).",
+            f"{len(known)} quantities compared with a computation from the definitions' own text at {states} random"
+            f" states; largest deviation {float(known[worst]):.1e}, of the {_NAMES.get(worst, worst)}"
+            f" (refused beyond {allowed}).",
         )
     return sentences
 
@@ -102,7 +103,7 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
 def _definiteness(report: Mapping[str, Any]) -> list[str]:
     if "positive_definite" not in report:
         return []
-    where = "at the default values of the parameters and random states"
+    where = "at the default values of the parameters and a random state"
     match report["positive_definite"]:
         case True:
             return [f"The metric is positive definite {where}."]

@@ -8,6 +8,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Select, and_, bindparam, func, insert, or_, select, update
 
 from service.database.tables import aliases, parts, substructures, tags, versions
+from service.integrity import missing
 from service.queries.common import insert_missing, now
 from service.references import Reference
 
@@ -92,7 +93,10 @@ def yank(connection: Connection, name: str, version: int, reason: str) -> None:
 
 
 def resolve(connection: Connection, ref: Reference) -> Version | None:
-    """The version that a reference means; None when there is none (or, for a bare name, all are yanked)."""
+    """The version that a reference means; None when there is none (or, for a bare name, all are yanked).
+
+    Raises Refused (``missing-content``) for a version whose content is gone from the store.
+    """
     if ref.digest is not None:
         row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
     elif ref.number is not None:
@@ -101,7 +105,31 @@ def resolve(connection: Connection, ref: Reference) -> Version | None:
         row = connection.execute(_BY_ALIAS, {"name": ref.name, "alias": ref.alias}).first()
     else:
         row = connection.execute(_LATEST, {"name": ref.name}).first()
+    if row is None:
+        _check_content(connection, ref)
     return None if row is None else Version(*row)
+
+
+def _check_content(connection: Connection, ref: Reference) -> None:
+    """Raise Refused when what was looked for is a version without its content."""
+    gone = select(versions.c.version, versions.c.digest).outerjoin(parts, parts.c.digest == versions.c.digest)
+    gone = gone.where(versions.c.name == ref.name, parts.c.digest.is_(None))
+    if ref.number is not None:
+        gone = gone.where(versions.c.version == ref.number)
+    if ref.digest is not None:
+        gone = gone.where(versions.c.digest == ref.digest)
+    row = connection.execute(gone.order_by(versions.c.version.desc()).limit(1)).first()
+    if row is not None:
+        raise missing(f"the definition of {ref.name}@{row.version}", row.digest)
+
+
+def all_contents(connection: Connection) -> dict[str, str]:
+    """The digests of all definitions with the names of their versions; without one if a tree brought it along."""
+    query = select(versions.c.digest, versions.c.name, versions.c.version)
+    ordered = connection.execute(query.order_by(versions.c.name, versions.c.version))
+    named = {digest: f"{name}@{number}" for digest, name, number in ordered}
+    others = connection.execute(select(parts.c.digest).order_by(parts.c.digest)).scalars()
+    return named | {digest: "" for digest in others if digest not in named}
 
 
 def all_versions(connection: Connection) -> list[tuple[str, int]]:

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, insert, select
+from sqlalchemy import Connection, delete, insert, select, update
 
 from service.database.packed import unpack
 from service.database.tables import formulas, parts, programs, tags
+from service.integrity import checked, missing, reading
 from service.queries.common import insert_missing, now
 from service.queries.uploads import get_upload
 
@@ -45,9 +46,14 @@ def put_program(connection: Connection, digest: str, content: bytes, nodes: int)
 
 
 def get_program(connection: Connection, digest: str) -> bytes | None:
-    """A program's canonical bytes."""
+    """A program's canonical bytes. Raises Refused (``damaged-content``)."""
     content = connection.execute(select(programs.c.content).where(programs.c.digest == digest)).scalar()
-    return None if content is None else unpack(content)
+    return None if content is None else _unpacked(digest, content)
+
+
+def _unpacked(digest: str, content: bytes) -> bytes:
+    with reading("a program", digest):
+        return checked("a program", digest, unpack(content))
 
 
 def put_part(
@@ -64,30 +70,66 @@ def put_part(
         connection.execute(insert(formulas), values)
 
 
+def replace_part(
+    connection: Connection,
+    row: Mapping[str, Any],
+    program: bytes,
+    nodes: int,
+    formula_rows: Sequence[FormulaRow],
+) -> None:
+    """Put a part that was derived anew in the place of what is stored under its digest, with its packed program."""
+    digest = row["digest"]
+    replace_program(connection, row["program"], program, nodes)
+    connection.execute(update(parts).where(parts.c.digest == digest).values(**row))
+    connection.execute(delete(formulas).where(formulas.c.part == digest))
+    if formula_rows:
+        names = FormulaRow.__slots__
+        values = [{"part": digest, **{name: getattr(formula, name) for name in names}} for formula in formula_rows]
+        connection.execute(insert(formulas), values)
+
+
+def replace_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
+    """Store a packed program in the place of what is there."""
+    put_program(connection, digest, content, nodes)
+    connection.execute(update(programs).where(programs.c.digest == digest).values(content=content, nodes=nodes))
+
+
 def has_part(connection: Connection, digest: str) -> bool:
     """Whether a part is stored."""
     return connection.execute(select(parts.c.digest).where(parts.c.digest == digest)).first() is not None
 
 
 def get_part(connection: Connection, digest: str) -> StoredPart | None:
-    """A part, ready to be decoded."""
-    columns = select(parts.c.definition, programs.c.content, parts.c.certificate)
-    row = connection.execute(columns.join(programs).where(parts.c.digest == digest)).first()
+    """A part, ready to be decoded. Raises Refused (``damaged-content``, ``missing-content``)."""
+    columns = select(parts.c.definition, parts.c.program, programs.c.content, parts.c.certificate)
+    joined = columns.join(programs, programs.c.digest == parts.c.program, isouter=True)
+    row = connection.execute(joined.where(parts.c.digest == digest)).first()
     if row is None:
         return None
-    return StoredPart(row.definition.encode(), unpack(row.content), row.certificate.encode())
+    if row.content is None:
+        raise missing("a program", row.program)
+    definition = checked("a definition", digest, row.definition.encode())
+    return StoredPart(definition, _unpacked(row.program, row.content), row.certificate.encode())
+
+
+def get_row(connection: Connection, digest: str) -> Mapping[str, Any]:
+    """All columns of a part, as they are stored. Raises NoResultFound."""
+    return dict(connection.execute(select(parts).where(parts.c.digest == digest)).mappings().one())
 
 
 def get_definition(connection: Connection, digest: str) -> bytes | None:
-    """The definition of a part as stored."""
+    """The definition of a part as stored. Raises Refused (``damaged-content``)."""
     text = connection.execute(select(parts.c.definition).where(parts.c.digest == digest)).scalar()
-    return None if text is None else text.encode()
+    return None if text is None else checked("a definition", digest, text.encode())
 
 
 def get_blob(connection: Connection, digest: str) -> bytes | None:
-    """The definition, the program or the uploaded states with this digest."""
+    """The definition, the program or the uploaded states with this digest. Raises Refused (``damaged-content``)."""
     found = get_definition(connection, digest) or get_program(connection, digest)
-    return get_upload(connection, digest) if found is None else found
+    if found is None:
+        found = get_upload(connection, digest)
+        return None if found is None else checked("uploaded states", digest, found)
+    return found
 
 
 def list_formulas(

@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
 
 from service.database.tables import tree_names, tree_parts, trees
+from service.integrity import checked
 from service.queries.common import insert_missing
 from service.references import Reference
 
@@ -26,6 +27,7 @@ class Tree:
     summary: str
     created: str
     based_on: int | None
+    summary_digest: str
 
 
 def lock_name(connection: Connection, name: str) -> int:
@@ -45,7 +47,7 @@ def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -
 
 
 def resolve(connection: Connection, ref: Reference) -> Tree | None:
-    """The revision that a reference means, the latest for a bare name."""
+    """The revision that a reference means, the latest for a bare name. Raises Refused (``damaged-content``)."""
     if ref.digest is not None:
         row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
     elif ref.number is not None:
@@ -54,7 +56,32 @@ def resolve(connection: Connection, ref: Reference) -> Tree | None:
         return None
     else:
         row = connection.execute(_LATEST, {"name": ref.name}).first()
+    if row is None:
+        return None
+    tree = Tree(*row)
+    checked(f"the document of tree {tree.name}@{tree.revision}", tree.digest, tree.spec.encode())
+    checked(f"the summary of tree {tree.name}@{tree.revision}", tree.summary_digest, tree.summary.encode())
+    return tree
+
+
+def all_revisions(connection: Connection) -> list[tuple[str, int]]:
+    """Name and number of every revision."""
+    query = select(trees.c.name, trees.c.revision).order_by(trees.c.name, trees.c.revision)
+    return [(name, number) for name, number in connection.execute(query)]
+
+
+def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None:
+    """A revision as it is stored, whatever its digests say."""
+    row = connection.execute(_BY_NUMBER, {"name": name, "number": revision}).first()
     return None if row is None else Tree(*row)
+
+
+def replace_model(connection: Connection, tree: Tree) -> None:
+    """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
+    chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
+    names = ("program", "dof", "summary", "summary_digest")
+    values = {name: getattr(tree, name) for name in names}
+    connection.execute(update(trees).where(chosen).values(**values))
 
 
 def page(connection: Connection, after: str | None, size: int) -> list[Tree]:

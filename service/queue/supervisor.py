@@ -207,8 +207,8 @@ class Supervisor:
             blobs = {digest: self._store.blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
             engine.start(Work(attempt.id, attempt.kind, read_json(attempt.item.encode()), blobs, budget))
-        except LookupError as error:
-            self._end(attempt, Outcome(problem=problem(Refused(500, "missing-content", str(error)))))
+        except Refused as error:
+            self._end(attempt, Outcome(problem=problem(error)))
         except Exception:
             _log.exception("attempt %s could not be started", attempt.id)
         else:

@@ -53,9 +53,7 @@ def get_formula(
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
         rows = content.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
-        part = store.part(connection, version.digest)
-    if part is None:
-        raise LookupError(f"the part {version.digest} is missing")
+        part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, body, coordinate, component)
     chosen = models.part_formulas(part, rows, wanted, first_index(style.format))
     if chosen is None:

@@ -12,6 +12,7 @@ from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
+from service.integrity import missing
 from service.operations import catalogue
 from service.paging import limited
 from service.queries import aliases, content
@@ -98,7 +99,9 @@ def get_definition(ref: str, request: Request, store: StoreOf) -> Response:
     """The definition as stored."""
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
-        definition = content.get_definition(connection, version.digest) or b""
+        definition = content.get_definition(connection, version.digest)
+    if definition is None:
+        raise missing(f"the definition of {version.name}@{version.version}", version.digest)
     tag = etag(version.digest, "definition")
     return conditional(request, tag, is_pinned(ref), lambda: json_answer(definition))
 

@@ -9,7 +9,8 @@ KINDS = """What every item is, its optional fields in brackets. `tree` and `subs
 
 - `assemble`: a tree document, the body of `POST /v1/trees` (`TreeSpec`); the tree is stored.
 - `derive`: a definition, the body of `POST /v1/substructures` (`Definition`); the version is stored.
-- `verify`: `substructure`, or `*` for the whole catalogue; the certificate is made anew.
+- `verify`: `substructure` or `tree`, a reference, or `*` for the whole catalogue or all revisions of trees; the \
+certificate is made anew from what is stored.
 - `evaluate`: `tree`, `request`, [`grid` or `sample`], [`format`: `npz` (default), `arrow`]. `request` is the body of \
 `POST /v1/trees/{ref}/evaluations` (`EvaluationRequest`); its states are `q` and `qd` there, or come from a grid or a \
 sample, in which coordinates that are not named are 0. Names are coordinates (`rod.q1`), velocities (`rod.q1'`), \

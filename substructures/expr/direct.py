@@ -28,6 +28,7 @@ _ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
     "mul": operator.mul,
     "div": operator.truediv,
 }
+_BALL_FUNCTIONS = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
 _FLOAT_FUNCTIONS: dict[str, Callable[[Any], Any]] = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt}
 
 
@@ -42,7 +43,7 @@ def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
     1.5
     """
     with np.errstate(all="ignore"):
-        return _run(given, names or {}, _float, np.asarray, np.pi, _FLOAT_FUNCTIONS, _float_power)
+        return _run(given, names or {}, _float, np.asarray, lambda: np.pi, _FLOAT_FUNCTIONS, _float_power)
 
 
 def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 128, complex_: bool = False) -> Any:
@@ -62,8 +63,7 @@ def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 
         return _ball(kind, Fraction(given)) if isinstance(given, (int, float, Fraction)) else kind(given)
 
     with flint.ctx.workprec(precision):
-        functions = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
-        return _run(given, names or {}, lambda x: _ball(kind, x), read_name, kind.pi(), functions, _ball_power)
+        return _run(given, names or {}, lambda x: _ball(kind, x), read_name, kind.pi, _BALL_FUNCTIONS, _ball_power)
 
 
 def _run(
@@ -71,7 +71,7 @@ def _run(
     names: Mapping[str, Any],
     number: Callable[[Fraction], Any],
     named: Callable[[Any], Any],
-    pi: Any,
+    pi: Callable[[], Any],
     functions: Mapping[str, Callable[[Any], Any]],
     power: Callable[[Any, int], Any],
 ) -> Any:
@@ -83,7 +83,7 @@ def _run(
         if step.op == "number":
             stack.append(number(Fraction(step.value or 0)))
         elif step.op == "pi":
-            stack.append(pi)
+            stack.append(pi())
         elif step.op == "name":
             stack.append(named(_lookup(step, names)))
         elif step.op in _ARITHMETIC:

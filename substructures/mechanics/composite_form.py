@@ -1,8 +1,8 @@
 """The composite form of metric, Christoffel symbols and gravity forces, over any scalar (notation.md, section 5).
 
 Inertias are summed from the leaves to the base; what a joint's unit velocity does to the inertia that it carries, its
-momentum, paired with the columns of the base functions gives g and Gamma. The direct form of section 4, in numbers,
-is in :mod:`substructures.mechanics.direct_form`.
+momentum, paired with the columns of the base functions gives g and Gamma. The direct form of section 4 is what
+:mod:`substructures.certificate` compares them with.
 """
 
 from __future__ import annotations

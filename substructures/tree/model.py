@@ -22,7 +22,7 @@ closure.*              m ...        of a tree with closures: see :mod:`substruct
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
 from typing import Any
@@ -101,13 +101,18 @@ class Model:
         named = [s.name for s in self.program.symbols if s.kind == "input"]
         return tuple(dict.fromkeys([*named, *self.inputs, *(f"tau.{name}" for name in self.coordinates)]))
 
-    def summary(self) -> dict[str, Any]:
-        """Plain data that is stored beside the program."""
+    def described(self) -> dict[str, Any]:
+        """What the axes of the outputs are, as plain data."""
         closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
         return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
             "frames": list(self.frames),
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data that is stored beside the program."""
+        return self.described() | {
             "parameters": {name: dict(p) for name, p in self.parameters.items()},
             "inputs": {name: dict(given) for name, given in self.inputs.items()},
             "certificate": dict(self.certificate),
@@ -162,10 +167,12 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     joints = "".join(m.part.joints for m in assembly.mounted)
     plausibility = Plausibility(spec, {name: part.definition for name, part in parts.items()})
     warnings = [*units.warnings, *tree_warnings(spec, parts, result, bool(names)), *plausibility.at_defaults]
-    told = {"warnings": warnings, "converted": units.converted}
-    certificate = certify_tree(assembly, names, result, seconds) | told
-    rows, described = tuple(cut.rows for cut in assembly.cuts), (assembly.parameters, certificate)
-    return Model(result, tuple(names), joints, _frame_names(assembly), *described, rows, assembly.inputs, plausibility)
+    rows = tuple(cut.rows for cut in assembly.cuts)
+    described = (_frame_names(assembly), assembly.parameters, {})
+    model = Model(result, tuple(names), joints, *described, rows, assembly.inputs, plausibility)
+    definitions = {name: part.definition for name, part in parts.items()}
+    certificate = certify_tree(spec, definitions, model.described(), result, seconds)
+    return replace(model, certificate={**certificate, "warnings": warnings, "converted": units.converted})
 
 
 def _require_free_names(spec: TreeSpec) -> None:

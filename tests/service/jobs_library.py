@@ -54,6 +54,9 @@ class MemoryLibrary:
     def catalogue(self) -> list[str]:
         return [f"{name}@1" for name in self.parts]
 
+    def trees(self) -> list[str]:
+        return list(self._trees)
+
     def blob(self, digest: str) -> bytes | None:
         return self.blobs.get(digest)
 

@@ -100,7 +100,8 @@ def test_verify_finds_damaged_programs(library: MemoryLibrary) -> None:
     other = library.parts["slider"].program
     outcome = run("verify", item, {**library.blobs, item["program"]: b"{}"}, quiet)
     assert outcome.problem is not None
-    assert outcome.problem["code"] == "damaged-program"
+    assert outcome.problem["code"] == "damaged-content"
+    assert outcome.problem["digest"] == item["program"]
     wrong = {**item, "program": other.digest}
     outcome = run("verify", wrong, library.blobs, quiet)
     assert outcome.problem is not None
@@ -139,7 +140,7 @@ def test_every_kind_is_tried_here() -> None:
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:
-    outcome = run("verify", {"substructure": "pendulum@x", "program": "y"}, {}, quiet)
+    outcome = run("verify", {}, {}, quiet)
     assert outcome.problem is not None
     assert (outcome.problem["status"], outcome.problem["code"]) == (500, "internal-error")
     assert "KeyError" in caplog.text

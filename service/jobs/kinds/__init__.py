@@ -6,6 +6,7 @@ import logging
 from collections.abc import Mapping
 from typing import Any
 
+from service.integrity import CheckedBlobs
 from service.jobs.engine import Outcome
 from service.jobs.kinds.analyse import analysis_kind
 from service.jobs.kinds.assemble import ASSEMBLE
@@ -19,8 +20,8 @@ from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
+from substructures.certificate.compare import VerificationFailed
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
-from substructures.part.certificate import VerificationFailed
 
 __all__ = ["KINDS", "Library", "expand", "resolve", "run"]
 
@@ -90,13 +91,16 @@ def resolve(kind: str, item: ItemDocument, library: Library) -> tuple[ItemDocume
 
 
 def run(kind: str, item: ItemDocument, blobs: Mapping[str, bytes], progress: ItemProgress) -> Outcome:
-    """Compute a resolved item; what fails on its own account becomes a problem document. Raises MemoryError."""
+    """Compute a resolved item; what fails on its own account becomes a problem document. Raises MemoryError.
+
+    Blobs are compared with their digests whenever they are read.
+    """
     try:
-        return _KINDS[kind].run(item, blobs, progress)
+        return _KINDS[kind].run(item, CheckedBlobs(blobs), progress)
     except MemoryError:
         raise
     except (InvalidProgram, VerificationFailed) as error:
-        code = "damaged-program" if isinstance(error, InvalidProgram) else "verification-failed"
+        code = "damaged-content" if isinstance(error, InvalidProgram) else "verification-failed"
         return failed(Refused(500, code, str(error)))
     except Exception as error:  # one item never takes the others with it
         known = known_refusal(error)

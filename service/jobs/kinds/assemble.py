@@ -8,7 +8,7 @@ from service.cache import Cache
 from service.database.packed import pack
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -89,7 +89,7 @@ def _definition(instance: Instance, versions: Mapping[str, StoredVersion], libra
         return None
     found = _definitions.get(version.digest)
     if found is None:
-        found = Definition.stored(read_json(library.blob(version.digest) or b"{}"))
+        found = stored_definition(version.digest, library)
         _definitions.put(version.digest, found)
     return found
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.cache import Cache
+from service.integrity import reading
 from service.jobs.kinds.library import StoredTree
 from substructures.documents import read_json
 from substructures.part.definition import Definition
@@ -20,11 +21,12 @@ _models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.program))
 
 
 def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
-    """The part with these digests; its certificate is left out. Raises InvalidProgram."""
+    """The part with these digests; its certificate is left out. Raises Refused for damaged content."""
     key = definition, program
     part = _parts.get(key)
     if part is None:
-        part = Part.load(Definition.stored(read_json(blobs[definition])), blobs[program], {})
+        with reading("a part", definition):
+            part = Part.load(Definition.stored(read_json(blobs[definition])), blobs[program], {})
         _parts.put(key, part)
     return part
 
@@ -48,10 +50,11 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
 
 
 def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
-    """The model of an item with the fields ``tree``, ``program`` and ``model``. Raises InvalidProgram."""
+    """The model of an item with the fields ``tree``, ``program`` and ``model``. Raises Refused for damaged content."""
     key = item["tree"], item["program"]
     model = _models.get(key)
     if model is None:
-        model = Model.load({"certificate": {}, **item["model"]}, blobs[item["program"]])
+        with reading("the program of a tree", item["program"]):
+            model = Model.load({"certificate": {}, **item["model"]}, blobs[item["program"]])
         _models.put(key, model)
     return model

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+from service.jobs.kinds.kind import stored_definition
 from service.jobs.kinds.library import Library, StoredTree
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
@@ -28,10 +29,7 @@ def _definition(instance: Instance, library: Library) -> Definition:
     if instance.definition is not None:
         return instance.definition
     digest = (instance.substructure or "").partition("@")[2]
-    content = library.blob(digest)
-    if content is None:
-        raise LookupError(f"the definition {digest} is missing")
-    return Definition.stored(read_json(content))
+    return stored_definition(digest, library)
 
 
 def _limits(definition: Definition, joint: JointEntry) -> tuple[float, float] | None:

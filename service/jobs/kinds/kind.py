@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from service.integrity import missing, reading
 from service.jobs.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import pointer_step
+from substructures.documents import pointer_step, read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput
+from substructures.part.definition import Definition
 
 Blobs = Mapping[str, bytes]
 ItemProgress = Callable[[float], None]
@@ -50,6 +52,15 @@ def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[
     faults += [Fault(pointer_step(key), "missing", f"'{key}' is needed") for key in required if key not in item]
     if faults:
         raise InvalidDocument(faults)
+
+
+def stored_definition(digest: str, library: Library) -> Definition:
+    """The definition of a version that is stored. Raises Refused for one that is damaged or gone."""
+    content = library.blob(digest)
+    if content is None:
+        raise missing("a definition", digest)
+    with reading("a definition", digest):
+        return Definition.stored(read_json(content))
 
 
 def known_tree(item: ItemDocument, library: Library) -> StoredTree:

@@ -43,5 +43,8 @@ class Library(Protocol):
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not yanked."""
 
+    def trees(self) -> Sequence[str]:
+        """References ``name@3`` to all revisions of trees."""
+
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""

@@ -1,0 +1,1 @@
+"""What stored formulas have to be, computed from the documents alone: the yardstick that they are certified by."""

@@ -1,0 +1,181 @@
+"""Whether stored programs agree with what the documents say: every element of every output, in balls, at random states.
+
+Both sides are enclosures of exact values. Where they do not meet, the stored formula is wrong, whatever rounding does;
+where they meet they have to be narrow beside the value itself (:data:`TOLERANCE`), so that no choice of units hides a
+fault. What is zero has no scale of its own: it counts as agreed where the enclosures are narrow beside the largest
+element of the output, or where both still contain zero at eight times the precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from flint import arb, ctx
+
+from substructures.certificate.linear import Ball
+from substructures.certificate.outputs import Outputs, Values
+from substructures.certificate.states import State, draws
+from substructures.certificate.stored import Stored, operations_in_balls
+from substructures.errors import SubstructuresError
+from substructures.expr.operations import Output
+
+#: bits of the arithmetic, and where these do not suffice
+PRECISIONS = (128, 1024)
+#: how far an enclosure may reach, relative to its value
+TOLERANCE = 2.0**-40
+#: what needs no closer look
+PRECISE = 2.0**-80
+
+Expected = Callable[[State], Outputs]
+Index = tuple[int, ...]
+#: elements that are to be compared, by output
+Elements = dict[str, set[Index]]
+
+
+class VerificationFailed(SubstructuresError):
+    """Stored formulas disagree with their documents: a defect of this package, or damage. They must not be used."""
+
+
+def compare(
+    program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any]
+) -> dict[str, float | None]:
+    """Of every output of a program the largest relative difference from ``expected`` that enclosures leave open; None
+    where an element has no finite value at any state.
+
+    ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain.
+    Raises VerificationFailed, which names output and element.
+    """
+    for symbol in program.symbols:
+        if kinds.get(symbol.name) != symbol.kind:
+            raise VerificationFailed(f"the symbol '{symbol.name[:80]}' ({symbol.kind}) is none of the documents")
+    comparison = _Comparison(program, expected)
+    for states in draws(kinds, defaults):
+        comparison.at(states)
+        if not comparison.open:
+            break
+    return comparison.result()
+
+
+@dataclass
+class _Comparison:
+    """What was found so far; ``open``: the elements that had no finite value, None before the first state."""
+
+    program: Stored
+    expected: Expected
+    errors: dict[str, float] = field(default_factory=dict)
+    open: Elements | None = None
+    broken: set[tuple[str, Index]] = field(default_factory=set)
+
+    def at(self, states: list[State]) -> None:
+        """Compare what is open at some states; what is not finite at one of them stays open."""
+        left: Elements = {}
+        for state in states:
+            for name, some in self._refined(state, self.open).items():
+                left.setdefault(name, set()).update(some)
+        self.open = left
+
+    def _refined(self, state: State, elements: Elements | None) -> Elements:
+        """Compare at one state, more exactly where balls are too wide; returns what is not finite there."""
+        outside: Elements = {}
+        for precision in PRECISIONS:
+            wide = self._once(state, elements, precision, outside)
+            if not wide:
+                return outside
+            elements = wide
+        for name, some in wide.items():
+            outside.setdefault(name, set()).update(some)
+        return outside
+
+    def _once(self, state: State, elements: Elements | None, precision: int, outside: Elements) -> Elements:
+        """Compare with one precision; returns the elements whose balls are too wide to tell."""
+        wide: Elements = {}
+        with ctx.workprec(precision):
+            wanted = self.expected({name: arb(x) for name, x in state.items()})
+            found = operations_in_balls(self.program, {name: arb(x) for name, x in state.items()})
+            for name in wanted if elements is None else elements:
+                values = wanted[name]
+                stored = _stored(name, self.program, values, found)
+                some = {**values.entries, **stored} if elements is None else elements[name]
+                self._elements(name, some, stored, values, (wide, outside), precision == PRECISIONS[-1])
+        return wide
+
+    def _elements(
+        self,
+        name: str,
+        some: Any,
+        stored: Mapping[Index, Ball],
+        values: Values,
+        unsure: tuple[Elements, Elements],
+        last: bool,
+    ) -> None:
+        """Compare elements of one output; notes those that are too wide, and those that are not finite."""
+        zero, worst = arb(0), self.errors.get(name, 0.0)
+        for index in some:
+            a, b = stored.get(index, zero), values.entries.get(index, zero)
+            difference, size = float((a - b).abs_upper()), abs(float(b))
+            # what is not finite, or a zero that is none exactly, is looked at below
+            if not difference <= size * PRECISE:
+                worst = max(worst, self._element(name, index, a, b, values, unsure, last))
+                continue
+            if difference > worst * size:
+                worst = difference / size
+            if self.broken:
+                self.broken.discard((name, index))
+        self.errors[name] = worst
+
+    def _element(
+        self, name: str, index: Index, a: Ball, b: Ball, values: Values, unsure: tuple[Elements, Elements], last: bool
+    ) -> float:
+        """The relative error of an element; noted instead where it is not finite, or too wide."""
+        wide, outside = unsure
+        if not (a.is_finite() and b.is_finite()):
+            outside.setdefault(name, set()).add(index)
+            if b.is_finite():
+                self.broken.add((name, index))
+            return 0.0
+        if not a.overlaps(b):
+            raise VerificationFailed(_told(name, index, a, b))
+        self.broken.discard((name, index))
+        if _both_zero(a, b, values, last) or (a.is_zero() and b.is_zero()):
+            return 0.0
+        error = (a - b).abs_upper() / b.abs_lower()
+        if error <= TOLERANCE:
+            return float(error)
+        wide.setdefault(name, set()).add(index)
+        return 0.0
+
+    def result(self) -> dict[str, float | None]:
+        """The errors by output. Raises VerificationFailed for what is nowhere finite, where the documents are."""
+        broken = sorted((name, index) for name, index in self.broken if index in (self.open or {}).get(name, ()))
+        if broken:
+            raise VerificationFailed(f"{_place(*broken[0])} has no finite value where the documents give one")
+        return {name: None if name in (self.open or {}) else error for name, error in self.errors.items()}
+
+
+def _stored(name: str, program: Stored, values: Values, found: list[Ball]) -> dict[Index, Ball]:
+    """The stored elements of an output that is of the shape and symmetry that it has to be."""
+    output: Output | None = program.outputs.get(name)
+    if output is None:
+        raise VerificationFailed(f"{name} is missing")
+    if (tuple(output.shape), output.symmetry) != (values.shape, values.symmetry):
+        wanted, kept = (f"{'x'.join(map(str, x.shape)) or 'scalar'} {x.symmetry}" for x in (values, output))
+        raise VerificationFailed(f"{name} is {kept}, and has to be {wanted}")
+    return {tuple(index): found[entry] for index, entry in zip(output.index, output.entries, strict=True)}
+
+
+def _both_zero(a: Ball, b: Ball, values: Values, last: bool) -> bool:
+    """Whether both sides are zero, as far as one can tell: with the last precision, or beside the other elements."""
+    if not (a.contains(0) and b.contains(0)):
+        return False
+    return last or bool((a - b).abs_upper() <= values.size() * TOLERANCE)
+
+
+def _told(name: str, index: Index, a: Ball, b: Ball) -> str:
+    found, wanted = (x.str(12, radius=False) for x in (a, b))
+    return f"{_place(name, index)} is {found} at a random state, and has to be {wanted} by the documents"
+
+
+def _place(name: str, index: Index) -> str:
+    return f"{name}[{', '.join(map(str, index))}]" if index else name

@@ -1,0 +1,61 @@
+"""Arrays of balls by name: what the outputs of a program have to be at one state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from flint import arb
+
+from substructures.certificate.linear import Ball, Matrix
+
+
+@dataclass
+class Values:
+    """The elements of one array that are not zero by structure; those that a symmetry gives are left out.
+
+    ``scale``: what zeros are small against, where that is more than the largest element.
+    """
+
+    shape: tuple[int, ...]
+    symmetry: str = "none"
+    entries: dict[tuple[int, ...], Ball] = field(default_factory=dict)
+    scale: Ball = field(default_factory=lambda: arb(0))
+    _size: Ball = None
+
+    def size(self) -> Ball:
+        """The largest element, or the scale."""
+        if self._size is None:
+            some = (x.abs_lower() for x in self.entries.values() if x.is_finite())
+            self._size = max(some, default=self.scale).max(self.scale)
+        return self._size
+
+
+class Outputs(dict[str, Values]):
+    """Values by name of the output."""
+
+    def array(self, name: str, shape: tuple[int, ...], symmetry: str = "none") -> dict[tuple[int, ...], Ball]:
+        """The elements of an array, to be filled in."""
+        found = self.get(name)
+        if found is None:
+            found = self[name] = Values(shape, symmetry)
+        return found.entries
+
+    def matrix(self, name: str, shape: tuple[int, ...], index: tuple[int, ...], value: Matrix) -> None:
+        """A matrix (of one column: a vector) at an index of the leading axes."""
+        columns, vector = value.ncols(), len(shape) == len(index) + 1
+        entries = self.array(name, shape)
+        for k, x in enumerate(value.entries()):
+            i, j = divmod(k, columns)
+            entries[(*index, i) if vector else (*index, i, j)] = x
+
+    def columns(self, name: str, shape: tuple[int, ...], index: Sequence[tuple[int, ...]], value: Matrix) -> None:
+        """The columns of a matrix of three rows, each at its index."""
+        entries, n = self.array(name, shape), value.ncols()
+        for k, x in enumerate(value.entries()):
+            i, j = divmod(k, n)
+            entries[(*index[j], i)] = x
+
+    def scalar(self, name: str, value: Ball) -> None:
+        """An array without axes."""
+        self.array(name, ())[()] = value

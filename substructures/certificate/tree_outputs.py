@@ -1,0 +1,174 @@
+"""What every stored output of a tree has to be at one state, from its document and the definitions of its parts."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping
+from typing import Any
+
+from flint import arb
+
+from substructures.certificate.bodies import (
+    CHAINS,
+    GROUND,
+    NONE,
+    Bodies,
+    Frame,
+    coordinates_of,
+    in_order,
+    massless,
+)
+from substructures.certificate.closures import ROWS, closure_outputs
+from substructures.certificate.dynamics import carried_by_joints, velocity_forces
+from substructures.certificate.linear import Ball, dot, identity, roll_pitch_yaw, zeros
+from substructures.certificate.loads import forces
+from substructures.certificate.numbers import Bindings, Numbers, Plain
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.part_outputs import equations, frame_columns
+
+
+def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
+    """Every symbol that the program of the tree may have: its kind by its name. ``definitions``: by instance."""
+    kinds = dict.fromkeys(tree.get("parameters", ()), "parameter") | {"t": "time"}
+    for instance in tree.get("instances", ()):
+        name, bound = instance["name"], instance.get("parameters", {})
+        definition = definitions[name]
+        kinds |= {f"{name}.{p}": "parameter" for p in definition.get("parameters", ()) if p not in bound}
+        kinds |= {f"{name}.{i}": "input" for i in definition.get("inputs", ())}
+        for body in definition.get("bodies", ()):
+            for c in coordinates_of(body):
+                q = f"{name}.{c}"
+                kinds |= {q: "coordinate", f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
+    return kinds
+
+
+def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Outputs:
+    """All outputs of the model; ``values``: of all symbols."""
+    bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
+    numbers, bodies, result = Numbers(Bindings(values, bound)), Bodies(), Outputs()
+    Q: dict[int, Ball] = {}
+    V = arb(0)
+    loads = []
+    for instance in hosts_first(tree):
+        name, first = instance["name"], len(bodies.joints)
+        inside = Numbers(_names(name, definitions[name], numbers.names, values))
+        bodies.add(definitions[name], inside, _seat(bodies, instance, numbers), f"{name}.")
+        loads.append((name, inside, range(first, len(bodies.joints))))
+    for name, inside, joints in loads:
+        some = forces(bodies, definitions[name], inside, joints, f"{name}.")
+        V = V + some.potential
+        for terms in (some.applied, some.wrenches):
+            Q |= {a: Q.get(a, arb(0)) + x for a, x in terms.items()}
+    rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    _equations(result, bodies, numbers.vector(tree.get("gravity", NONE)), Q, V, rates, second)
+    _kinematics(result, bodies)
+    if tree.get("closures"):
+        closure_outputs(result, bodies, tree["closures"], numbers, rates)
+    return result
+
+
+def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures."""
+    coordinates, kinds, frames = [], "", []
+    for instance in hosts_first(tree):
+        name, definition = instance["name"], definitions[instance["name"]]
+        bodies = in_order(definition)
+        for body in bodies:
+            coordinates += [f"{name}.{c}" for c in coordinates_of(body)]
+            kinds += "".join("P" if prismatic else "R" for prismatic, _ in CHAINS[body["joint"]["type"]])
+        ports = definition.get("ports", ())
+        frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
+    closures = [
+        {
+            "name": c["name"],
+            "type": c["type"],
+            "from": c["from"],
+            "to": c.get("to", "world"),
+            "rows": [*ROWS[c["type"]]],
+        }
+        for c in tree.get("closures", ())
+    ]
+    return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures}
+
+
+def hosts_first(tree: Plain) -> list[Plain]:
+    """The instances in the order of the model: hosts first, otherwise as given."""
+    instances = list(tree.get("instances", ()))
+    ready = [i for i, instance in enumerate(instances) if instance.get("at", "world") == "world"]
+    order = []
+    while ready:
+        i = heapq.heappop(ready)
+        order.append(instances[i])
+        for k, other in enumerate(instances):
+            if other.get("at", "world").partition(".")[0] == instances[i]["name"]:
+                heapq.heappush(ready, k)
+    return order
+
+
+def _names(instance: str, definition: Plain, names: Mapping[str, Ball], values: Mapping[str, Ball]) -> dict[str, Ball]:
+    """The names inside of a definition: its own, and the time."""
+    known = {"t": values["t"]}
+    known |= {p: names[f"{instance}.{p}"] for p in definition.get("parameters", ())}
+    known |= {i: values[f"{instance}.{i}"] for i in definition.get("inputs", ())}
+    for body in definition.get("bodies", ()):
+        for c in coordinates_of(body):
+            q = f"{instance}.{c}"
+            known |= {c: values[q], f"{c}'": values[f"{q}'"], f"tau.{c}": values[f"tau.{q}"]}
+    return known
+
+
+def _seat(bodies: Bodies, instance: Plain, numbers: Numbers) -> Frame:
+    """The interface frame of an instance."""
+    at, placement = instance.get("at", "world"), instance.get("placement", {})
+    host = Frame(GROUND, identity(), zeros(3, 1)) if at == "world" else bodies.frames[at]
+    A = roll_pitch_yaw(numbers.vector(placement.get("rpy", NONE)))
+    return host.placed(A, numbers.vector(placement.get("position", NONE)))
+
+
+def _equations(
+    result: Outputs,
+    bodies: Bodies,
+    gravity: Ball,
+    Q: Mapping[int, Ball],
+    springs: Ball,
+    rates: list[Ball],
+    second: list[Ball],
+) -> None:
+    """Metric, Christoffel symbols, momenta, forces, energies."""
+    n, carried = len(bodies.joints), carried_by_joints(bodies, bodies.own)
+    equations(result, bodies, carried)
+    bias = velocity_forces(bodies, bodies.own, rates)
+    weight = [dot(gravity, some.f) for some in carried]
+    total = [w + Q.get(a, arb(0)) for a, w in enumerate(weight)]
+    inertia = [arb(0)] * n
+    for (a, c), g in result["metric"].entries.items():
+        inertia[a] += g * second[c]
+        if a != c:
+            inertia[c] += g * second[a]
+    # g q'' + Gamma q' q' - Q
+    needed = [i + b - q for i, b, q in zip(inertia, bias, total, strict=True)]
+    named = {"gravity": weight, "forces": total, "bias": bias, "inverse_dynamics": needed}
+    for name, some in named.items():
+        result.array(name, (n,)).update({(a,): x for a, x in enumerate(some)})
+    # V = -gamma . s of the whole, and the springs
+    whole = sum(bodies.own.values(), massless())
+    result.scalar("potential_energy", springs - dot(gravity, whole.s))
+    for name in ("linear_momentum", "angular_momentum"):
+        result.array(name, (n, 3))
+    for a, each in enumerate(carried):
+        result.matrix("linear_momentum", (n, 3), (a,), each.f)
+        result.matrix("angular_momentum", (n, 3), (a,), each.n)
+
+
+def _kinematics(result: Outputs, bodies: Bodies) -> None:
+    """Pose and columns of every frame, in the order of the instances: bodies, then ports."""
+    n, f = len(bodies.joints), len(bodies.frames)
+    for name, shape in (("position", (f, 3)), ("rotation", (f, 3, 3)), ("U", (f, n, 3)), ("Omega", (f, n, 3))):
+        result.array(name, shape)
+    for k, frame in enumerate(bodies.frames.values()):
+        result.matrix("position", (f, 3), (k,), frame.p)
+        result.matrix("rotation", (f, 3, 3), (k,), frame.A)
+        path = bodies.path(frame.carrier)
+        U, Omega = frame_columns(bodies, frame)
+        result.columns("U", (f, n, 3), [(k, a) for a in path], U)
+        result.columns("Omega", (f, n, 3), [(k, a) for a in path], Omega)

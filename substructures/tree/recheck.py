@@ -1,0 +1,36 @@
+"""The certificate of a stored tree made anew: program and summary as they are stored, against the documents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from substructures.certificate.compare import VerificationFailed
+from substructures.expr.program import Program
+from substructures.part.definition import Definition
+from substructures.tree.certificate import certify_tree
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
+
+#: what is stored beside the program, but for the certificate
+SUMMARY = ("coordinates", "joints", "frames", "closures", "parameters", "operations")
+
+
+def recheck_tree(
+    spec: TreeSpec, definitions: Mapping[str, Definition], summary: Mapping[str, Any], program: Program
+) -> dict[str, Any]:
+    """The certificate. ``definitions``: by instance; ``summary``: of :data:`SUMMARY`, as it was read from JSON.
+
+    Raises VerificationFailed when program or summary disagree with the documents.
+    """
+    certificate = certify_tree(spec, definitions, summary, program)
+    defaults = {name: p.value for name, p in spec.parameters.items()}
+    for instance, definition in definitions.items():
+        defaults |= {f"{instance}.{name}": p.value for name, p in definition.parameters.items()}
+    used = {s.name: defaults.get(s.name) for s in program.symbols if s.kind == "parameter"}
+    if {name: given.get("value") for name, given in summary["parameters"].items()} != used:
+        raise VerificationFailed("the parameters of the model and their defaults are not those of the documents")
+    model = Model.load({**summary, "certificate": certificate}, program.to_bytes())
+    if dict(summary.get("operations", model.operations)) != model.operations:
+        raise VerificationFailed("the operation counts of the model are not those of its program")
+    return certificate

@@ -1,0 +1,69 @@
+"""Stored programs with one fault each, as a wrong derivation or a damaged store would leave them; digests made anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from substructures.expr.program import Operation, Program
+
+NUDGE = Fraction(1_000_001, 1_000_000)
+KINDS = ("sign", "factor", "exchanged", "nudged", "left out")
+
+
+def damages(
+    program: Program, rng: np.random.Generator, elements: int = 1, kinds: int = len(KINDS)
+) -> Iterator[tuple[str, str, Program]]:
+    """(kind, place, program): every output damaged in all (or some) ways, at ``elements`` of its elements each."""
+    for name, output in program.outputs.items():
+        for kind in rng.choice(KINDS, kinds, replace=False) if output.entries else ():
+            for k in rng.choice(len(output.entries), min(elements, len(output.entries)), replace=False):
+                wrong = _damaged(program, name, int(k), kind, rng)
+                if wrong is not None:
+                    yield kind, f"{name}{list(output.index[int(k)])}", wrong
+
+
+def nudged_numbers(program: Program) -> Iterator[tuple[str, str, Program]]:
+    """Every number in the program, one after the other, off by 1e-6 of itself."""
+    for i, operation in enumerate(program.operations):
+        if operation[0] in ("int", "rat") and operation[1] != "0":
+            value = Fraction(int(operation[1]), int(operation[2]) if operation[0] == "rat" else 1) * NUDGE
+            number = ("rat", str(value.numerator), str(value.denominator))
+            yield "number", f"operation {i}", _with(program, {i: number})
+
+
+def _with(program: Program, changed: dict[int, Operation]) -> Program:
+    operations = tuple(changed.get(i, operation) for i, operation in enumerate(program.operations))
+    return Program.from_bytes(replace(program, operations=operations).to_bytes())
+
+
+def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Generator) -> Program | None:
+    output, n = program.outputs[name], len(program.operations)
+    entry = output.entries[k]
+    more: list[Operation] = []
+    entries = list(output.entries)
+    index = output.index
+    if kind == "sign":
+        more, entries[k] = [("neg", entry)], n
+    elif kind == "factor":
+        more, entries[k] = [("add", entry, entry)], n
+    elif kind == "nudged":
+        more = [("rat", str(NUDGE.numerator), str(NUDGE.denominator)), ("mul", entry, n)]
+        entries[k] = n + 1
+    elif kind == "left out":
+        if name in ("E.turn", "E.tilt") and program.operations[entry] == ("int", "1"):
+            return None  # a factor of E that is left out is the identity, as it was
+        entries, index = [*entries[:k], *entries[k + 1 :]], (*index[:k], *index[k + 1 :])
+    else:
+        others = [i for i, other in enumerate(entries) if other != entry]
+        if not others:
+            return None
+        other = others[int(rng.integers(len(others)))]
+        entries[k], entries[other] = entries[other], entries[k]
+    changed = replace(output, entries=tuple(entries), index=index)
+    found = replace(program, operations=(*program.operations, *more), outputs={**program.outputs, name: changed})
+    # read as it would be from a store, with a digest of its own
+    return Program.from_bytes(found.to_bytes())
