@@ -14,6 +14,7 @@ from substructures.certificate.numbers import Plain
 from substructures.certificate.part_outputs import metric_alone, part_outputs, part_symbols
 from substructures.certificate.states import STATES, draws
 from substructures.documents import Document
+from substructures.documents.units import read_unit
 from substructures.expr.direct import ball
 from substructures.expr.program import Program
 from substructures.part.mechanism import Mechanism
@@ -21,8 +22,35 @@ from substructures.part.physics import physical_warnings
 
 
 def plain(document: Document) -> Plain:
-    """The document as it was written, which is all that a certificate knows of it."""
-    return document.model_dump(exclude_defaults=True, by_alias=True)
+    """The document as it was written, with its numbers in SI, which is all that a certificate knows of it."""
+    return _declaring(document.model_dump(exclude_defaults=True, by_alias=True))
+
+
+def _declaring(document: Plain) -> Plain:
+    """A definition or tree: units of its parameters are those of their symbols, not of numbers."""
+    found = {
+        name: _in_si(value) for name, value in document.items() if name not in ("parameters", "inputs", "instances")
+    }
+    declared = {kind: document[kind] for kind in ("parameters", "inputs") if kind in document}
+    for kind, some in declared.items():
+        found[kind] = {name: {**given, "value": _in_si(given.get("value"))} for name, given in some.items()}
+    if "instances" in document:
+        found["instances"] = [_instance(given) for given in document["instances"]]
+    return found
+
+
+def _instance(given: Plain) -> Plain:
+    inline = {"definition": _declaring(given["definition"])} if given.get("definition") else {}
+    return {name: _in_si(value) for name, value in given.items() if name != "definition"} | inline
+
+
+def _in_si(given: Any) -> Any:
+    """What was given, with numbers in place of values with units."""
+    if isinstance(given, Mapping):
+        if set(given) == {"value", "unit"}:
+            return read_unit(given["unit"]).in_si(given["value"])
+        return {name: _in_si(value) for name, value in given.items()}
+    return [_in_si(value) for value in given] if isinstance(given, (list, tuple)) else given
 
 
 def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from substructures.certificate.compare import VerificationFailed
+from substructures.documents.fields import in_si
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.tree.certificate import certify_tree
@@ -24,11 +25,13 @@ def recheck_tree(
     Raises VerificationFailed when program or summary disagree with the documents.
     """
     certificate = certify_tree(spec, definitions, summary, program)
-    defaults = {name: p.value for name, p in spec.parameters.items()}
+    defaults = {name: in_si(p.value) for name, p in spec.parameters.items()}
     for instance, definition in definitions.items():
-        defaults |= {f"{instance}.{name}": p.value for name, p in definition.parameters.items()}
-    used = {s.name: defaults.get(s.name) for s in program.symbols if s.kind == "parameter"}
-    if {name: given.get("value") for name, given in summary["parameters"].items()} != used:
+        defaults |= {f"{instance}.{name}": in_si(p.value) for name, p in definition.parameters.items()}
+    used = {s.name for s in program.symbols if s.kind == "parameter"}
+    said = {name: given.get("value") for name, given in summary["parameters"].items()}
+    # older versions left out what no formula depends on
+    if not used <= said.keys() <= defaults.keys() or any(said[name] != defaults[name] for name in said):
         raise VerificationFailed("the parameters of the model and their defaults are not those of the documents")
     model = Model.load({**summary, "certificate": certificate}, program.to_bytes())
     if dict(summary.get("operations", model.operations)) != model.operations:
