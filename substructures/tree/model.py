@@ -9,7 +9,7 @@ gravity                n            generalised gravity forces
 bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
 inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
-potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
+potential_energy                    of gravity (zero at the world's origin) and of all forces that have one [J]
 linear_momentum        n 3          momentum of unit velocity q'^a, world axes
 angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
 position               frames 3     origin of every body frame and port in the world [m]

@@ -19,10 +19,10 @@ from substructures.analysis.equations.energy import EnergyRule, closures_of, dep
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.errors import Fault, InvalidArgument, listed
+from substructures.expr.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, program
-from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import transfer
 from substructures.tree.model import Model
 
@@ -102,7 +102,7 @@ class _Search:
     """Integrals found so far, and the tests."""
 
     def __init__(self, f: ModelFormulas) -> None:
-        self.f, self.zero, self.vanishes = f, f.graph.zero, Vanishing(f.graph)
+        self.f, self.zero, self.vanishes = f, f.graph.zero, VanishingOnAllSides(f.graph)
         self.found: list[tuple[Integral, Expr]] = []
         self.cyclic_names: list[str] = []
 

@@ -33,6 +33,8 @@ MAX_STARTS = 10_000
 MAX_SEED = 2**1000
 #: of the search from one start
 STEPS = 200
+#: of a start on a corner of a force [rad, m]
+BESIDE = 1e-6
 TOLERANCES = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
 
 
@@ -139,11 +141,14 @@ class RestSearch:
             """Forces and their Jacobian at free coordinates x."""
             q[moving] = x
             F, K = self.at(q)
-            return F, K[:, moving]
+            # a corner of a force, as of an end stop, has no derivative: any will do on the way
+            return F, np.where(np.isfinite(K[:, moving]), K[:, moving], 0)
 
         if len(moving):
+            if not np.isfinite(self.at(q)[1]).all():
+                q[moving] += BESIDE
             with np.errstate(all="ignore"):
-                q[moving] = least_squares(lambda x: both(x)[0], start[moving], lambda x: both(x)[1], **TOLERANCES).x
+                q[moving] = least_squares(lambda x: both(x)[0], q[moving].copy(), lambda x: both(x)[1], **TOLERANCES).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
         # |Q| <= 1e-10 max(1, |K|)
@@ -218,6 +223,7 @@ class ClosedSearch(RestSearch):
             F, K = self.at(q)
             G = self.G[0]
             # F = -Q - lambda G and phi, by q and lambda; phi in the units of forces
+            K = np.where(np.isfinite(K), K, 0)
             J = np.block([[K[:, moving], -G.T], [scale * G[:, moving], np.zeros((len(G), len(G)))]])
             return np.concatenate((F, scale * self.phi[0])), J
 
@@ -229,7 +235,7 @@ class ClosedSearch(RestSearch):
         if np.isfinite(residual).all() and np.isfinite(J).all():
             step = np.linalg.lstsq(J, -residual, rcond=1e-10)[0]
             residual, J = both(x + step if np.abs(step[:k]).max(initial=0) < 1e-3 else x)
-        size = float(np.abs(self.K).max(initial=0))
+        size = float(np.abs(self.K[np.isfinite(self.K)]).max(initial=0))
         if not np.abs(residual).max(initial=0) <= RESIDUAL * max(scale, size):
             return None
         self.s.move(self.conditions.t, q, rest)
