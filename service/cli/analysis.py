@@ -142,6 +142,8 @@ def _summary(told: Mapping[str, Any]) -> None:
         verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
         drift = f"{check['relative']:.2g} (limit {check['limit']:.2g})"
         print(f"{check['name']}: {check['rule']}, {verdict}, {drift}: {check['reason']}")
+    for warning in told.get("warnings", []):
+        print(f"warning: {warning['message']}")
     for event in told.get("events", []):
         print(f"{event['name']} at t = {event['t']:.9g} s")
     if "t" in told and "q" in told:

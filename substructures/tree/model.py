@@ -16,6 +16,7 @@ position               frames 3     origin of every body frame and port in the w
 rotation               frames 3 3   from the axes of the frame to those of the world
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
+limits                 n 2          lowest and highest value of the coordinates that have limits
 =====================  ===========  ==========================================================================
 """
 
@@ -50,7 +51,7 @@ MOMENTUM = ("linear_momentum", "angular_momentum")
 @dataclass(frozen=True)
 class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
-    the rows of the closure outputs are."""
+    the rows of the closure outputs are; ``limited``: the coordinates that have limits."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -59,6 +60,7 @@ class Model:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     certificate: Mapping[str, Any] = field(hash=False)
     closures: tuple[ClosureRows, ...] = ()
+    limited: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -83,6 +85,7 @@ class Model:
             "coordinates": list(self.coordinates),
             "joints": self.joints,
             "frames": list(self.frames),
+            "limited": list(self.limited),
             "parameters": {name: dict(p) for name, p in self.parameters.items()},
             "certificate": dict(self.certificate),
             "operations": self.operations,
@@ -94,7 +97,7 @@ class Model:
         names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
         described = (summary["parameters"], summary["certificate"])
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        return cls(Program.from_bytes(program_bytes), *names, *described, closures)
+        return cls(Program.from_bytes(program_bytes), *names, *described, closures, tuple(summary.get("limited", ())))
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
@@ -135,7 +138,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     used = {s.name for s in result.symbols}
     parameters = {name: value for name, value in assembly.parameters.items() if name in used}
     rows = tuple(cut.rows for cut in assembly.cuts)
-    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows)
+    limited = tuple(names[a] for a in sorted(assembly.limits))
+    return Model(result, tuple(names), joints, _frame_names(assembly), parameters, certificate, rows, limited)
 
 
 def model_outputs(
@@ -168,6 +172,11 @@ def model_outputs(
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
+    if assembly.limits and names is None:
+        rows: dict[tuple[int, ...], Scalar] = {
+            (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
+        }
+        outputs["limits"] = Formulas((n, 2), rows)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})

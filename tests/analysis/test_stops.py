@@ -9,7 +9,10 @@ import pytest
 from random_trees import Plain, model_of
 
 from substructures import Model
+from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import Event, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.quantities.evaluation import evaluate
@@ -87,3 +90,43 @@ def test_both_stops_are_alike(sign: float) -> None:
     motion = simulate(model, [0.5 * sign], (0, 3), qd=[4.0 * sign], count=5)
     other = simulate(model, [0.5], (0, 3), qd=[4.0], count=5)
     np.testing.assert_allclose(motion.q * sign, other.q, atol=1e-9)
+
+
+def test_limits_without_stops_are_warned_of() -> None:
+    """A mass that is thrown up and turns beyond its limit between two results; the same, held by a stop."""
+    joint: Plain = {"type": "prismatic", "coordinate": "x", "limits": [-1, "h"]}
+    body: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": joint}
+    definition = {"name": "a", "bodies": [body], "parameters": {"h": {"value": 3}}}
+    model = model_of(definition, (0, 0, -10))
+    motion = simulate(model, [0.0], (0, 2), qd=[10.0], count=2)
+    assert motion.is_right
+    assert motion.limits == {"x.x": [-1.0, 3.0]}
+    assert motion.reached is not None
+    np.testing.assert_allclose(motion.reached[1], 5, rtol=1e-9)
+    (warning,) = motion.summary()["warnings"]
+    assert warning["code"] == "limits-left"
+    assert warning["pointer"] == "/q/x.x"
+    assert "goes up to 5 m" in warning["message"]
+    assert simulate(model, [0.0], (0, 2), qd=[10.0], count=2, parameters={"h": 5.5}).warnings == ()
+    both = simulate(model, [0.0], (0, 2.5), qd=[10.0], count=2).warnings
+    assert "down to -6.25 m and up to 5 m" in both[0]["message"]
+
+
+def test_every_kind_of_motion_tells_of_its_limits() -> None:
+    """Sensitivities, prescribed motions and cost gradients warn alike; a limit without value is told."""
+    joint: Plain = {"type": "prismatic", "coordinate": "x", "limits": [0, "h"]}
+    body: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": joint}
+    definition: Plain = {"name": "a", "bodies": [body], "parameters": {"h": {}}}
+    model, given = model_of(definition, (0, 0, -10)), {"h": 1.0}
+    motions = [
+        sensitivities(model, [0.5], (0, 1), of_start=True, parameters=given),
+        simulate(model, [0.5], (0, 1), prescribed={"x.x": "1/2 - t"}, parameters=given),
+        cost_gradient(
+            model, controls=["tau.x.x"], horizon=1.0, intervals=9, q=[0.5], cost=Cost(running="x.x^2"), parameters=given
+        ).trajectory,
+    ]
+    for motion in motions:
+        assert motion.limits == {"x.x": [0.0, 1.0]}
+        assert [w["code"] for w in motion.warnings] == ["limits-left"]
+    unknown = simulate(model, [0.5], (0, 0.1), qd=[0.0])
+    assert [w["code"] for w in unknown.warnings] == ["limits-unknown"]

@@ -42,7 +42,7 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
-    kept = ("coordinates", "joints", "frames", "closures")
+    kept = ("coordinates", "joints", "frames", "closures", "limited")
     return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters}
 
 
