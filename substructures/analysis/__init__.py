@@ -16,7 +16,8 @@ closed           ``loops``: mobility, redundancy, reactions at a state; motions 
 motion           ``problem``: what a motion is computed from (``signals``, ``events``, ``output_times``);
                  ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``; ``judges``
                  and ``trajectory``: checks and results; ``parameter_sensitivity``; ``writers``: trajectories as files
-equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule);
-                 ``perturbation``, ``curvature``, ``routh``; ``formulas``: a model in a new graph
+equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
+                 ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
+                 dependencies between functions; ``formulas``: a model in a new graph
 ===============  ===================================================================================================
 """
