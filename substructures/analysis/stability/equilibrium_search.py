@@ -76,7 +76,7 @@ class RestSearch:
     """Forces of a tree and their Jacobian at rest, compiled."""
 
     def __init__(self, model: Model, within: SearchRange, conditions: RestConditions) -> None:
-        n = model.dof
+        n = self.n = model.dof
         self.model, self.within, self.conditions = model, within, conditions
         states = read_states(model, {"q": np.zeros(n)}, None)
         known = symbol_values(model, vars(conditions), states, NEEDS)
@@ -98,7 +98,7 @@ class RestSearch:
 
     def _is_periodic(self, a: int) -> bool:
         """Whether a full turn changes nothing (no spring in the joint)."""
-        q = np.linspace(0.3, 0.9, self.model.dof)
+        q = np.linspace(0.3, 0.9, self.n)
         before, turned = (self._judged(q + x * np.eye(len(q))[a]) for x in (0, 2 * np.pi))
         return bool(np.abs(turned - before).max() <= 1e-9 * max(1.0, float(np.abs(before).max())))
 
@@ -108,15 +108,19 @@ class RestSearch:
 
     def starts(self) -> Array:
         """Those given, zero, and random ones, (N, n)."""
-        n, rng = self.model.dof, np.random.default_rng(self.within.seed)
-        rows = [np.zeros((1, n)), rng.uniform(-1, 1, (self.within.count, n)) * self.size]
+        rng = np.random.default_rng(self.within.seed)
+        rows = [np.zeros((1, self.n)), rng.uniform(-1, 1, (self.within.count, self.n)) * self.size]
         if self.within.starts is not None:
-            given = np.atleast_2d(numeric(self.within.starts, "/starts"))
+            n, given = self.model.dof, np.atleast_2d(numeric(self.within.starts, "/starts"))
             if given.ndim != 2 or given.shape[1] != n:
                 message = f"shape {given.shape} found, (N, {n}) expected"
                 raise InvalidArgument.at("/starts", "wrong-length", message)
-            rows.insert(0, given)
+            rows.insert(0, self._of_all(given))
         return np.concatenate(rows)
+
+    def _of_all(self, rows: Array) -> Array:
+        """Of rows (N, n) for all coordinates those that are looked for."""
+        return rows
 
     def at(self, q: Array) -> tuple[Array, Array]:
         """-Q and its Jacobian at rest."""
