@@ -172,7 +172,7 @@ def model_outputs(
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
-    if assembly.limits and names is None:
+    if assembly.limits and wanted("limits"):
         rows: dict[tuple[int, ...], Scalar] = {
             (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
         }

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.errors import InvalidArgument
@@ -33,7 +33,8 @@ def steady_formulas(model: Model, moving: Sequence[int]) -> Program:
 
     Outputs, for r coordinates x and m coordinates s: ``metric`` (n, n), ``residual`` E_x (r,), ``by_position`` E_x,x
     (r, r), ``by_velocity`` E_x,x' (r, r), ``by_rate`` E_x,w (r, m), ``momenta`` g_ss w (m,) and ``momenta_by_position``
-    N (m, r). Raises InvalidDocument for forces without derivative.
+    N (m, r). With closures E_x is less G_kx lambda_k, and there are ``closure.residual`` (c,) and ``closure.jacobian``
+    G_kx (c, r). Raises InvalidDocument for forces without derivative.
     """
     return _steady_formulas(known_model(model), tuple(moving))
 
@@ -47,7 +48,7 @@ def _steady_formulas(known: Known, moving: tuple[int, ...]) -> Program:
     names = {prime: [f"{model.coordinates[a]}{prime}" for a in still] for prime in ("", "'")}
     w = [f"{model.coordinates[s]}'" for s in moving]
     bias, forces, g = f.vector("bias"), f.vector("forces"), f.elements("metric")
-    E = [bias[a] - forces[a] for a in still]
+    E = [bias[a] - forces[a] - f.reactions[a] for a in still]
     p = [f.graph.sum(g[s, b] * f.rates[b] for b in moving if (s, b) in g) for s in moving]
     blocks = [gradient(E, names[""]), gradient(E, names["'"]), gradient(E, w), gradient(p, names[""])]
     found = {
@@ -59,6 +60,11 @@ def _steady_formulas(known: Known, moving: tuple[int, ...]) -> Program:
         "momenta": array((len(p),), lambda a: p[a]),
         "momenta_by_position": array((len(p), len(E)), lambda a, b: blocks[3][a][b]),
     }
+    if model.closures:
+        phi, G = f.elements("closure.residual"), f.elements("closure.jacobian")
+        c = len(multipliers_of(model))
+        found["closure.residual"] = array((c,), lambda k: phi.get((k,), f.graph.zero))
+        found["closure.jacobian"] = array((c, len(still)), lambda k, a: G.get((k, still[a]), f.graph.zero))
     # x' = 0
     rest = dict.fromkeys(names["'"], f.graph.zero)
     outputs = {}
@@ -76,6 +82,7 @@ def require_free(model: Model, moving: Sequence[int]) -> None:
     still = [a for a in range(f.n) if a not in moving]
     bias, forces, g = f.vector("bias"), f.vector("forces"), f.elements("metric")
     seen = [bias[a] - forces[a] for a in still] + [g[a, b] for a in still for b in still if (a, b) in g]
+    seen += f.elements("closure.residual").values() if model.closures else ()
     vanishes = VanishingOnAllSides(f.graph)
     for s in moving:
         name = model.coordinates[s]

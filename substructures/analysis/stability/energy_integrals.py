@@ -37,7 +37,7 @@ def bounded_by_integrals(
 ) -> str | None:
     """Why the steady motion at ``values`` (of all symbols; s = ``moving``) is stable, None where this does not tell.
 
-    ``zero``: parameters that are 0. All inputs are 0, and the energy is constant.
+    ``zero``: parameters that are 0. All inputs are 0, and the energy is constant. No closures.
     """
     if model.dof > MOST:
         return None

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -25,13 +25,13 @@ import numpy as np
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.formulas import require_tree
+from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
-from substructures.analysis.stability.steady_search import SteadySearch
-from substructures.analysis.stability.vibrations import Mode, Stability, modes, stability
+from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
+from substructures.analysis.stability.vibrations import Mode, Stability, modes, normed, stability
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.model import Model
@@ -46,12 +46,14 @@ class SteadyMotion:
     """``q`` (n,): the coordinates, 0 where they move [rad, m]; ``rates`` (m,) of the ``moving`` ones [rad/s, m/s] and
     their ``momenta`` (m,) [N m s, N s].
 
-    ``M``, ``D``, ``K`` (r, r): of M dx'' + D dx' + K dx = 0 for disturbances of the r others, with ``modes``, slowest
-    first. ``stability`` is None where there is no linearisation; ``message`` says why.
+    ``M``, ``D``, ``K`` (r, r): of M dy'' + D dy' + K dy = 0 for disturbances of the r ``independent`` others, with
+    ``modes``, slowest first, whose shapes are those of all others. ``stability`` is None where there is no
+    linearisation; ``message`` says why.
     """
 
     coordinates: tuple[str, ...]
     moving: tuple[str, ...]
+    independent: tuple[str, ...]
     q: Array
     rates: Array
     momenta: Array
@@ -107,24 +109,26 @@ def steady_motions(
     parameters: Mapping[str, float] | None = None,
     inputs: Mapping[str, float] | None = None,
 ) -> SteadyMotions:
-    """Steady motions of a tree: Gamma_xbc w^b w^c = Q_x with s' = w constant and all other coordinates x still.
+    """Steady motions: Gamma_xbc w^b w^c = Q_x with s' = w constant and all other coordinates x still; with closures
+    Gamma_xbc w^b w^c = Q_x + lambda_k G_kx and phi_k = 0.
 
     Given are either ``rates`` w [rad/s, m/s] or ``momenta`` [N m s, N s] of cyclic coordinates by name; those that are
     not named have 0. ``held``: ``momenta`` keep their values when the motion is disturbed, since nothing acts on cyclic
     coordinates; or ``rates`` do, those of the named coordinates, which are driven then and need not be cyclic as long
     as nothing else depends on them. The search is that of equilibria: ``starts`` (N, n), zero, ``count`` random places
     within ``reach`` [m]. ``parameters`` in place of their defaults, constant ``inputs`` [N m, N]. That none is found is
-    a result with advice. Raises InvalidInput (``/rates``, ``/rates/name``, ``/momenta/name``, ``not-smooth``,
-    ``has-closures``) and MissingValue. Source: notation.md, section 7.
+    a result with advice. Raises InvalidInput (``/rates``, ``/rates/name``, ``/momenta/name``, ``not-smooth``)
+    and MissingValue. Source: notation.md, section 7.
     """
-    require_tree(model)
+    require_moving(model)
     one_of(held, "held", ("momenta", "rates"))
     conditions = RestConditions(0.0, parameters or {}, inputs or {})
     given, field = _given(rates, momenta, held)
     moving = _moving(model, conditions, given, field, held)
     wanted = np.array([given.get(model.coordinates[s], 0.0) for s in moving])
     within = SearchRange(starts, count, reach, seed)
-    search = SteadySearch(model, moving, within, conditions, wanted, field == "momenta")
+    kind = ClosedSteadySearch if model.closures else SteadySearch
+    search = kind(model, moving, within, conditions, wanted, field == "momenta")
     found, failing = _places(search)
     ordered = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])] if found and search.n else found[:1]
     motions = tuple(_described(search, x, held) for x in ordered)
@@ -188,16 +192,15 @@ def _described(search: SteadySearch, x: Array, held: Held) -> SteadyMotion:
     """With matrices, modes and the verdict."""
     model, at = search.model, search.matrices(x, held == "momenta")
     names = tuple(model.coordinates[s] for s in search.moving)
-    motion = SteadyMotion(model.coordinates, names, search.whole(x), at.rates, at.momenta, at.M, at.D, at.K)
+    independent = tuple(model.coordinates[a] for a in at.independent)
+    named = (model.coordinates, names, independent)
+    motion = SteadyMotion(*named, search.whole(x), at.rates, at.momenta, at.M, at.D, at.K)
     if not all(np.isfinite(m).all() for m in (at.M, at.D, at.K)):
         message = "a derivative of the forces is not finite here, or the metric is singular: there is no linearisation"
-        return SteadyMotion(*_fields(motion), message=message)
-    found = modes(at.M, at.D, at.K)
-    return SteadyMotion(*_fields(motion), modes=found, stability=_judged(search, x, held, found, at.D, at.K))
-
-
-def _fields(m: SteadyMotion) -> tuple[tuple[str, ...], tuple[str, ...], Array, Array, Array, Array, Array, Array]:
-    return m.coordinates, m.moving, m.q, m.rates, m.momenta, m.M, m.D, m.K
+        return replace(motion, message=message)
+    # shapes of all coordinates that keep still: dx = N dy
+    found = tuple(replace(mode, shape=normed(at.tangent @ mode.shape)) for mode in modes(at.M, at.D, at.K))
+    return replace(motion, modes=found, stability=_judged(search, x, held, found, at.D, at.K))
 
 
 def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...], D: Array, K: Array) -> Stability:
@@ -212,7 +215,7 @@ def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...],
         return Stability("stable", f"{what} has a strict minimum {kept} (Routh, Salvadori)")
     if first.verdict != "undecided":
         return Stability(first.verdict, f"linearised {kept}: {first.reason}" if found else first.reason)
-    if held == "momenta" and not any(search.conditions.inputs.values()):
+    if held == "momenta" and not model.closures and not any(search.conditions.inputs.values()):
         reason = bounded_by_integrals(model, values, search.moving, zero)
         if reason is not None:
             return Stability("stable", reason)
