@@ -13,6 +13,7 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.integrate import filtered, potential, summands, symbols_of
 from substructures.expr.walk import transfer
+from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
 
 
@@ -22,8 +23,13 @@ def gradient_forces(m: Mechanism, energy: Expr) -> list[Expr]:
 
 
 def spring_potential(m: Mechanism, forces: Mapping[int, Expr]) -> Expr | None:
-    """The potential of one spring whose stiffness or length depends on the state, None where there is none."""
+    """The potential of one spring whose stiffness or length depends on the state, None where there is none.
+
+    With a velocity in it there is none, whatever the derivatives by coordinates are.
+    """
     names = m.topology.coordinates
+    if velocity_in(m.topology, forces.values()) is not None:
+        return None
     return potential([forces.get(a, m.graph.zero) for a in range(len(names))], names)
 
 

@@ -137,6 +137,16 @@ def test_a_spring_whose_stiffness_depends_on_the_state_counts_only_with_its_grad
     np.testing.assert_allclose(slope(model, np.array([[0.5]]), t=2.0), -Q, atol=1e-9)
 
 
+def test_a_stiffness_that_depends_on_a_velocity_has_no_potential() -> None:
+    """Neither in a spring nor in a joint; the joint's spring at rest, k = 4, has one."""
+    ends = {"type": "spring", "from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "b"}}
+    V, Q = energy_and_forces(slide(ends | {"stiffness": "4 + x'^2"}), [[0.5]], qd=[[2.0]])
+    assert V[0] == 0
+    np.testing.assert_allclose(Q, -8 * 0.5)
+    V, Q = energy_and_forces(slide(stiffness="4 + x'^2"), [[0.5]], qd=[[2.0]])
+    np.testing.assert_allclose([V[0], Q[0, 0]], [2 * 0.25, -8 * 0.5])
+
+
 def test_constant_forces_in_the_world_have_a_potential_on_any_host() -> None:
     """-F . x of a force on a part that is carried along; also straight from the parts. In body axes there is none."""
     arm: Plain = {
