@@ -50,6 +50,7 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.analysis.simulate import simulate
     from substructures.analysis.stability.equilibria import equilibria
     from substructures.analysis.stability.linearise import linearise
+    from substructures.analysis.stability.steady_motions import steady_motions
     from substructures.errors import (
         Fault,
         InvalidArgument,
@@ -95,6 +96,7 @@ __all__ = [
     "read_instance",
     "render",
     "simulate",
+    "steady_motions",
 ]
 
 __version__: str
@@ -104,6 +106,7 @@ _WHERE = {
     "analysis.simulate": ("simulate",),
     "analysis.stability.equilibria": ("equilibria",),
     "analysis.stability.linearise": ("linearise",),
+    "analysis.stability.steady_motions": ("steady_motions",),
     "errors": (
         *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),
         *("SubstructuresError", "TooLarge"),

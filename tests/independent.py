@@ -159,3 +159,25 @@ def applied_forces(definition: Plain, moving: Moving, coordinates: list[str], na
             columns = w if load["type"] == "torque" else moving.point(load["body"], values(load["at"]))[1]
             Q += np.einsum("nai,ni->na", columns, f)
     return Q
+
+
+def conservative_loads(definition: Plain, moving: Moving, q: Array, coordinates: list[str]) -> tuple[Array, Array]:
+    """V and Q of the random loads that have a potential: constant forces in the world and constant joint forces, and
+    -q^2 on q itself, V = q^3/3. What depends on velocities, inputs, the time or another coordinate has none.
+    """
+    V, Q = np.zeros(len(q)), np.zeros_like(q)
+    for load in definition["loads"]:
+        if load["type"] == "joint":
+            a, force = coordinates.index(load["coordinate"]), load["force"]
+            c = force if isinstance(force, float) else 0.0
+            k = 1.0 if isinstance(force, str) and force.endswith(f"- {load['coordinate']}^2") else 0.0
+            V = V - c * q[:, a] + k * q[:, a] ** 3 / 3
+            Q[:, a] += c - k * q[:, a] ** 2
+        elif (
+            load["type"] == "force" and load["frame"] == "world" and not any(isinstance(x, str) for x in load["vector"])
+        ):
+            x, u = moving.point(load["body"], values(load["at"]))
+            if np.abs(u).max(initial=0):
+                V = V - x @ np.array(load["vector"])
+                Q = Q + u @ np.array(load["vector"])
+    return V, Q

@@ -16,7 +16,12 @@ from service.analyses.warnings import warnings_of
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
 from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest
-from service.schemas.stability import EquilibriaRequest, LinearisationRequest, RootLocusRequest
+from service.schemas.stability import (
+    EquilibriaRequest,
+    LinearisationRequest,
+    RootLocusRequest,
+    SteadyMotionsRequest,
+)
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.optimal_control import optimal_control
@@ -28,6 +33,7 @@ from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
+from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model
@@ -154,6 +160,11 @@ ANALYSES: dict[str, Analysis] = {
         EquilibriaRequest,
         lambda source, read, _: equilibria(source.model, **arguments(read)),
         "All equilibria that are found, each with its vibrations and stability; also of closed loops",
+    ),
+    "steady-motions": Analysis(
+        SteadyMotionsRequest,
+        lambda source, read, _: steady_motions(source.model, **arguments(read)),
+        "Steady motions: cyclic coordinates at constant rates, all others still; each with its stability and why",
     ),
     "root-loci": Analysis(
         RootLocusRequest,

@@ -158,6 +158,7 @@ class TreeView(Shape):
     closures: list[dict[str, Any]] = Field(
         [], description="loops: name, type, from, to and rows of each; left out if none"
     )
+    limited: list[str] = Field([], description="coordinates with limits, which are the quantity limits")
     operations: dict[str, Any]
     certificate: dict[str, Any]
     warnings: list[Warned]

@@ -4,7 +4,7 @@ units, angles in rad.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -39,6 +39,23 @@ class EquilibriaRequest(DocumentPart):
     t: Real = 0.0
     parameters: Values = Field({}, description="in place of their defaults")
     inputs: Values = Field({}, description="constant; 0 by default")
+
+
+class SteadyMotionsRequest(DocumentPart):
+    """Either ``rates`` or ``momenta`` of cyclic coordinates; the search is that of equilibria.
+
+    ``held``: what keeps its values when the motion is disturbed: momenta, or rates of coordinates that are driven.
+    """
+
+    rates: dict[str, Real] | None = Field(None, description="rad/s, m/s by coordinate; 0 for cyclic ones not named")
+    momenta: dict[str, Real] | None = Field(None, description="N m s, N s by coordinate; 0 for cyclic ones not named")
+    held: Literal["momenta", "rates"] = "momenta"
+    starts: Any = None
+    count: Annotated[int, Field(ge=0, le=10_000)] = 32
+    reach: Positive = Field(1.0, description="m")
+    seed: Annotated[int, Field(ge=0)] = 0
+    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
+    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
 
 
 class RootLocusRequest(DocumentPart):

@@ -7,7 +7,7 @@ frozen values of arrays. Arguments that cannot be used raise InvalidArgument wit
 folder           what is there
 ===============  ===================================================================================================
 simulate         ``simulate``: motions of trees, closed loops and rolling bodies; ``drawings``: results as diagrams
-stability        positions of rest; M, D, K and A, B, C, D, modes (``vibrations``), stability; roots over a parameter
+stability        positions of rest, steady motions; M, D, K and A, B, C, D, modes (``vibrations``), stability; root loci
 control          equations of the adjoint as formulas; the gradient of a cost; optimal control by shooting
 identification   which inertial parameters the motion depends on, and their values from measurements
 closed           ``loops``: mobility, redundancy, reactions at a state; motions that stay on the closures
@@ -15,8 +15,9 @@ closed           ``loops``: mobility, redundancy, reactions at a state; motions 
                  ordinary differential equations, ``prescribed``: motions that are given)
 motion           ``problem``: what a motion is computed from (``signals``, ``events``, ``output_times``);
                  ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``; ``judges``
-                 and ``trajectory``: checks and results; ``parameter_sensitivity``; ``writers``: trajectories as files
-equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule);
-                 ``perturbation``, ``curvature``, ``routh``; ``formulas``: a model in a new graph
+                 and ``trajectory``: checks and results; ``limits``; ``parameter_sensitivity``; ``writers``: files
+equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
+                 ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
+                 dependencies between functions; ``formulas``: a model in a new graph
 ===============  ===================================================================================================
 """

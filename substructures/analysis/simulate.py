@@ -20,6 +20,7 @@ from substructures.analysis.closed.simulation import ClosedProblem, simulate_clo
 from substructures.analysis.equations.velocity_constraints import Closed, Constraint, KnifeEdge, Linear, Rolling
 from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.fixed_step import FixedStep
+from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import IntegratorChoice, Start, StateVector
 from substructures.analysis.motion.progress import ProgressReport
@@ -101,15 +102,16 @@ def simulate(
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
         _refuse("velocity constraints", fixed_step=fixed_step, **closed)
-        return simulate_rolling(
-            RollingProblem(**given, constraints=constraints, form=form, **rolling), progress, folder
-        )
+        rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
+        return with_limits(model, parameters, simulate_rolling(rolled, progress, folder))
     if model.closures or prescribed:
         _refuse("closures or prescribed coordinates", fixed_step=fixed_step, **rolling)
         closed["prescribed"] = prescribed or {}
-        return simulate_closed(ClosedProblem(**given, reduction=reduction, **closed), progress, folder)
+        loops = ClosedProblem(**given, reduction=reduction, **closed)
+        return with_limits(model, parameters, simulate_closed(loops, progress, folder))
     _refuse("neither closures nor velocity constraints", **rolling, **closed)
-    return simulate_tree(TreeProblem(**given, fixed_step=fixed_step), progress, folder)
+    motion = simulate_tree(TreeProblem(**given, fixed_step=fixed_step), progress, folder)
+    return with_limits(model, parameters, motion)
 
 
 def _refuse(kind: str, **arguments: Any) -> None:

@@ -78,6 +78,13 @@ class PortRotation(DocumentPart):
     rpy: NumberVector = Field((0, 0, 0), description="rad")
 
 
+class LimitStop(DocumentPart):
+    """End stops at the limits of a joint: a spring and damper that acts beyond them only, p beyond: (k + c p') p."""
+
+    stiffness: Number = Field(description="N m/rad or N/m")
+    damping: Number = Field(0, description="N m s/rad^2 or N s/m^2; of a rate of 1, for 1 rad or 1 m beyond the limit")
+
+
 class Joint(DocumentPart):
     """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg), or a placement."""
 
@@ -96,6 +103,7 @@ class Joint(DocumentPart):
     damping: Number | tuple[Number, ...] = Field(0, description="N m s/rad or N s/m")
     armature: Number | tuple[Number, ...] = Field(0, description="kg m^2 or kg; rotor inertia seen at the joint")
     limits: tuple[Number, Number] | tuple[tuple[Number, Number], ...] | None = Field(None, description="rad or m")
+    limits_act: LimitStop | tuple[LimitStop, ...] | None = Field(None, description="end stops at the limits")
 
 
 class InertiaTensor(DocumentPart):
@@ -157,7 +165,7 @@ class TorqueLoad(DocumentPart):
 
 
 class SpringLoad(DocumentPart):
-    """A linear spring and damper between two points."""
+    """A spring and damper between two points; its stiffness may depend on the state: force k (l - length) + c l'."""
 
     type: Literal["spring"]
     from_: Point = Field(alias="from")
@@ -177,7 +185,14 @@ class JointLoad(DocumentPart):
     force: Number = Field(description="N m or N")
 
 
-Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad, Field(discriminator="type")]
+class PotentialLoad(DocumentPart):
+    """Forces by their potential V in coordinates, parameters, inputs and t: Q_a = -dV/dq^a."""
+
+    type: Literal["potential"]
+    potential: Number = Field(description="J")
+
+
+Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad | PotentialLoad, Field(discriminator="type")]
 
 
 class Input(Measured):

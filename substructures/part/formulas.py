@@ -20,8 +20,8 @@ christoffel        n n n       own Christoffel symbols
 composite.m .s .J              mass and moments of the whole about the origin of I
 base.m .s .J                   own values of what is fixed to the interface, about its origin
 armature           n           rotor inertia of every joint (part of the metric)
-applied            n           joint springs and dampers, actuators, joint loads, springs
-potential                      potential energy of all springs
+applied            n           joint springs, dampers and stops, actuators, joint loads, springs, potentials
+potential                      potential energy of as much of them as has one
 inertia.m .s .J    n ...       own values for the inertia symbols, about the body frame origins
 frame.E .position  frames ...  constant placement of bodies and ports in their carrier's body frame
 port.R .r .U .Omega ports ...  ports with respect to I; own base functions in port axes

@@ -13,11 +13,19 @@ from fractions import Fraction
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.definition import Definition, ForceLoad, JointLoad, SpringLoad, TorqueLoad
+from substructures.part.definition import (
+    Definition,
+    ForceLoad,
+    JointLoad,
+    PotentialLoad,
+    SpringLoad,
+    TorqueLoad,
+)
 from substructures.part.frames import Frame
-from substructures.part.mechanism import Mechanism
-from substructures.part.scope import Lookup, Scope
-from substructures.part.units import si_unit
+from substructures.part.load_names import depends_on_state, load_names, names_in, velocity_in
+from substructures.part.mechanism import Mechanism, Stops
+from substructures.part.potentials import found_potential, gradient_forces, spring_potential
+from substructures.part.scope import Lookup
 
 
 @dataclass(frozen=True)
@@ -33,7 +41,7 @@ class AppliedWrench:
 
 @dataclass(frozen=True)
 class Spring:
-    """Linear spring and damper between two points fixed in carriers (body frames)."""
+    """Spring and damper between two points fixed in carriers (body frames)."""
 
     ends: tuple[tuple[int, Vector], tuple[int, Vector]]
     stiffness: Expr
@@ -44,11 +52,12 @@ class Spring:
 
 @dataclass(frozen=True)
 class Loads:
-    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index."""
+    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index, potentials."""
 
     wrenches: tuple[AppliedWrench, ...]
     springs: tuple[Spring, ...]
     joint_forces: dict[int, Expr]
+    potentials: tuple[Expr, ...] = ()
 
 
 def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[tuple[int, bool, bool], ...]:
@@ -60,43 +69,36 @@ def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[t
     )
 
 
+def dead_loads(definition: Definition) -> tuple[bool, ...]:
+    """Of every force and torque, whether it is a force that is constant in the world: V = -F . x."""
+    return tuple(
+        isinstance(load, ForceLoad)
+        and load.frame == "world"
+        and all(names_in(x) <= definition.parameters.keys() for x in load.vector)
+        for load in definition.loads
+        if isinstance(load, (ForceLoad, TorqueLoad))
+    )
+
+
 def read_loads(m: Mechanism) -> Loads:
     """Read the loads; expressions may name parameters, coordinates, velocities (q'), inputs and the time t."""
-    lookup = load_names(m.scope, m)
+    lookup = load_names(m.scope, m.definition, m.topology)
     wrenches: list[AppliedWrench] = []
     springs: list[Spring] = []
     forces: dict[int, Expr] = {}
+    potentials: list[Expr] = []
     for i, load in enumerate(m.definition.loads):
         pointer = f"/loads/{i}"
         if isinstance(load, (ForceLoad, TorqueLoad)):
             wrenches += _wrench(m, load, pointer, lookup)
         elif isinstance(load, SpringLoad):
             springs += _spring(m, load, pointer, lookup)
+        elif isinstance(load, PotentialLoad):
+            potentials.append(_potential(m, load, pointer, lookup))
         else:
             _joint_force(m, load, pointer, lookup, forces)
     m.scope.finish()
-    return Loads(tuple(wrenches), tuple(springs), forces)
-
-
-def load_names(scope: Scope, m: Mechanism) -> Lookup:
-    """Names for load expressions; a symbol is declared when it is first used."""
-    coordinates = set(m.topology.coordinates)
-
-    def lookup(name: str) -> Expr | None:
-        """Parameters, then the time, inputs, coordinates and velocities."""
-        if name in scope.names:
-            return scope.names[name]
-        if name == "t":
-            return scope.declare("t", "time", "s")
-        if name in m.definition.inputs:
-            return scope.declare(name, "input", si_unit(m.definition.inputs[name].unit))
-        if name in coordinates:
-            return scope.graph.symbol(name)
-        if name.endswith("'") and name[:-1] in coordinates:
-            return velocity(m, m.topology.coordinates.index(name[:-1]))
-        return None
-
-    return lookup
+    return Loads(tuple(wrenches), tuple(springs), forces, tuple(potentials))
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
@@ -139,6 +141,17 @@ def _spring(m: Mechanism, load: SpringLoad, pointer: str, lookup: Lookup) -> lis
     return [Spring((ends[0], ends[1]), stiffness, damping, length, pointer)]
 
 
+def _potential(m: Mechanism, load: PotentialLoad, pointer: str, lookup: Lookup) -> Expr:
+    """V(q, u, t) as given; a velocity in it is a fault, since then -d_a V would not be the force."""
+    place = f"{pointer}/potential"
+    energy = m.scope.read(load.potential, place, lookup)
+    rate = velocity_in(m.topology, [energy])
+    if rate is not None:
+        message = f"a potential depends on coordinates, not on velocities: '{rate}' is one"
+        m.scope.fault(place, "velocity-in-potential", message)
+    return energy
+
+
 def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
     if load.coordinate not in m.topology.coordinates:
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
@@ -158,29 +171,70 @@ class PointKinematics:
 def applied_forces(
     m: Mechanism, loads: Loads, point: Callable[[int, Vector], PointKinematics]
 ) -> tuple[list[Expr], Expr]:
-    """(generalised forces of joint laws, actuators and springs; potential energy): notation.md, section 7."""
+    """(generalised forces of joint laws, actuators, springs and potentials; potential energy): notation.md, section 7.
+
+    The potential energy is that of as much of these forces as has one: -d_a V is a part of Q_a, exactly.
+    """
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
+    #: given as formulas: whether they have a potential is to be found out
+    given = list(forces)
     potential = zero
-    for a, (law, entry) in enumerate(zip(m.laws, m.topology.joints, strict=True)):
-        q = m.graph.symbol(entry.coordinate)
-        # Q_a = tau_a - k (q - rest) - c q',   V = k (q - rest)^2 / 2
-        stretch = q - law.rest
+    for a, entry in enumerate(m.topology.joints):
+        stretch = m.graph.symbol(entry.coordinate) - m.laws[a].rest
         tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
-        forces[a] = forces[a] + tau - law.stiffness * stretch
-        if not law.damping.is_zero:
-            forces[a] = forces[a] - law.damping * velocity(m, a)
-        potential = potential + law.stiffness * Fraction(1, 2) * (stretch * stretch)
+        forces[a] = forces[a] + tau
+        potential = potential + _joint_law(m, a, stretch, forces, given)
+    for energy in loads.potentials:
+        # Q_a = -d_a V
+        forces = [x + y for x, y in zip(forces, gradient_forces(m, energy), strict=True)]
+        potential = potential + energy
     for spring in loads.springs:
         potential = potential + _spring_force(m, spring, point, forces)
     m.scope.finish()
-    return forces, potential
+    return forces, potential + found_potential(m, given)
+
+
+def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[Expr]) -> Expr:
+    """Adds Q_a = -k (q - rest) - c q' and the stops; returns V, k (q - rest)^2 / 2 where k and rest are no functions of
+    the state. Where they are, the force is ``given`` as a formula.
+    """
+    law = m.laws[a]
+    forces[a] = forces[a] - law.stiffness * stretch
+    if not law.damping.is_zero:
+        forces[a] = forces[a] - law.damping * velocity(m, a)
+    energy = m.graph.zero
+    if depends_on_state(m.topology, law.stiffness, law.rest):
+        given[a] = given[a] - law.stiffness * stretch
+    else:
+        energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)
+    return energy if law.stops is None else energy + _stop_force(m, a, law.stops, forces)
+
+
+def _stop_force(m: Mechanism, a: int, stops: Stops, forces: list[Expr]) -> Expr:
+    """Adds Q_a = -(k + c q') p above the upper limit and (k - c q') p below the lower one, p beyond; returns k p^2 / 2.
+
+    With p = max(0, x) = (x + |x|)/2 and |x| = sqrt(x^2) the force is continuous where it begins, and no formula has to
+    ask on which side it is (K. H. Hunt and F. R. E. Crossley, J. Applied Mechanics 42, 1975).
+    """
+    q, potential = m.graph.symbol(m.topology.coordinates[a]), m.graph.zero
+    for sign, beyond in ((1, q - stops.high), (-1, stops.low - q)):
+        p = (beyond + m.graph.sqrt(beyond * beyond)) * Fraction(1, 2)
+        # N = (k + c p') p pushes back
+        push = stops.stiffness * p
+        potential = potential + push * p * Fraction(1, 2)
+        if not stops.damping.is_zero:
+            push = push + stops.damping * (velocity(m, a) * sign) * p
+        forces[a] = forces[a] - push * sign
+    return potential
 
 
 def _spring_force(
     m: Mechanism, spring: Spring, point: Callable[[int, Vector], PointKinematics], forces: list[Expr]
 ) -> Expr:
-    """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns k (l - l0)^2 / 2."""
+    """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns V = k (l - l0)^2 / 2, or where k or l0
+    depend on the state what is found.
+    """
     start, end = (point(*e) for e in spring.ends)
     # x = r_to - r_from,   w_a = x . (u_to,a - u_from,a),   l l' = w_a q'^a
     x = sub(end.position, start.position)
@@ -197,6 +251,9 @@ def _spring_force(
         length = m.graph.sqrt(length2)
         factor = factor - spring.stiffness * spring.length / length
         energy = spring.stiffness * (length - spring.length) ** 2
+    if depends_on_state(m.topology, spring.stiffness, spring.length):
+        # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
+        energy = 2 * (spring_potential(m, {a: -(factor * w) for a, w in reach.items()}) or m.graph.zero)
     if not spring.damping.is_zero:
         speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
         # c l'/l = c (l l') / l^2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
@@ -23,6 +24,7 @@ from substructures.mechanics.linear3 import (
 )
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
+from substructures.part.load_names import load_names
 from substructures.part.scope import Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 from substructures.part.units import si_unit
@@ -31,13 +33,24 @@ UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
 
 @dataclass(frozen=True)
+class Stops:
+    """End stops of a coordinate, beyond ``low`` and ``high``; expressions in parameters."""
+
+    low: Expr
+    high: Expr
+    stiffness: Expr
+    damping: Expr
+
+
+@dataclass(frozen=True)
 class JointLaw:
-    """Spring, damper and rotor of a coordinate; expressions."""
+    """Spring, damper, rotor and end stops of a coordinate; expressions."""
 
     stiffness: Expr
     rest: Expr
     damping: Expr
     armature: Expr
+    stops: Stops | None = None
 
 
 @dataclass(frozen=True)
@@ -116,6 +129,7 @@ class _Builder:
         self.laws: list[JointLaw] = []
         self.central: dict[int, tuple[Expr, Symmetric]] = {}
         self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
+        self.names = load_names(scope, definition, layout)
 
     def add(self, i: int, body: Body) -> None:
         """Place the joint(s) of a body, then give its inertia to the carrier."""
@@ -150,7 +164,7 @@ class _Builder:
 
     def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
         """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
-        for name in ("stiffness", "rest", "damping", "armature", "limits"):
+        for name in ("stiffness", "rest", "damping", "armature", "limits", "limits_act"):
             if getattr(body.joint, name) not in (0, None):
                 self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
@@ -178,8 +192,7 @@ class _Builder:
         rotation = joint_rotation(constant, *cos_sin(phi))
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
         self.own[len(self.joints) - 1] = Inertia()
-        self.laws.append(self._law(entry, body, pointer))
-        self._limits(entry, body, pointer)
+        self.laws.append(self._law(entry, body, self._limits(entry, body, pointer), pointer))
         return Frame(len(self.joints) - 1, transpose(turned), ZERO)
 
     def _offsets(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr]:
@@ -191,30 +204,48 @@ class _Builder:
                 self.scope.fault(f"{pointer}/{name}", "offset-of-compound", message)
         return phi, tau
 
-    def _law(self, entry: JointEntry, body: Body, pointer: str) -> JointLaw:
-        values = []
+    def _law(self, entry: JointEntry, body: Body, limits: tuple[Expr, Expr] | None, pointer: str) -> JointLaw:
+        values = {}
         for name in ("stiffness", "rest", "damping", "armature"):
-            given, place = getattr(body.joint, name), f"{pointer}/{name}"
-            if isinstance(given, tuple):
-                if len(given) != len(self.entries[entry.body]):
-                    self.scope.fault(place, "wrong-length", "one number for each of the joint's coordinates expected")
-                    given = (0,) * len(self.entries[entry.body])
-                given, place = given[entry.step], f"{place}/{entry.step}"
-            values.append(self.scope.read(given, place))
-        return JointLaw(*values)
+            given, place = self._of_step(entry, getattr(body.joint, name), f"{pointer}/{name}", "number", 0)
+            # a spring or damper may depend on the state, as a load; a rotor is a constant
+            values[name] = self.scope.read(given, place, None if name == "armature" else self.names)
+        return JointLaw(**values, stops=self._stops(entry, body, limits, pointer))
 
-    def _limits(self, entry: JointEntry, body: Body, pointer: str) -> None:
-        """Limits are kept as given; here they only have to be readable."""
+    def _of_step(self, entry: JointEntry, given: Any, place: str, what: str, rest: Any) -> tuple[Any, str]:
+        """What is given for one coordinate of a joint, for all of them or in a list, with its place."""
+        if not isinstance(given, tuple):
+            return given, place
+        if len(given) != len(self.entries[entry.body]):
+            self.scope.fault(place, "wrong-length", f"one {what} for each of the joint's coordinates expected")
+            return rest, place
+        return given[entry.step], f"{place}/{entry.step}"
+
+    def _limits(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr] | None:
+        """Lowest and highest value of a coordinate."""
         given, place = body.joint.limits, f"{pointer}/limits"
         if given and isinstance(given[0], tuple):
             if entry.step >= len(given):
                 self.scope.fault(
                     place, "wrong-length", "one pair of limits for each of the joint's coordinates expected"
                 )
-                return
+                return None
             given, place = given[entry.step], f"{place}/{entry.step}"
-        for i, value in enumerate(given or ()):
-            self.scope.read(value, f"{place}/{i}")
+        read = [self.scope.read(value, f"{place}/{i}") for i, value in enumerate(given or ())]
+        return (read[0], read[1]) if read else None
+
+    def _stops(self, entry: JointEntry, body: Body, limits: tuple[Expr, Expr] | None, pointer: str) -> Stops | None:
+        """The end stops of a coordinate, where they are asked for."""
+        place = f"{pointer}/limits_act"
+        given, place = self._of_step(entry, body.joint.limits_act, place, "stop", None)
+        if given is None:
+            return None
+        if limits is None:
+            self.scope.fault(
+                place, "stops-without-limits", "'limits_act' goes with 'limits': where do the stops begin?"
+            )
+            return None
+        return Stops(*limits, *(self.scope.read(getattr(given, x), f"{place}/{x}") for x in ("stiffness", "damping")))
 
     def _inertia(self, frame: Frame, i: int, body: Body, pointer: str) -> None:
         scope, tensor = self.scope, body.inertia

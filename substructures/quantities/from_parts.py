@@ -96,6 +96,8 @@ class NumericTree:
     def _constant_program(self) -> Program:
         """Placements, gravity and bindings of the tree as one small program of its parameters."""
         outputs = {"gravity": array((3,), lambda i: self.assembly.gravity[i])}
+        limits = list(self.assembly.limits.values())
+        outputs["limits"] = array((len(limits), 2), lambda k, i: limits[k][i])
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
@@ -137,10 +139,14 @@ class NumericTree:
     ) -> None:
         """Fills a part of the batch in the results, which are made by the first one."""
         given = {**self._rest, **values}
-        found = interpret_entries(self._constants, given, self._constants.outputs)
+        found = interpret_entries(
+            self._constants, given, [x for x in self._constants.outputs if x != "limits" or x in quantities]
+        )
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
         mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
-        assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]))
+        pairs = numbers.get("limits", [])
+        limits = dict(zip(self.assembly.limits, zip(pairs[::2], pairs[1::2], strict=True), strict=False))
+        assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), limits=limits)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))

@@ -32,6 +32,7 @@ class Assembly:
     parameters: dict[str, dict[str, object]]
     cuts: tuple[Cut, ...]
     inputs: dict[str, dict[str, object]]
+    limits: dict[int, tuple[Expr, Expr]]  #: of coordinates by index, of those that have limits
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -71,10 +72,11 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
         first += mounted[-1].part.dof
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
     cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
+    limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts))
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits)
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -234,6 +236,20 @@ class _Reading:
                 value = self.scope.graph.symbol(name)
             result[symbol.name] = value
         return result
+
+    def limits(self, i: int) -> dict[int, tuple[Expr, Expr]]:
+        """The limits of the coordinates of an instance that have some, by coordinate of the part."""
+        instance, found = self.spec.instances[i], {}
+        for c, entry in enumerate(self.parts[instance.name].topology.joints):
+            given = self.parts[instance.name].definition.bodies[entry.body].joint.limits
+            if given:
+                low, high = given[entry.step] if isinstance(given[0], tuple) else given
+                read = [
+                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
+                    for x in (low, high)
+                ]
+                found[c] = read[0], read[1]
+        return found
 
     def cut(self, i: int) -> Cut:
         """A closure of the document with its frames; the third axes of both ends are the joint axis."""

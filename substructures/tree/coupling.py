@@ -23,7 +23,7 @@ from substructures.mechanics.kinematics import (
     path,
     transport,
 )
-from substructures.mechanics.linear3 import Scalar, Vector, add, cross, dot
+from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, dot, transpose
 from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart
 
@@ -68,7 +68,7 @@ def couple_parts(run: Run, mounted: Sequence[MountedPart], gravity: Vector, chri
     g_ab: dict[tuple[int, ...], Scalar] = {}
     Q_gravity: list[Scalar] = [0] * n
     Q: list[Scalar] = [0] * n
-    # V = -gamma . s of the whole about the world's origin, and the springs of every part
+    # V = -gamma . s of the whole about the world's origin, what every part has of its own, and constant forces
     V = -dot(gravity, total.s)
     placed: list[PlacedPart] = []
     for part in evaluated:
@@ -76,7 +76,7 @@ def couple_parts(run: Run, mounted: Sequence[MountedPart], gravity: Vector, chri
         placed.append(here)
         _add_inertial(here, g_ab, gamma_abc if christoffel else None)
         _add_gravity(here, Q_gravity, Q)
-        V = V + part.outputs.scalar("potential")
+        V = V + part.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
     return Coupled(g_ab, gamma_abc, Q_gravity, Q, V, placed)
 
@@ -195,3 +195,16 @@ def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:
         moment = add(wrench.n, cross((0, 0, carrier_link(here.links, carrier).tau), wrench.f))
         for a, twist in fixed_columns(here.links, here.columns, carrier, here.first).items():
             Q[a] = Q[a] + pairing(twist, wrench.f, moment)
+
+
+def _dead_potential(here: PlacedPart) -> Scalar:
+    """V = -F . x of forces that are constant in the world, x their point, unless it is at rest."""
+    V: Scalar = 0
+    for i, (carrier, _, _) in enumerate(here.part.wrenches):
+        if here.part.dead_loads[i] and fixed_columns(here.links, here.columns, carrier, here.first):
+            at = here.outputs.vector("load.at", i)
+            # x = r_k + R_k^T (at + tau e3)
+            pose, along = here.pose(carrier), carrier_link(here.links, carrier).tau
+            point = add(pose.r, apply(transpose(pose.R), add(at, (0, 0, along))))
+            V = V - dot(here.outputs.vector("load.vector", i), point)
+    return V

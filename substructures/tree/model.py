@@ -9,13 +9,14 @@ gravity                n            generalised gravity forces
 bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
 inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
-potential_energy                    of gravity (zero at the world's origin) and of all springs [J]
+potential_energy                    of gravity (zero at the world's origin) and of all forces that have one [J]
 linear_momentum        n 3          momentum of unit velocity q'^a, world axes
 angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
 position               frames 3     origin of every body frame and port in the world [m]
 rotation               frames 3 3   from the axes of the frame to those of the world
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
+limits                 n 2          lowest and highest value of the coordinates that have limits
 =====================  ===========  ==========================================================================
 """
 
@@ -55,7 +56,8 @@ MOMENTUM = ("linear_momentum", "angular_momentum")
 class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
     the rows of the closure outputs are; ``parameters``, ``inputs`` (of loads): all that are declared and not bound,
-    whether or not a formula depends on them; ``plausibility``: of values, unknown of a model out of a store."""
+    whether or not a formula depends on them; ``limited``: the coordinates that have limits; ``plausibility``: of
+    values, unknown of a model out of a store."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -65,6 +67,7 @@ class Model:
     certificate: Mapping[str, Any] = field(hash=False)
     closures: tuple[ClosureRows, ...] = ()
     inputs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+    limited: tuple[str, ...] = ()
     plausibility: Plausibility | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
@@ -108,6 +111,7 @@ class Model:
             "coordinates": list(self.coordinates),
             "joints": self.joints,
             "frames": list(self.frames),
+            "limited": list(self.limited),
         }
 
     def summary(self) -> dict[str, Any]:
@@ -125,7 +129,8 @@ class Model:
         names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
         described = (summary["parameters"], summary["certificate"])
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        return cls(Program.from_bytes(program_bytes), *names, *described, closures, summary.get("inputs", {}))
+        inputs, limited = summary.get("inputs", {}), tuple(summary.get("limited", ()))
+        return cls(Program.from_bytes(program_bytes), *names, *described, closures, inputs, limited)
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
@@ -169,7 +174,8 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     warnings = [*units.warnings, *tree_warnings(spec, parts, result, bool(names)), *plausibility.at_defaults]
     rows = tuple(cut.rows for cut in assembly.cuts)
     names_of = (tuple(names), joints, _frame_names(assembly))
-    model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, plausibility)
+    limited = tuple(names[a] for a in sorted(assembly.limits))
+    model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
     definitions = {name: part.definition for name, part in parts.items()}
     certificate = certify_tree(spec, definitions, model.described(), result, seconds)
     return replace(model, certificate={**certificate, "warnings": warnings, "converted": units.converted})
@@ -216,6 +222,11 @@ def model_outputs(
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
+    if assembly.limits and wanted("limits"):
+        rows: dict[tuple[int, ...], Scalar] = {
+            (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
+        }
+        outputs["limits"] = Formulas((n, 2), rows)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})

@@ -5,30 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from closed_motions import right
-from closed_trees import at, governor
+from closed_trees import at, governor, governor_accelerations, lift
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import simulate
-
-
-def lift(angle: float) -> tuple[float, float, float]:
-    """Lift of the sleeve over the angle of the arms, and two derivatives: rods of length 0.25 at 0.15 m on the arms."""
-    a, length, h = 0.15, 0.25, 0.4
-    s = np.sqrt(length**2 - (a * np.sin(angle)) ** 2)
-    ds = -(a**2) * np.sin(angle) * np.cos(angle) / s
-    dds = -(a**2) * np.cos(2 * angle) / s - ds**2 / s
-    return h - a * np.cos(angle) - s, a * np.sin(angle) - ds, a * np.cos(angle) - dds
-
-
-def governor_accelerations(angle: float, rate: float, spin: float) -> tuple[float, float]:
-    """Of the arms and of the spindle, from T = (I(a) W^2 + M(a) a'^2) / 2 and V(a)."""
-    r, length, ball, sleeve, k, g = 0.03, 0.3, 1.0, 0.8, 500.0, 9.81
-    z, dz, ddz = lift(angle)
-    reach, dreach = r + length * np.sin(angle), length * np.cos(angle)
-    inertia, dinertia = 0.011 + 2 * ball * reach**2, 4 * ball * reach * dreach
-    mass, half = 2 * ball * length**2 + sleeve * dz**2, sleeve * dz * ddz
-    slope = 2 * ball * g * length * np.sin(angle) + (sleeve * g + k * z) * dz
-    return (0.5 * dinertia * spin**2 - half * rate**2 - slope) / mass, -dinertia * rate * spin / inertia
 
 
 @pytest.mark.parametrize(("angle", "rate", "spin"), [(0.6, 0, 7.0), (0.4, 1.5, 9.0), (0.9, -2.0, 3.0)])

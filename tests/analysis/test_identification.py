@@ -12,7 +12,7 @@ import pytest
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
 from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, catalogue, couple, derive
-from substructures.analysis.identification import dependencies
+from substructures.analysis.equations import dependencies
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret

@@ -149,10 +149,11 @@ def test_the_slope_of_the_metric_minus_twice_coriolis_is_skew(case: Case) -> Non
 
 
 def test_gravity_forces_and_energy(case: Case) -> None:
-    """Both potentials by hand; conservative forces are minus their gradient."""
+    """All potentials by hand; conservative forces are minus their gradient."""
     gravity = independent.gravity_energy(case.definition, case.moving, GRAVITY)
     springs = independent.springs_energy(case.definition, case.moving, case.states["q"], case.coordinates)
-    close(case.answer["potential_energy"], gravity + springs)
+    loads, held = independent.conservative_loads(case.definition, case.moving, case.states["q"], case.coordinates)
+    close(case.answer["potential_energy"], gravity + springs + loads)
     forces = case.answer["forces"] - case.answer["gravity"]
     names = dict(INPUTS) | {"t": TIME}
     for i, c in enumerate(case.coordinates):
@@ -160,7 +161,7 @@ def test_gravity_forces_and_energy(case: Case) -> None:
     forces = forces - independent.applied_forces(case.definition, case.moving, case.coordinates, names)
     forces = forces - independent.dissipative_forces(case.definition, case.moving, case.coordinates)
     forces = forces - 0.1 * np.arange(case.model.dof)
-    close(case.answer["gravity"] + forces, -case.slope("potential_energy"), 1e-9)
+    close(case.answer["gravity"] + forces + held, -case.slope("potential_energy"), 1e-9)
 
 
 def test_power_balance(case: Case) -> None:

@@ -49,6 +49,23 @@ def test_linearisation_has_the_frequency_of_small_swings(client: TestClient) -> 
     assert np.array(found["C"]).tolist() == [[1, 0]]
 
 
+def test_a_sled_that_spins_is_steady(client: TestClient) -> None:
+    """All coordinates are cyclic: nothing is left that could move away; the pendulum's angle is not among them."""
+    found = ask(client, "skate/steady-motions", rates={"s.phi": 2.0})
+    assert found["moving"] == ["s.x", "s.y", "s.phi"]
+    (motion,) = found["found"]
+    assert motion["momenta"] == [0, 0, 1.0]
+    assert motion["stability"] == {"verdict": "stable", "reason": "there is nothing that moves"}
+    both = {
+        each["stability"]["verdict"]: each for each in ask(client, "cart/steady-motions", rates={"x.q0": 1.0})["found"]
+    }
+    assert both.keys() == {"stable", "unstable"}
+    assert both["stable"]["modes"][0]["frequency"] > 1
+    answer = client.post("/v1/trees/clock/steady-motions", json={"rates": {"p.q1": 1}})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == "/rates/p.q1"
+
+
 def test_root_locus_of_a_longer_pendulum(client: TestClient) -> None:
     values = [9.81, 4.0, 1.0]
     tree = {**TREES[0], "name": "planets", "gravity": [0, 0, "-g"], "parameters": {"g": {"value": G}}}

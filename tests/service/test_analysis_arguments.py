@@ -20,12 +20,14 @@ from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
+from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.documents import DocumentPart
 
 #: functions, and what of their arguments no body has
 FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {
     "linearisations": (linearise, {"model"}),
     "equilibria": (equilibria, {"model"}),
+    "steady-motions": (steady_motions, {"model"}),
     "root-loci": (root_locus, {"model"}),
     "curvatures": (curvature_values, {"model", "limit", "engine", "formulas"}),
     "cost-gradients": (cost_gradient, {"model"}),

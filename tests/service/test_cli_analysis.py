@@ -46,6 +46,16 @@ def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture
     assert "VIOLATED from t = " in shown
 
 
+def test_a_motion_beyond_its_limits_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    joint = {"type": "prismatic", "coordinate": "x", "limits": [-1, 1]}
+    part = {"name": "a", "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": joint}]}
+    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "a", "definition": part}]}
+    (tmp_path / "t.json").write_text(json.dumps(tree))
+    (tmp_path / "drop.json").write_text('{"q": [0], "span": [0, 1]}')
+    assert main(["simulate", str(tmp_path / "t.json"), str(tmp_path / "drop.json")]) == 0
+    assert "warning: 'a.x' leaves its limits [-1, 1] m: it goes down to -4.905 m" in capsys.readouterr().out
+
+
 def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tree = str(folder / "cell.yaml")
     assert main(["analyse", tree, "first_integrals", "--bind", "defaults"]) == 0

@@ -31,6 +31,7 @@ REQUESTS: dict[str, tuple[str, dict[str, Any]]] = {
     "sensitivities": ("cart", {**SWING, "q": [0, 0.3], "by": ["x.l0"], "of_start": True}),
     "linearisations": ("clock", {"q": [0.3]}),
     "equilibria": ("clock", {"count": 4}),
+    "steady-motions": ("cart", {"rates": {"x.q0": 1}, "count": 4}),
     "root-loci": ("cart", {"parameter": "x.l0", "values": [1, 2], "q": [0, 0]}),
     "curvatures": ("cart", {"q": [0, 0.3]}),
     "cost-gradients": ("skate", {**CONTROL, "values": {"tau.s.x": 1}}),

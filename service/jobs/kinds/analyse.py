@@ -26,7 +26,7 @@ from substructures.errors import InvalidDocument
 
 #: analyses that begin at one state, and those whose coordinates are only where something is looked for
 MOTIONS = ("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states")
-NEAR = ("equilibria", "root-loci")
+NEAR = ("equilibria", "root-loci", "steady-motions")
 TOLD = ("status", "message", "is_right", "cost", "warnings")
 
 

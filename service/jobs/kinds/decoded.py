@@ -44,7 +44,7 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
-    kept = ("coordinates", "joints", "frames", "closures", "inputs")
+    kept = ("coordinates", "joints", "frames", "closures", "inputs", "limited")
     told = {"warnings": summary["certificate"].get("warnings", [])}
     return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters, "certificate": told}
 

@@ -23,6 +23,7 @@ from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.trajectory import Check, Trajectory, crossings
 from substructures.array import Array
+from substructures.quantities.limits import reached
 from substructures.tree.model import Model
 
 #: largest residuals of positions [m, 1] and velocities [per s] along a right motion
@@ -116,6 +117,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
     balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
     checks = (*_residual_checks(t, judged), balance)
+    span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
     series = _at_states(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}
@@ -134,6 +136,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.steps,
         found,
         figures,
+        reached=span,
     )
 
 

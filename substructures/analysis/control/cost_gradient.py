@@ -19,6 +19,7 @@ from substructures.analysis.control.problem import (
 )
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.analysis.given import StateArray, require_known
+from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
 from substructures.tree.model import Model
@@ -114,7 +115,7 @@ def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], 
     run = shooting.run(start[None], controls)
     # W = 1: of the cost alone, no end state
     slope = shooting.pullback(run, np.zeros((1, 1, 2 * model.dof)), np.ones(1))
-    motion = trajectory(shooting, run, slope)
+    motion = with_limits(model, problem.parameters, trajectory(shooting, run, slope))
     n, by_parameter = model.dof, dict(zip(vary, slope.parameters[0].tolist(), strict=True))
     result = CostGradient(
         run.cost,

@@ -31,6 +31,7 @@ from substructures.analysis.control.nonlinear_program import BEYOND, Demands, En
 from substructures.analysis.control.problem import NO_COST, ControlProblem, Cost, Hold, require_solvable
 from substructures.analysis.control.shooting import Rollout
 from substructures.analysis.given import StateArray
+from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Check, Trajectory
 from substructures.array import Array
 from substructures.tree.model import Model
@@ -211,7 +212,9 @@ def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajector
     ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
     for k, (i, _) in enumerate(search.demands):
         ends[-1, i] = nu[gaps + k]
-    motion = trajectory(search.shooting, run, search.shooting.pullback(run, ends[None], np.ones(1)))
+    shooting = search.shooting
+    motion = trajectory(shooting, run, shooting.pullback(run, ends[None], np.ones(1)))
+    motion = with_limits(shooting.model, shooting.problem.parameters, motion)
     program = search.shooting.equations.program
     if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
         return motion, None

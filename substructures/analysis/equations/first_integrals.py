@@ -1,8 +1,9 @@
 """First integrals of a model as formulas, each with the reason why it is constant (notation.md, section 7).
 
 Energy: H' = Q_a q'^a + V' is the zero formula. Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0,
-then p_c = g_cb q'^b. Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero
-formula, which is so exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
+then p_c = g_cb q'^b. The same for constant directions c^a across the coordinates: c^a p_a (:mod:`.symmetries`).
+Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero formula, which is so
+exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
 Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
 g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0.
 What is zero is decided by the graph, where equal formulas are one node, and by :mod:`substructures.expr.vanish`.
@@ -10,23 +11,25 @@ What is zero is decided by the graph, where equal formulas are one node, and by 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, Literal
 
 from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
+from substructures.analysis.equations.symmetries import Direction, directions
 from substructures.errors import Fault, InvalidArgument, listed
+from substructures.expr.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
-from substructures.expr.program import Entries, Formulas, Program, program
-from substructures.expr.vanish import Vanishing
+from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.expr.walk import transfer
+from substructures.printers import entries
 from substructures.tree.model import Model
 
-IntegralKind = Literal["energy", "cyclic", "linear_momentum", "angular_momentum"]
+IntegralKind = Literal["energy", "cyclic", "symmetry", "linear_momentum", "angular_momentum"]
 AXES = "xyz"
 UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
 
@@ -36,6 +39,7 @@ class Integral:
     """A quantity of the motion. ``name``: its output in the program.
 
     ``rule``: ``constant``; ``falling`` (energy with dampers); ``balance`` (energy changes by the power fed in).
+    ``direction``: of a symmetry, c^a by coordinate, texts in the parameters: the integral is c^a p_a.
     """
 
     name: str
@@ -43,6 +47,7 @@ class Integral:
     rule: EnergyRule
     unit: str
     reason: str
+    direction: Mapping[str, str] = field(default_factory=dict, hash=False)
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ class _Search:
     """Integrals found so far, and the tests."""
 
     def __init__(self, f: ModelFormulas) -> None:
-        self.f, self.zero, self.vanishes = f, f.graph.zero, Vanishing(f.graph)
+        self.f, self.zero, self.vanishes = f, f.graph.zero, VanishingOnAllSides(f.graph)
         self.found: list[tuple[Integral, Expr]] = []
         self.cyclic_names: list[str] = []
 
@@ -119,7 +124,8 @@ class _Search:
         f = self.f
         gamma, forces = f.elements("christoffel"), f.vector("forces")
         # d_c g_ab = Gamma_abc + Gamma_bac
-        varied = {c for (a, b, c), x in gamma.items() if not self.vanishes(x + gamma.get((b, a, c), self.zero))}
+        slopes = {(min(a, b), max(a, b), c): x + gamma.get((b, a, c), self.zero) for (a, b, c), x in gamma.items()}
+        varied = {c for (_, _, c), x in slopes.items() if not self.vanishes(x)}
         if f.model.closures:
             # dphi_k/dq^c = G_kc
             varied |= {c for (_, c), x in f.elements("closure.jacobian").items() if not self.vanishes(x)}
@@ -130,6 +136,24 @@ class _Search:
                 reason = f"the metric does not depend on '{name}' and no generalised force acts on it"
                 reason += f"; {closures_of(f.model)} do not depend on it" if f.model.closures else ""
                 self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
+        moving = {i: x for i, x in slopes.items() if i[2] in varied}
+        cyclic = [f.model.coordinates.index(name) for name in self.cyclic_names]
+        for direction in directions(f, moving, cyclic, self.vanishes):
+            self._symmetry(direction)
+
+    def _symmetry(self, found: Direction) -> None:
+        """c^a p_a for a constant direction c that is free."""
+        f, components = self.f, list(found.components.items())
+        graph = components[0][1].graph
+        shown = program(graph, {"c": array((len(components),), lambda k: components[k][1])}, f.symbols)
+        texts = {entry["index"][0]: str(entry["formula"]) for entry in entries(shown, "c", "text")}
+        direction = {f.model.coordinates[a]: texts.get(k, "0") for k, (a, _) in enumerate(components)}
+        moved = ", ".join(f"'{name}' by {text}" for name, text in direction.items())
+        reason = f"neither the metric nor the power of the forces changes when these move together: {moved}"
+        reason += f"; {closures_of(f.model)} do not change either" if f.model.closures else ""
+        unit = "N m s" if f.model.joints[components[-1][0]] == "R" else "N s"
+        name = "symmetry." + "-".join(direction)
+        self._note(Integral(name, "symmetry", "constant", unit, reason, direction), found.of(f.momenta, f.graph))
 
     def _note(self, integral: Integral, value: Expr) -> None:
         """Add an integral; of one that is known already only the reason."""

@@ -4,7 +4,6 @@
 module           what is there
 ===============  =====================================================================================================
 base_parameters  ``base_parameters``: the combinations of inertial parameters that inverse dynamics depends on, exactly
-dependencies     linear dependencies with constant coefficients between columns of functions
 fit              ``excitation`` and ``identify``: how well a motion shows them, and their values from measured motions
 ===============  =====================================================================================================
 """

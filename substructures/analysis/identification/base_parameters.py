@@ -27,7 +27,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
 
-from substructures.analysis.identification.dependencies import Dependencies, Functions, dependencies
+from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph

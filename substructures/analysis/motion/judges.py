@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral
 from substructures.analysis.motion.trajectory import Check, Rule
 from substructures.array import Array
-from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.tree.model import Model
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
@@ -105,7 +106,7 @@ class _Scales:
 
     def __init__(self, model: Model, states: MotionStates) -> None:
         found = interpret_in_blocks(model.program, states.symbols(model), list(SCALES), len(states.t))
-        self.model, speed = model, np.abs(states.qd)
+        self.model, self.parameters, speed = model, states.values, np.abs(states.qd)
         # max over time of |g_ab| |q'^b|
         self.momenta = np.einsum("kab,kb->ka", np.abs(found["metric"]), speed).max(axis=0, initial=0)
         # T = g_ab q'^a q'^b / 2
@@ -125,4 +126,10 @@ class _Scales:
         """The size of one integral."""
         if integral.kind == "cyclic":
             return float(self.momenta[self.model.coordinates.index(integral.name.removeprefix("momentum."))])
+        if integral.kind == "symmetry":
+            # sum of |c^a| max |g_ab| |q'^b|
+            c = read_expressions(self.model, {"c": [(x, "/direction") for x in integral.direction.values()]})
+            sizes = np.abs(interpret(c, dict(self.parameters), ["c"])["c"])
+            places = [self.model.coordinates.index(name) for name in integral.direction]
+            return float(sizes @ self.momenta[places])
         return self.whole[integral.kind]

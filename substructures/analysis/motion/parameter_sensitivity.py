@@ -20,6 +20,7 @@ from substructures.analysis.equations.kernels import Known, program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.integration import IntegratorSettings, integrate
+from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem, Start, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
@@ -176,7 +177,9 @@ def _varied(problem: MotionProblem, f: _Variation, by: Sequence[str], progress: 
     if f.of_start:
         series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
     t, status, message = np.array(motion.t), motion.status, motion.message
-    return Trajectory(problem.model.coordinates, t, x[:, 0, :n], x[:, 0, n:], series, (), status, message, motion.steps)
+    q, qd = x[:, 0, :n], x[:, 0, n:]
+    found = Trajectory(problem.model.coordinates, t, q, qd, series, (), status, message, motion.steps)
+    return with_limits(problem.model, problem.start.parameters, found)
 
 
 class _Variation:

@@ -25,6 +25,7 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.quantities.limits import reached
 from substructures.quantities.states import numeric
 
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
@@ -193,6 +194,7 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
     # B_ka q'^a
     series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
     checks = _checks(t, series, problem.drift_limit)
+    span = reached(t, x[:, :n], x[:, n:])
     t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
@@ -206,6 +208,7 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
         motion.steps,
         _events(rolling, problem, motion),
         {"evaluations": float(motion.evaluations)},
+        reached=span,
     )
 
 

@@ -23,6 +23,7 @@ from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.array import Array
 from substructures.errors import InvalidArgument, InvalidInput
+from substructures.quantities.limits import reached
 
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
@@ -130,6 +131,7 @@ def _judged(
     checks = judge(model, integrals, states, series, problem.drift_limit)
     if f.has_power and "energy" in series:
         series["work"] = states.work
+    span = reached(t, x[:, : f.n], x[:, f.n : 2 * f.n])
     x = x[results, : 2 * f.n]
     t = t[results]
     return Trajectory(
@@ -144,6 +146,7 @@ def _judged(
         motion.steps,
         crossings(problem.events, motion.found, model.dof),
         figures,
+        reached=span,
     )
 
 

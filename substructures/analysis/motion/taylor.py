@@ -18,7 +18,7 @@ from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_dynamics
 from substructures.array import Array
 from substructures.errors import InvalidArgument
-from substructures.expr.program import Program
+from substructures.expr.program import Operation, Program
 from substructures.tree.model import Model
 
 BINARY = {"add": "__add__", "sub": "__sub__", "mul": "__mul__", "div": "__truediv__"}
@@ -116,9 +116,17 @@ def _expressions(program: Program, known: Mapping[str, Any], names: Sequence[str
             nodes[i] = heyoka.expression(float(Fraction(*map(int, rest))))
         elif op == "powi":
             nodes[i] = nodes[rest[0]] ** float(rest[1])
+        elif op == "sqrt" and _is_square(program.operations[rest[0]]):
+            # |x|, as in the force of an end stop: the series on one side of x = 0 goes on as if there were no other
+            nodes[i] = _operation("abs", [])
         else:
             nodes[i] = _operation(op, [nodes[k] for k in rest])
     return nodes
+
+
+def _is_square(operation: Operation) -> bool:
+    """Whether an operation is x * x or x^2."""
+    return (operation[0] == "mul" and operation[1] == operation[2]) or (operation[0] == "powi" and operation[2] == 2)
 
 
 def _operation(op: str, args: Sequence[Any]) -> Any:

@@ -85,7 +85,8 @@ class Trajectory:
     ``series``: further quantities by name, (K, ...): energies, momenta, residuals, reactions. ``status`` is a value:
     ``finished``; ``stopped`` by an event; ``failed``, and ``message`` says why and what to change, with the motion up
     to there. ``steps``: accepted steps of the integrator. ``figures``: numbers about the computation (evaluations of
-    the right-hand side, seconds, real-time factor).
+    the right-hand side, seconds, real-time factor). ``reached``: lowest and highest values of the coordinates on the
+    way, (n,) each, between steps too; ``limits``: those of the joints; ``warnings``: what was left of them.
     """
 
     coordinates: tuple[str, ...]
@@ -99,6 +100,9 @@ class Trajectory:
     steps: int = 0
     events: tuple[Crossing, ...] = ()
     figures: Mapping[str, float] = field(default_factory=dict)
+    reached: tuple[Array, Array] | None = None
+    limits: Mapping[str, list[float]] = field(default_factory=dict)
+    warnings: tuple[Mapping[str, str], ...] = ()
 
     def __repr__(self) -> str:
         when = f"t = {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else "at no time"
@@ -134,4 +138,6 @@ class Trajectory:
             "events": events,
             "steps": self.steps,
             "figures": dict(self.figures),
+            "limits": dict(self.limits),
+            "warnings": [dict(warning) for warning in self.warnings],
         }

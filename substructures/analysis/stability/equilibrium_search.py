@@ -33,6 +33,8 @@ MAX_STARTS = 10_000
 MAX_SEED = 2**1000
 #: of the search from one start
 STEPS = 200
+#: of a start on a corner of a force [rad, m]
+BESIDE = 1e-6
 TOLERANCES = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
 
 
@@ -74,7 +76,7 @@ class RestSearch:
     """Forces of a tree and their Jacobian at rest, compiled."""
 
     def __init__(self, model: Model, within: SearchRange, conditions: RestConditions) -> None:
-        n = model.dof
+        n = self.n = model.dof
         self.model, self.within, self.conditions = model, within, conditions
         states = read_states(model, {"q": np.zeros(n)}, None)
         known = symbol_values(model, vars(conditions), states, NEEDS)
@@ -96,7 +98,7 @@ class RestSearch:
 
     def _is_periodic(self, a: int) -> bool:
         """Whether a full turn changes nothing (no spring in the joint)."""
-        q = np.linspace(0.3, 0.9, self.model.dof)
+        q = np.linspace(0.3, 0.9, self.n)
         before, turned = (self._judged(q + x * np.eye(len(q))[a]) for x in (0, 2 * np.pi))
         return bool(np.abs(turned - before).max() <= 1e-9 * max(1.0, float(np.abs(before).max())))
 
@@ -106,15 +108,19 @@ class RestSearch:
 
     def starts(self) -> Array:
         """Those given, zero, and random ones, (N, n)."""
-        n, rng = self.model.dof, np.random.default_rng(self.within.seed)
-        rows = [np.zeros((1, n)), rng.uniform(-1, 1, (self.within.count, n)) * self.size]
+        rng = np.random.default_rng(self.within.seed)
+        rows = [np.zeros((1, self.n)), rng.uniform(-1, 1, (self.within.count, self.n)) * self.size]
         if self.within.starts is not None:
-            given = np.atleast_2d(numeric(self.within.starts, "/starts"))
+            n, given = self.model.dof, np.atleast_2d(numeric(self.within.starts, "/starts"))
             if given.ndim != 2 or given.shape[1] != n:
                 message = f"shape {given.shape} found, (N, {n}) expected"
                 raise InvalidArgument.at("/starts", "wrong-length", message)
-            rows.insert(0, given)
+            rows.insert(0, self._of_all(given))
         return np.concatenate(rows)
+
+    def _of_all(self, rows: Array) -> Array:
+        """Of rows (N, n) for all coordinates those that are looked for."""
+        return rows
 
     def at(self, q: Array) -> tuple[Array, Array]:
         """-Q and its Jacobian at rest."""
@@ -139,11 +145,14 @@ class RestSearch:
             """Forces and their Jacobian at free coordinates x."""
             q[moving] = x
             F, K = self.at(q)
-            return F, K[:, moving]
+            # a corner of a force, as of an end stop, has no derivative: any will do on the way
+            return F, np.where(np.isfinite(K[:, moving]), K[:, moving], 0)
 
         if len(moving):
+            if not np.isfinite(self.at(q)[1]).all():
+                q[moving] += BESIDE
             with np.errstate(all="ignore"):
-                q[moving] = least_squares(lambda x: both(x)[0], start[moving], lambda x: both(x)[1], **TOLERANCES).x
+                q[moving] = least_squares(lambda x: both(x)[0], q[moving].copy(), lambda x: both(x)[1], **TOLERANCES).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
         # |Q| <= 1e-10 max(1, |K|)
@@ -218,6 +227,7 @@ class ClosedSearch(RestSearch):
             F, K = self.at(q)
             G = self.G[0]
             # F = -Q - lambda G and phi, by q and lambda; phi in the units of forces
+            K = np.where(np.isfinite(K), K, 0)
             J = np.block([[K[:, moving], -G.T], [scale * G[:, moving], np.zeros((len(G), len(G)))]])
             return np.concatenate((F, scale * self.phi[0])), J
 
@@ -229,7 +239,7 @@ class ClosedSearch(RestSearch):
         if np.isfinite(residual).all() and np.isfinite(J).all():
             step = np.linalg.lstsq(J, -residual, rcond=1e-10)[0]
             residual, J = both(x + step if np.abs(step[:k]).max(initial=0) < 1e-3 else x)
-        size = float(np.abs(self.K).max(initial=0))
+        size = float(np.abs(self.K[np.isfinite(self.K)]).max(initial=0))
         if not np.abs(residual).max(initial=0) <= RESIDUAL * max(scale, size):
             return None
         self.s.move(self.conditions.t, q, rest)

@@ -73,7 +73,7 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     message = fault_of(model.coordinates, result.qdd, result.D, result.K)
     if message:
         result = replace(result, status="failed", message=message)
-    return _judged(point, states, _single(result)) if states.single else result
+    return _judged(point, states, _single(result), values) if states.single else result
 
 
 def _accelerations(model: Model, values: Mapping[str, Any], states: States) -> Array:
@@ -109,7 +109,7 @@ def _single(result: Linearisation) -> Linearisation:
     return replace(result, **{name: getattr(result, name)[0] for name in names})
 
 
-def _judged(point: OperatingPoint, states: States, result: Linearisation) -> Linearisation:
+def _judged(point: OperatingPoint, states: States, result: Linearisation, values: Mapping[str, Any]) -> Linearisation:
     """With modes and stability where the state is an equilibrium."""
     still = not states.qd.any() and result.status == "finished"
     if not still or not is_small(result.qdd, result.K, result.M):
@@ -118,4 +118,4 @@ def _judged(point: OperatingPoint, states: States, result: Linearisation) -> Lin
     if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):
         return result
     found = modes(result.M, result.D, result.K)
-    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential()))
+    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential(values)))

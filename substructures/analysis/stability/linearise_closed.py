@@ -66,7 +66,7 @@ def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     found["input"] = found["input"][:, [inputs_of(model).index(name) for name in chosen]]
     found["C"], found["Dy"] = (x[0] for x in point.output_matrices(chosen, values, 1))
     result = _reduced(s, found, (chosen, tuple(point.outputs)), qdd, multipliers)
-    return _failed(result, message) if message else _judged(point, result)
+    return _failed(result, message) if message else _judged(point, result, values)
 
 
 def _values(point: OperatingPoint) -> dict[str, float]:
@@ -161,7 +161,7 @@ def _failed(result: ClosedLinearisation, message: str) -> ClosedLinearisation:
     return replace(result, status="failed", message=message, **nothing)
 
 
-def _judged(point: OperatingPoint, result: ClosedLinearisation) -> ClosedLinearisation:
+def _judged(point: OperatingPoint, result: ClosedLinearisation, values: Mapping[str, float]) -> ClosedLinearisation:
     """With modes and stability where the closed state is an equilibrium."""
     moving = [result.coordinates.index(name) for name in result.independent]
     if result.qd.any() or not is_small(result.qdd[moving], result.K, result.M):
@@ -170,4 +170,4 @@ def _judged(point: OperatingPoint, result: ClosedLinearisation) -> ClosedLineari
     found = tuple(
         replace(mode, shape=normed(result.tangent @ mode.shape)) for mode in modes(result.M, result.D, result.K)
     )
-    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential()))
+    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential(values)))

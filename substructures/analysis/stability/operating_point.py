@@ -64,12 +64,14 @@ class OperatingPoint:
         found = interpret_in_blocks(output_jacobian(self.model, y, chosen), values, ["C", "D"], count)
         return found["C"], found["D"]
 
-    def has_potential(self) -> bool:
-        """Whether the forces have a potential, but for dampers that are linear in the velocities and even."""
+    def has_potential(self, values: Mapping[str, Any]) -> bool:
+        """Whether the forces have a potential near the state, but for dampers that are linear in the velocities and
+        even; ``values``: of all symbols there."""
         # a constant actuator force has one, too: V = -tau_a q^a
         driven = [name for name, value in self.inputs.items() if np.any(value) and not name.startswith("tau.")]
         zero = [name for name, value in self.parameters.items() if not np.any(value)]
-        return has_even_dissipation(self.model, driven, zero)
+        at = {name: float(np.ravel(x)[0]) for name, x in values.items()}
+        return has_even_dissipation(self.model, at, driven, zero)
 
 
 def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> Program:

@@ -144,7 +144,7 @@ class _Search:
 
     def _more(self) -> None:
         if self.number == MAX_SAMPLES:
-            raise TooLarge("the search for base parameters (in samples)", self.number + 1, MAX_SAMPLES)
+            raise TooLarge("the search for dependencies (in samples)", self.number + 1, MAX_SAMPLES)
         # quarter turns first, then eighths
         fine, quarter = self.number >= COARSE, self.graph.pi / 2
         point = []

@@ -1,0 +1,20 @@
+"""What a motion makes of the limits of its joints: it is told which they are, and warned of each that it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.quantities.limits import joint_limits, reached
+from substructures.tree.model import Model
+
+
+def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Trajectory) -> Trajectory:
+    """The motion with limits and warnings. Nothing holds a coordinate within its limits but end stops (``limits_act``).
+
+    ``parameters``: in place of their defaults. Looked at are all steps, or where those were not kept the results.
+    """
+    limits = joint_limits(model, parameters)
+    lowest, highest = motion.reached or reached(motion.t, motion.q, motion.qd)
+    return replace(motion, limits=limits.plain(), warnings=tuple(limits.warnings(lowest, highest)))

@@ -1,0 +1,139 @@
+"""Stability of a steady motion by its first integrals (E. J. Routh; A. M. Lyapunov; N. G. Chetaev).
+
+A steady motion is a stationary point of the energy H at constant values of the other integrals I_k: dH = l_k dI_k.
+Where the second variation of H - l_k I_k is definite for all disturbances that keep dI_k = 0, positive or negative, H
+and the I_k together bound the motion, and it is stable but for shifts of the coordinates s that move anyway. Where
+the dI_k depend on each other, so that the l_k are not unique, one choice that makes it definite is enough (Chetaev's
+proof for the sleeping top). An I_k that changes with s counts when its derivative by s vanishes: then it is a
+component, zero in the steady motion, of a vector whose square does not change with s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+import numpy as np
+import scipy
+
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.kernels import Known, known_model
+from substructures.array import Array
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Program, array, program
+from substructures.expr.replay import replay
+from substructures.tree.model import Model
+
+#: coordinates of models that are looked at: second derivatives of all integrals are formed
+MOST = 12
+#: what counts as zero, relative to the largest of its kind; and the least eigenvalue that counts as definite
+NOTHING, DEFINITE = 1e-9, 1e-7
+
+
+def bounded_by_integrals(
+    model: Model, values: Mapping[str, float], moving: Sequence[int], zero: Sequence[str] = ()
+) -> str | None:
+    """Why the steady motion at ``values`` (of all symbols; s = ``moving``) is stable, None where this does not tell.
+
+    ``zero``: parameters that are 0. All inputs are 0, and the energy is constant. No closures.
+    """
+    if model.dof > MOST:
+        return None
+    names, source = _derivatives(known_model(model), frozenset(zero))
+    if "energy" not in names:
+        return None
+    n = model.dof
+    found = interpret(source, {s.name: values[s.name] for s in source.symbols}, ["first", "second"])
+    if not all(np.isfinite(x).all() for x in found.values()):
+        return None
+    # z = (x, q'): without the coordinates s
+    z = [*(a for a in range(n) if a not in moving), *range(n, 2 * n)]
+    H = names.index("energy")
+    used = [k for k in range(len(names)) if k != H and _is_invariant(found["first"][k], moving)]
+    dH, dI = found["first"][H][z], found["first"][used][:, z]
+    second = found["second"][:, z][:, :, z]
+    multipliers, family = _multipliers(dH, dI)
+    if multipliers is None:
+        return None
+    kernel = _kernel(dI)
+    W = [kernel.T @ second[k] @ kernel for k in (H, *used)]
+    base = W[0] - sum((x * w for x, w in zip(multipliers, W[1:], strict=True)), np.zeros_like(W[0]))
+    more = [sum((x * w for x, w in zip(row, W[1:], strict=True)), np.zeros_like(W[0])) for row in family]
+    for sign, word in ((1.0, "minimum"), (-1.0, "maximum")):
+        if _can_be_definite(sign * base, more):
+            kept = ", ".join(names[k] for k in used) or "no other integral"
+            return f"the energy has a strict {word} at constant {kept} (Routh, Lyapunov)"
+    return None
+
+
+@lru_cache(maxsize=16)
+def _derivatives(known: Known, zero: frozenset[str]) -> tuple[tuple[str, ...], Program]:
+    """Names of the constant integrals, and their first (k, 2n) and second (k, 2n, 2n) derivatives by (q, q')."""
+    model: Model = known.source
+    found = first_integrals(model, (), zero)
+    names = tuple(i.name for i in found.integrals if i.rule == "constant")
+    graph = Graph()
+    outputs = replay(found.program, graph, dict.fromkeys(zero, graph.zero), names)
+    integrals: list[Expr] = [graph.lift(outputs[name].entries.get((), 0)) for name in names]
+    z = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    first = gradient(integrals, z)
+    second = [gradient(row, z) for row in first]
+    size = (len(names), len(z))
+    formulas = {
+        "first": array(size, lambda k, a: first[k][a]),
+        "second": array((*size, len(z)), lambda k, a, b: second[k][a][b]),
+    }
+    return names, program(graph, formulas, {s.name: s for s in found.program.symbols})
+
+
+def _is_invariant(first: Array, moving: Sequence[int]) -> bool:
+    """Whether an integral does not change with s, to first order."""
+    return bool(np.abs(first[list(moving)]).max(initial=0) <= NOTHING * max(1.0, float(np.abs(first).max(initial=0))))
+
+
+def _multipliers(dH: Array, dI: Array) -> tuple[Array | None, Array]:
+    """l with dH = l dI, None where there are none, and a basis of what may be added to l."""
+    scale = max(1.0, float(np.abs(dH).max(initial=0)))
+    multipliers = np.linalg.lstsq(dI.T, dH, rcond=NOTHING)[0] if len(dI) else np.zeros(0)
+    if np.abs(dH - dI.T @ multipliers).max(initial=0) > 1e-7 * scale:
+        return None, np.zeros((0, len(dI)))
+    family = _kernel(dI.T).T if len(dI) else np.zeros((0, 0))
+    return np.asarray(multipliers), family
+
+
+def _kernel(rows: Array) -> Array:
+    """An orthonormal basis (size, k) of what the rows take to zero."""
+    _, sizes, directions = (
+        np.linalg.svd(rows, full_matrices=True) if len(rows) else (0, np.zeros(0), np.eye(rows.shape[1]))
+    )
+    rank = int((sizes > NOTHING * max(1.0, float(sizes.max(initial=0)))).sum())
+    return np.asarray(directions[rank:].T)
+
+
+def _can_be_definite(base: Array, more: Sequence[Array]) -> bool:
+    """Whether base + sum v_k more_k is positive definite for some v; its least eigenvalue is concave in v."""
+    size = max((float(np.abs(x).max(initial=0)) for x in (base, *more)), default=0.0)
+    if not len(base):
+        return True
+    if not size:
+        return False
+
+    def least(v: Array) -> float:
+        """Minus the least eigenvalue, relative to the largest."""
+        x = base + sum((a * b for a, b in zip(v, more, strict=True)), np.zeros_like(base))
+        eigenvalues = np.linalg.eigvalsh(x)
+        return float(-eigenvalues[0] / max(float(np.abs(eigenvalues).max()), 1e-9 * size))
+
+    more = [x for x in more if np.abs(x).max(initial=0) > NOTHING * size]
+    start = np.zeros(len(more))
+    if least(start) < -DEFINITE or not len(more):
+        return least(start) < -DEFINITE
+    spread = size / max(float(np.abs(x).max(initial=0)) for x in more)
+    for step in (0.1, 1.0, 10.0):
+        for way in (step, -step):
+            found = scipy.optimize.minimize(least, start + way * spread, method="Nelder-Mead", options={"maxiter": 400})
+            if found.fun < -DEFINITE:
+                return True
+    return False

@@ -1,0 +1,85 @@
+"""The potential energy of what acts between the bodies of a part (notation.md, section 7).
+
+Springs have theirs in closed form. Forces that are given as formulas have the potential that is found by integration:
+V with d_a V = -Q_a exactly, of as much of them as has one. Looked at is the force at rest without inputs, less what
+depends on the time: all else is a force without potential, and so is what is no gradient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr
+from substructures.expr.integrate import filtered, potential, summands, symbols_of
+from substructures.expr.walk import transfer
+from substructures.part.load_names import velocity_in
+from substructures.part.mechanism import Mechanism
+
+
+def gradient_forces(m: Mechanism, energy: Expr) -> list[Expr]:
+    """Q_a = -dV/dq^a for every coordinate."""
+    return [-x for x in gradient([energy], m.topology.coordinates)[0]]
+
+
+def spring_potential(m: Mechanism, forces: Mapping[int, Expr]) -> Expr | None:
+    """The potential of one spring whose stiffness or length depends on the state, None where there is none.
+
+    With a velocity in it there is none, whatever the derivatives by coordinates are.
+    """
+    names = m.topology.coordinates
+    if velocity_in(m.topology, forces.values()) is not None:
+        return None
+    return potential([forces.get(a, m.graph.zero) for a in range(len(names))], names)
+
+
+def found_potential(m: Mechanism, forces: Sequence[Expr]) -> Expr:
+    """The potential of as much of the forces (n,) on the coordinates as is found to have one.
+
+    Of forces that depend on each other's coordinates either all of them count, or what each has of its own alone.
+    """
+    names = m.topology.coordinates
+    fixed = frozenset(s.name for s in m.scope.symbols.values() if s.kind == "parameter")
+    held = [_at_rest(m, force, fixed.union(names)) for force in forces]
+    result = m.graph.zero
+    for group in _groups(held, names):
+        whole = potential([held[a] for a in group], [names[a] for a in group])
+        result = result + (_own(m, held, group, fixed) if whole is None else whole)
+    return result
+
+
+def _at_rest(m: Mechanism, force: Expr, steady: frozenset[str]) -> Expr:
+    """What is left of a force at rest without inputs; terms of the sum that depend on the time are left out."""
+    result = m.graph.zero
+    for term in summands(force):
+        moving = dict.fromkeys(symbols_of([term]) - steady - {"t"}, m.graph.zero)
+        try:
+            (rest,) = transfer([term], m.graph, moving) if moving else (term,)
+        except ZeroDivisionError:
+            continue
+        result = result + rest if "t" not in symbols_of([rest]) else result
+    return result
+
+
+def _own(m: Mechanism, forces: Sequence[Expr], group: Sequence[int], fixed: frozenset[str]) -> Expr:
+    """V of the terms of every force that contain its own coordinate alone: each of them has a potential."""
+    names, result = m.topology.coordinates, m.graph.zero
+    for a in group:
+        alone = filtered(forces[a], fixed | {names[a]}) or m.graph.zero
+        result = result + (potential([alone], [names[a]]) or m.graph.zero)
+    return result
+
+
+def _groups(forces: Sequence[Expr], names: Sequence[str]) -> list[list[int]]:
+    """Coordinates on which forces act that depend on each other's, in order; those without a force are in none."""
+    groups: list[tuple[set[int], set[str]]] = []
+    for a, force in enumerate(forces):
+        if force.is_zero:
+            continue
+        members, used = {a}, set(symbols_of([force]) & set(names)) | {names[a]}
+        for other in [g for g in groups if g[1] & used]:
+            groups.remove(other)
+            members, used = members | other[0], used | other[1]
+        groups.append((members, used))
+    # the coordinates that are named are part of the curl, also where no force acts on them
+    return [sorted(a for a, name in enumerate(names) if a in members or name in used) for members, used in groups]

@@ -1,0 +1,247 @@
+"""Steady motions: conical pendulum, tops, free bodies, governors, against closed forms and forward dynamics."""
+
+# ruff: noqa: N806 -- symbols of the notation
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from analysis_models import catalogue_model, values_at
+from closed_trees import at as state_at
+from closed_trees import governor, governor_accelerations, lift
+from random_trees import Plain, model_of
+
+from substructures import InvalidInput, Model
+from substructures.analysis.equations.routh import routh
+from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
+from substructures.expr.interpret import interpret
+from substructures.quantities.evaluation import evaluate
+
+G, LENGTH, MASS, FRAME = 9.81, 0.5, 2.0, 0.3
+
+
+def conical(damping: float = 0) -> Model:
+    """A mass point on a rod that swings in a frame turning about the vertical; the angle is 0 where it hangs."""
+    bodies: list[Plain] = [
+        {
+            "name": "frame",
+            "parent": "base",
+            "joint": {"type": "revolute", "coordinate": "turn"},
+            "inertia": {"xx": FRAME, "yy": FRAME, "zz": FRAME},
+        },
+        {
+            "name": "rod",
+            "parent": "frame",
+            "joint": {"type": "revolute", "coordinate": "angle", "theta": "pi/2", "damping": damping},
+            "mass": MASS,
+            "com": [0, -LENGTH, 0],
+        },
+    ]
+    return model_of({"name": "conical", "bodies": bodies}, (0, 0, -G))
+
+
+def at(found: Any, *place: float) -> SteadyMotion:
+    """The steady motion at a place of the coordinates that keep still."""
+    still = [found.found[0].coordinates.index(c) for c in found.found[0].coordinates if c not in found.moving]
+    return min(found.found, key=lambda each: float(np.abs(each.q[still] - place).max()))
+
+
+@pytest.mark.parametrize("rate", [3.0, 6.0])
+def test_a_conical_pendulum(rate: float) -> None:
+    """cos a = g/(w^2 l) above w^2 = g/l; M, K by hand at constant rate, and at constant momentum."""
+    fast, m = rate**2 > G / LENGTH, MASS * LENGTH**2
+    for held in ("rates", "momenta"):
+        found = steady_motions(conical(), rates={"x.turn": rate}, held=held)
+        assert found.moving == ("x.turn",)
+        assert len(found.found) == (4 if fast else 2)
+        for motion in found.found:
+            a = motion.q[1]
+            inertia, slope = FRAME + m * np.sin(a) ** 2, 2 * m * np.sin(a) * np.cos(a) * rate
+            K = MASS * G * LENGTH * np.cos(a) - m * rate**2 * np.cos(2 * a)
+            K += slope**2 / inertia if held == "momenta" else 0
+            np.testing.assert_allclose([motion.M[0, 0], motion.K[0, 0]], [m, K], rtol=1e-8)
+            np.testing.assert_allclose(motion.momenta, inertia * rate, rtol=1e-9)
+            assert motion.verdict == ("stable" if K > 0 else "unstable")
+        hanging = at(found, 0.0)
+        assert hanging.verdict == ("unstable" if fast else "stable")
+    if fast:
+        a = np.arccos(G / (rate**2 * LENGTH))
+        np.testing.assert_allclose(at(found, a).q, [0, a], atol=1e-9)
+        reason = at(found, a).stability
+        assert reason is not None
+        assert reason.reason.startswith("the amended potential")
+
+
+def test_momenta_lead_to_the_same_motion_as_rates() -> None:
+    by_rate = at(steady_motions(conical(), rates={"x.turn": 6.0}), 0.9)
+    by_momentum = at(steady_motions(conical(), momenta={"x.turn": float(by_rate.momenta[0])}), 0.9)
+    np.testing.assert_allclose(by_momentum.q, by_rate.q, atol=1e-9)
+    np.testing.assert_allclose(by_momentum.rates, [6.0])
+
+
+def test_damping_in_the_hinge() -> None:
+    found = steady_motions(conical(0.2), rates={"x.turn": 6.0})
+    assert at(found, 0.99).verdict == "asymptotically stable"
+    assert at(found, 0.0).verdict == "unstable"
+
+
+def free_body(inertia: tuple[float, float, float]) -> Model:
+    joint = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+    body = {"name": "b", "parent": "base", "mass": 2, "joint": joint, "inertia": dict(zip(("xx", "yy", "zz"), inertia))}  # noqa: B905
+    return model_of({"name": "b", "bodies": [body]}, (0, 0, 0))
+
+
+@pytest.mark.parametrize(("z", "verdict"), [(1.0, "stable"), (2.0, "unstable"), (2.5, "stable")])
+def test_a_free_body_about_its_principal_axes(z: float, verdict: str) -> None:
+    """Stable about the axes of least and of largest inertia; about the middle one w sqrt((B-A)(C-B)/(A C))."""
+    others = [i for i in (1.0, 2.0, 2.5) if i != z]
+    found = steady_motions(free_body((others[0], others[1], z)), rates={"x.yaw": 3.0}, count=12)
+    upright = at(found, 0.0, 0.0)
+    np.testing.assert_allclose(upright.q, 0, atol=1e-8)
+    assert upright.verdict == verdict
+    assert upright.stability is not None
+    words = {1.0: "the energy has a strict maximum", 2.0: "positive real part", 2.5: "the amended potential"}[z]
+    assert words in upright.stability.reason
+    if verdict == "unstable":
+        largest = max(mode.eigenvalue.real for mode in upright.modes)
+        np.testing.assert_allclose(largest, 3 * np.sqrt((2 - 1) * (2.5 - 2) / 2.5), rtol=1e-7)
+    assert "coordinates are singular" in found.message
+
+
+A, C, REACH = 0.4, 0.1, 0.25
+WEIGHT = MASS * G * REACH
+
+
+def top(*chain: Plain) -> Model:
+    """A symmetric top with its fixed point at the origin, A and C about it, on massless joints."""
+    about = {"xx": A, "yy": A, "zz": C, "about": "origin"}
+    bodies: list[Plain] = []
+    for i, joint in enumerate(chain):
+        parent = f"b{i - 1}" if i else "base"
+        bodies.append({"name": f"b{i}", "parent": parent, "joint": {"type": "revolute", **joint}})
+    bodies[-1] |= {"mass": MASS, "com": [0, 0, REACH], "inertia": about}
+    return model_of({"name": "top", "bodies": bodies}, (0, 0, -G))
+
+
+def turned(x: str, coordinate: str) -> Plain:
+    """An axis that is turned about the first axis of the frame before."""
+    return {"coordinate": coordinate, "placement": {"rpy": [x, 0, 0]}}
+
+
+def test_regular_precession_of_a_heavy_top() -> None:
+    """A p^2 cos t - C (s + p cos t) p + m g l = 0 with precession p and spin s; K against Routh's amended potential."""
+    model = top({"coordinate": "precession"}, turned("pi/2", "tilt"), turned("-pi/2", "spin"))
+    p, s = 3.0, 20.0
+    found = steady_motions(model, rates={"x.precession": p, "x.spin": s}, count=16)
+    tilt = np.arccos((C * p * s - WEIGHT) / ((A - C) * p**2))
+    motion = min(found.found, key=lambda each: abs(abs(each.q[1]) - tilt))
+    np.testing.assert_allclose(abs(motion.q[1]), tilt, rtol=1e-9)
+    assert motion.verdict == "stable"
+    reduced, h = routh(model), 1e-3
+    q = np.zeros((5, 3)) + motion.q
+    q[:, 1] += h * np.arange(-2, 3)
+    momenta = {f"p.{name}": value for name, value in zip(found.moving, motion.momenta, strict=True)}
+    V = interpret(reduced.program, values_at(model, q, 0 * q) | momenta, ["amended_potential"])["amended_potential"]
+    np.testing.assert_allclose(
+        (-V[0] + 16 * V[1] - 30 * V[2] + 16 * V[3] - V[4]) / (12 * h**2), motion.K[0, 0], rtol=1e-6
+    )
+    np.testing.assert_allclose(V[0] - 8 * V[1] + 8 * V[3] - V[4], 0, atol=1e-8)
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.9, "unstable"), (1.1, "stable"), (2.0, "stable")])
+def test_the_sleeping_top(share: float, verdict: str) -> None:
+    """Upright it is stable for (C s)^2 > 4 A m g l: gyroscopic, with a maximum of the amended potential."""
+    across = {"coordinate": "b", "placement": {"rpy": [0, "pi/2", 0]}}
+    model = top(turned("pi/2", "a"), across, turned("-pi/2", "s"))
+    upright = evaluate(model, ["potential_energy"], q=[[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]])["potential_energy"]
+    np.testing.assert_allclose(upright, WEIGHT * np.cos([0, 0.1, 0.1]))
+    spin = share * np.sqrt(4 * A * WEIGHT) / C
+    found = steady_motions(model, rates={"x.s": spin}, count=0)
+    sleeping = at(found, 0.0, 0.0)
+    np.testing.assert_allclose(sleeping.q, 0, atol=1e-9)
+    assert np.linalg.eigvalsh(sleeping.K).max() < 0
+    assert sleeping.verdict == verdict
+    assert sleeping.stability is not None
+    assert (verdict == "unstable") == ("positive real part" in sleeping.stability.reason)
+
+
+@pytest.mark.parametrize(("name", "rates"), [("flyball-governor", [4.0]), ("gimbal-gyroscope", [0.4, 30.0])])
+def test_nothing_accelerates_in_a_steady_motion(name: str, rates: list[float]) -> None:
+    """Against forward dynamics of the whole model, and of a shifted place that is no steady motion."""
+    model = catalogue_model(name)
+    moving = steady_motions(model, rates={}, count=0).moving
+    found = steady_motions(model, rates=dict(zip(moving, rates, strict=True)), count=12)
+    assert found.found
+    for motion in found.found:
+        qd = np.zeros(model.dof)
+        qd[[model.coordinates.index(c) for c in moving]] = motion.rates
+        still = [a for a, c in enumerate(model.coordinates) if c not in moving]
+        shifted = motion.q + 0.1 * np.isin(np.arange(model.dof), still)
+        states = {"q": np.array([motion.q, shifted]), "qd": np.array([qd, qd])}
+        qdd = evaluate(model, ["forward_dynamics"], **states)["forward_dynamics"]
+        assert np.abs(qdd[0]).max() < 1e-7 * (1 + np.abs(motion.rates).max() ** 2)
+        assert np.abs(qdd[1]).max() > 1e-3
+
+
+@pytest.mark.parametrize("held", ["momenta", "rates"])
+def test_a_governor_with_rods(held: Literal["momenta", "rates"]) -> None:
+    """With closures: at its speed at an angle of 0.6, M and K of the arms from the equations in closed form."""
+    model, angle, h = governor(), 0.6, 1e-4
+    low, high = governor_accelerations(angle, 0, 0)[0], governor_accelerations(angle, 0, 1)[0]
+    speed = np.sqrt(-low / (high - low))
+    start = state_at(model, right=angle + 0.05, left=angle + 0.05, lift=lift(angle)[0])
+    found = steady_motions(model, rates={"x.turn": speed}, held=held, starts=start, count=0)
+    steady = min(found.found, key=lambda each: float(np.abs(each.q - start).max()))
+    np.testing.assert_allclose(steady.q, state_at(model, right=angle, left=angle, lift=lift(angle)[0]), atol=1e-8)
+    assert (len(steady.independent), steady.verdict) == (1, "stable")
+    np.testing.assert_allclose(steady.M[0, 0], 2 * 0.3**2 + 0.8 * lift(angle)[1] ** 2, rtol=1e-8)
+
+    def inertia(a: float) -> float:
+        """Of the spindle with the balls."""
+        return float(0.011 + 2 * (0.03 + 0.3 * np.sin(a)) ** 2)
+
+    def acceleration(a: float) -> float:
+        """Of the arms, at constant momentum or speed."""
+        spin = speed * inertia(angle) / inertia(a) if held == "momenta" else speed
+        return governor_accelerations(a, 0, spin)[0]
+
+    slope = (acceleration(angle + h) - acceleration(angle - h)) / (2 * h)
+    np.testing.assert_allclose(steady.K[0, 0] / steady.M[0, 0], -slope, rtol=1e-6)
+
+
+def test_driven_rates() -> None:
+    """A motor's moment takes the cyclic coordinate away; at a given rate the rod on it is steady all the same."""
+    model = conical()
+    assert steady_motions(model, rates={"x.turn": 2.0}, held="rates", inputs={"tau.x.turn": 1.0}).found
+    with pytest.raises(InvalidInput, match="is no cyclic coordinate"):
+        steady_motions(model, rates={"x.turn": 2.0}, inputs={"tau.x.turn": 1.0})
+    with pytest.raises(InvalidInput, match=r"depends on 'x\.angle' itself"):
+        steady_motions(model, rates={"x.angle": 2.0}, held="rates")
+
+
+def test_faults_have_pointers() -> None:
+    model = conical()
+    cases: list[tuple[Plain, str]] = [
+        ({}, "/rates"),
+        ({"rates": {}, "momenta": {}}, "/rates"),
+        ({"rates": {"x.angle": 1}}, "/rates/x.angle"),
+        ({"momenta": {"x.nothing": 1}}, "/momenta/x.nothing"),
+        ({"momenta": {"x.turn": 1}, "held": "rates"}, "/momenta"),
+        ({"rates": {"x.turn": "fast"}}, "/rates/x.turn"),
+        ({"rates": {"x.turn": 1}, "held": "both"}, "/held"),
+        ({"rates": {"x.turn": 1}, "starts": [[1]]}, "/starts"),
+    ]
+    for request, pointer in cases:
+        with pytest.raises(InvalidInput) as error:
+            steady_motions(model, **request)
+        assert error.value.faults[0].pointer == pointer
+    with pytest.raises(InvalidInput, match="coordinate that moves at"):
+        steady_motions(catalogue_model("simple-pendulum"), rates={})
+
+
+def test_shown_in_two_lines() -> None:
+    found = steady_motions(conical(), rates={"x.turn": 6.0})
+    assert repr(found) == "SteadyMotions(found=4, moving=['x.turn'])\n2 stable, 2 unstable"
+    assert all(repr(each).count("\n") == 1 for each in found.found)
