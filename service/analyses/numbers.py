@@ -81,7 +81,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = _without(given, "q", "events", "fixed_step", "series", "drift_limit")
+    rest = _without(given, "q", "events", "fixed_step", "series")
     return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 

@@ -10,6 +10,8 @@ import numpy as np
 import orjson
 
 from substructures.analysis.closed.loops import LoopState
+from substructures.analysis.control.cost_gradient import CostGradient
+from substructures.analysis.control.optimal_control import Optimum
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
@@ -29,6 +31,8 @@ DRAWN = (*PLAIN, SVG)
 #: properties that are written beside the fields, each with the field that it is written before
 PROPERTIES: dict[type, dict[str, str]] = {
     Linearisation: {"is_equilibrium": "modes"},
+    CostGradient: {"is_right": "trajectory", "checks": "trajectory"},
+    Optimum: {"is_right": "trajectory", "checks": "trajectory"},
     Mode: {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
 }
 

@@ -21,7 +21,8 @@ from substructures.analysis.motion.judges import energy_balance
 from substructures.analysis.motion.problem import MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.signals import Signal
-from substructures.analysis.motion.trajectory import Check, Trajectory, crossings
+from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.tree.model import Model
 
@@ -134,6 +135,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.steps,
         found,
         figures,
+        motion.cancelled,
     )
 
 

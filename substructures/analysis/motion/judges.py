@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral
-from substructures.analysis.motion.trajectory import Check, Rule
+from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.tree.model import Model
@@ -22,13 +22,13 @@ SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 @dataclass(frozen=True)
 class MotionStates:
-    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,)."""
+    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,), None if unknown."""
 
     t: Array
     q: Array
     qd: Array
     values: Mapping[str, float | Array]
-    work: Array
+    work: Array | None
 
     def symbols(self, model: Model) -> dict[str, float | Array]:
         """Values of all symbols, (K,) each where they vary."""
@@ -58,6 +58,10 @@ def judge(
         noise = ROUNDING * float(np.abs(value).max(initial=0))
         if integral.rule == "constant":
             checks.append(Check.of(_about(integral, "constant"), spread(value), states.t, scale, limit, noise))
+            continue
+        if states.work is None:
+            why = "the work of the forces without potential was not integrated"
+            checks.append(Check.left_out("energy-balance", "constant", why))
             continue
         # H - W with W' = Q_a q'^a + V' is constant for every model
         balanced = value - states.work

@@ -19,8 +19,9 @@ from substructures.analysis.motion.judges import energy_balance, spread
 from substructures.analysis.motion.problem import MotionProblem, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.steppers import METHODS
-from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory, crossings
+from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import InvalidArgument
@@ -206,6 +207,7 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
         motion.steps,
         _events(rolling, problem, motion),
         {"evaluations": float(motion.evaluations)},
+        motion.cancelled,
     )
 
 

@@ -1,0 +1,207 @@
+"""Verdicts have three values: right, wrong, and nobody knows; what no first integral judges, a second run does."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from analysis_models import oscillator, shipped
+from random_trees import Plain, model_of
+
+from substructures import Model
+from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.nonlinear_program import End
+from substructures.analysis.control.optimal_control import optimal_control
+from substructures.analysis.control.problem import Cost
+from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.simulate import Event, FixedStep, Table, simulate
+from substructures.analysis.verdict import Check, verdict
+
+HOLDS = Check("a", "constant", "", "J", 0.0, 1.0, 1e-7)
+VIOLATED = Check("b", "zero", "", "m", 1.0, 1.0, 1e-7, 0.3)
+SPARED = Check.left_out("c", "constant", "no need")
+MISSING = Check.left_out("d", "accurate", "the second run failed", needed=True)
+
+
+@pytest.mark.parametrize(
+    ("checks", "finished", "expected"),
+    [
+        ([], True, None),
+        ([SPARED], True, None),
+        ([MISSING], True, None),
+        ([HOLDS], True, True),
+        ([HOLDS, SPARED], True, True),
+        ([HOLDS, MISSING], True, None),
+        ([HOLDS, VIOLATED], True, False),
+        ([MISSING, VIOLATED], True, False),
+        ([HOLDS], False, None),
+        ([VIOLATED], False, None),
+    ],
+)
+def test_three_values(checks: list[Check], finished: bool, expected: bool | None) -> None:
+    assert verdict(checks, finished) is expected
+
+
+def test_what_is_not_a_number_is_violated_and_what_was_not_made_has_no_numbers() -> None:
+    assert Check.of(("x", "zero", "", ""), np.array([0, np.nan]), np.array([0.0, 0.5]), 1, 1).time == 0.5
+    told = MISSING.summary()
+    assert (told["holds"], told["worst"], told["limit"], told["reason"]) == (None, None, None, MISSING.reason)
+
+
+def test_motions_that_did_not_come_to_their_end_are_neither_right_nor_wrong() -> None:
+    model, start = shipped("acrobot"), [1.2, 0]
+    failed = simulate(model, start, (0, 5), max_steps=3)
+    assert (failed.status, failed.is_right) == ("failed", None)
+    assert failed.summary()["is_right"] is None
+    assert "is_right=None" in repr(failed)
+    cancelled = simulate(model, start, (0, 5), progress=lambda share: share < 0.1)
+    assert (cancelled.status, cancelled.is_right) == ("stopped", None)
+    for fixed in (None, FixedStep(0.001)):
+        cut = simulate(model, start, (0, 0.2), progress=lambda share: share < 0.5, fixed_step=fixed)
+        assert cut.is_right is None
+    stopped = simulate(model, start, (0, 5), events=[Event("level", "x.q1", level=0.3)])
+    assert (stopped.status, stopped.is_right) == ("stopped", True)
+    bare = Trajectory(("x",), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1)))
+    assert bare.is_right is None
+
+
+START: Plain = {"q": [1.2, 0], "span": (0, 3), "by": ["x.Ic1", "x.m2"], "of_start": True, "count": 31}
+
+
+def error_of(name: str, found: Trajectory, exact: Trajectory) -> float:
+    """Largest error over the largest number, by two motions."""
+    about, _, series = name.partition(" of ")
+    n = found.q.shape[1]
+    half = {"q": slice(n), "qd": slice(n, None), "d.start": slice(None)}[about]
+    whole = series or (about if about == "d.start" else "")
+    one, two = (
+        motion.series[whole][:, half] if whole else np.concatenate([motion.q, motion.qd], axis=1)[:, half]
+        for motion in (found, exact)
+    )
+    return float(np.abs(one - two).max() / np.abs(two).max())
+
+
+def test_sensitivities_state_their_error() -> None:
+    """The difference of two runs is the error of the first, by a third that is far more accurate."""
+    model = shipped("acrobot")
+    exact = sensitivities(model, **START, relative_tolerance=1e-13, absolute_tolerance=1e-14)
+    assert exact.is_right
+    judged = 0
+    for tolerance in (1e-2, 1e-4, 1e-7):
+        both = {"relative_tolerance": tolerance, "absolute_tolerance": tolerance}
+        found = sensitivities(model, **START, **both)
+        assert found.is_right is False
+        for check in found.checks:
+            if check.rule == "accurate":
+                judged += 1
+                # ten times tighter tolerances: the second run has a tenth of the error, or some more
+                assert check.relative == pytest.approx(error_of(check.name, found, exact), rel=0.6), check
+    assert judged == 21
+
+
+def test_sensitivities_of_loose_tolerances_are_not_right() -> None:
+    """Tolerances of 0.1, for which simulations of the same motion say so, too."""
+    model, loose = shipped("acrobot"), {"relative_tolerance": 0.1, "absolute_tolerance": 0.1}
+    request: Plain = {"q": [1.2, 0], "span": (0, 5)}
+    assert simulate(model, **request, **loose).is_right is False
+    assert sensitivities(model, **request, by=["x.Ic1"], **loose).is_right is False
+    assert sensitivities(model, **request, by=["x.Ic1"]).is_right is True
+    # steps that 'max_step' keeps short are not made shorter by tolerances
+    held = sensitivities(model, **request, by=["x.Ic1"], **loose, max_step=0.02, method="RK23")
+    assert held.is_right is False
+    assert min(check.relative for check in held.checks if check.rule == "accurate") > 1e-6
+
+
+def test_sensitivities_that_fail_are_not_judged() -> None:
+    found = sensitivities(shipped("acrobot"), [1.2, 0], (0, 5), ["x.Ic1"], max_steps=5)
+    assert (found.status, found.is_right) == ("failed", None)
+    assert {check.holds for check in found.checks if check.rule == "accurate"} == {None}
+
+
+def test_rest_is_right_although_rounding_is_all_there_is() -> None:
+    """Hanging, q = pi has no exact sine: velocities of 1e-16 that no second run repeats."""
+    found = sensitivities(shipped("simple-pendulum"), [np.pi], (0, 1), [])
+    assert found.is_right, found.checks
+
+
+def spring_of_given_length() -> Model:
+    """A mass on a spring whose rest length is an input, so that energy has no balance that is known."""
+    ends = {"from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "b", "at": [0, 0, 0]}}
+    spring = {"type": "spring", **ends, "stiffness": 50, "damping": 0, "length": "u"}
+    return model_of(oscillator() | {"name": "sprung", "inputs": {"u": {"unit": "m"}}, "loads": [spring]}, (0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({}, True),
+        ({"times": []}, True),
+        ({"relative_tolerance": 1e-3, "absolute_tolerance": 1e-3}, False),
+        ({"method": "RK45"}, True),
+        ({"fixed_step": FixedStep(0.01)}, False),
+        ({"fixed_step": FixedStep(0.001)}, True),
+        ({"events": [Event("there", "x.s", 0.3)]}, True),
+        ({"max_steps": 2}, None),
+    ],
+)
+def test_motions_without_first_integrals_have_a_second_run(change: Plain, expected: bool | None) -> None:
+    model = spring_of_given_length()
+    found = simulate(model, [0.5], (0, 3), inputs={"x.u": "0.5*cos(3*t)"}, **change)
+    assert found.is_right is expected, found.checks
+    assert {check.rule for check in found.checks} == {"accurate"}
+    # for a constant length there is a balance again, and no second run
+    plain = simulate(shipped("simple-pendulum"), [0.5], (0, 1))
+    assert {check.rule for check in plain.checks} == {"constant"}
+
+
+COSTLY: Plain = {"controls": ["tau.x.q1"], "horizon": 2, "intervals": 2, "q": [1.2, 0], "cost": Cost("x.q1^2")}
+
+
+def gradient(steps: int) -> Any:
+    return cost_gradient(shipped("acrobot"), **COSTLY, steps=steps, vary=["x.m1", "x.m2"])
+
+
+def test_cost_gradients_state_their_error() -> None:
+    """One step of a second: a cost of 284 for 10.5; steps small enough: right, with the error that it has."""
+    exact = gradient(160)
+    coarse, fine = gradient(1), gradient(40)
+    assert exact.is_right
+    assert coarse.is_right is False
+    assert coarse.cost > 20 * exact.cost
+    assert fine.is_right
+    stated = {check.name: check.relative for check in fine.checks}
+    assert stated["cost"] == pytest.approx(abs(fine.cost / exact.cost - 1), rel=0.2)
+    off = np.abs(fine.controls - exact.controls).max() / np.abs(exact.controls).max()
+    assert stated["gradient by controls"] == pytest.approx(off, rel=0.2)
+    start = np.abs(fine.qd - exact.qd).max() / np.abs(exact.qd).max()
+    assert stated["gradient by qd"] == pytest.approx(start, rel=0.2)
+    strict = cost_gradient(shipped("acrobot"), **COSTLY, steps=40, error_limit=1e-9)
+    assert strict.is_right is False
+
+
+def test_costs_that_leave_the_range_of_numbers_are_not_judged() -> None:
+    found = cost_gradient(shipped("acrobot"), **COSTLY | {"horizon": 20, "intervals": 20})
+    assert (found.status, found.is_right, found.trajectory.is_right) == ("failed", None, None)
+
+
+def test_optimal_controls_are_judged_along_accurate_motions() -> None:
+    """A pendulum raised a little: two steps for a second are too few, what the search calls an optimum is none."""
+    model = shipped("simple-pendulum")
+    problem: Plain = {"controls": ["tau.x.q1"], "cost": Cost("tau.x.q1^2"), "horizon": 2, "intervals": 4, "q": [0]}
+    problem |= {"end": End([0.5], [0])}
+    coarse, fine = optimal_control(model, **problem), optimal_control(model, **problem, steps=8)
+    assert (coarse.status, coarse.is_right) == ("optimal", False)
+    assert (fine.status, fine.is_right) == ("optimal", True), fine.checks
+    assert {check.name for check in fine.checks} == {"end", "stationarity", "cost", "q", "qd"}
+    # the controls of the coarse search miss the end by what its check states
+    motion = simulate(model, [0], (0, 2), inputs={"tau.x.q1": held(coarse)}, count=5)
+    missed = abs(float(motion.q[-1, 0]) - 0.5) / np.abs(motion.q).max()
+    stated = next(check.relative for check in coarse.checks if check.name == "q")
+    assert 0.5 * missed < stated < 5 * missed
+
+
+def held(found: Any) -> Any:
+    """The controls between their nodes, linear, as a table."""
+    return Table(np.linspace(0, 2, 5).tolist(), found.controls[:, 0].tolist(), "linear")
