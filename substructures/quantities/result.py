@@ -26,6 +26,23 @@ class Failure:
 
 
 @dataclass(frozen=True, slots=True)
+class Remark:
+    """A warning about something that was given: its place ``pointer``, ``code`` for programs, ``message``; where it is
+    about a quantity in one state, ``quantity`` and ``state``.
+    """
+
+    pointer: str
+    code: str
+    message: str
+    state: int | None = None
+    quantity: str | None = None
+
+    def plain(self) -> dict[str, Any]:
+        """Plain data, without what is not told."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
+
+
+@dataclass(frozen=True, slots=True)
 class ParameterColumns:
     """Names and SI units of the inertial parameters, which are the columns of the regressor."""
 
@@ -42,7 +59,8 @@ class Evaluation:
     ``Omega`` (N, frames, n, 3); ``result["momentum"]`` one of ``linear`` and ``angular`` (N, 3).
 
     ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor. ``count`` = N;
-    ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states.
+    ``digest``: of the model's program; ``failures``: where numbers are not finite; ``warnings``: where they are
+    doubtful; ``single``: no axis of states.
     """
 
     coordinates: tuple[str, ...]
@@ -53,6 +71,7 @@ class Evaluation:
     frames: tuple[str, ...] | None = None
     columns: ParameterColumns | None = None
     single: bool = False
+    warnings: tuple[Remark, ...] = ()
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
@@ -61,6 +80,7 @@ class Evaluation:
     def __repr__(self) -> str:
         shapes = ", ".join(f"{name} {shape}" for name, shape in _shapes(self.quantities))
         failed = f", {len(self.failures)} failures" if self.failures else ""
+        failed += f", {len(self.warnings)} warnings" if self.warnings else ""
         return f"Evaluation of {self.count} state(s) of {listed(self.coordinates)}{failed}\n  {shapes}"
 
     def plain(self, digest: str | None = None) -> dict[str, Any]:
@@ -74,7 +94,8 @@ class Evaluation:
             about["frames"] = list(self.frames)
         if self.columns is not None:
             about["columns"] = {"names": list(self.columns.names), "units": list(self.columns.units)}
-        return {**about, **self.quantities, "failures": [asdict(failure) for failure in self.failures]}
+        told = {"failures": [asdict(failure) for failure in self.failures]}
+        return {**about, **self.quantities, **told, "warnings": [remark.plain() for remark in self.warnings]}
 
 
 def _shapes(values: Mapping[str, Value]) -> Iterable[tuple[str, tuple[int, ...]]]:
@@ -90,13 +111,13 @@ def without_axis(value: Value) -> Value:
     return {name: v[0] for name, v in value.items()} if isinstance(value, dict) else value[0]
 
 
-def failures_of(results: Mapping[str, Value], message: Callable[[str], str]) -> tuple[Failure, ...]:
+def failures_of(results: Mapping[str, Value], advice: Callable[[str, int], tuple[str, str]]) -> tuple[Failure, ...]:
     """A failure for every quantity and state with a number that is not finite; arrays have the axis N.
 
-    ``message``: advice for a quantity by its name.
+    ``advice``: code and message for a quantity in a state.
     """
-    bad = ((name, state) for name, value in results.items() for state in _not_finite(value))
-    return tuple(Failure(int(state), name, "not-finite", message(name)) for name, state in bad)
+    bad = ((name, int(state)) for name, value in results.items() for state in _not_finite(value))
+    return tuple(Failure(state, name, *advice(name, state)) for name, state in bad)
 
 
 def _not_finite(value: Value) -> NDArray[np.int64]:

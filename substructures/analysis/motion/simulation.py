@@ -26,6 +26,9 @@ from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument, InvalidInput
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.mechanics.accelerations import definite_solve
+from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
 
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
@@ -62,11 +65,8 @@ def simulate_tree(
         raise
     # x = (q, q', W), W only where there is any power
     x = np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
-    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
-    if not is_definite(pivots):
-        return _failed(conditions, problem, SINGULAR)
-    if not np.isfinite(acceleration).all():
-        message = "a force is not finite at the start: look at springs of length 0 and roots or divisions in loads"
+    message = _unfit(conditions, problem, f, x)
+    if message:
         return _failed(conditions, problem, message)
     motion, figures = _moved(conditions, problem, f, x, progress, folder)
     found = _judged(conditions, problem, f, motion, figures)
@@ -74,6 +74,26 @@ def simulate_tree(
         return found
     alive = None if progress is None else lambda _: progress(1.0)
     return replace(found, checks=(*found.checks, *_repeated(conditions, problem, f, x, motion, alive)))
+
+
+def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Array) -> str:
+    """Why there are no accelerations at the start that formulas of them can be trusted with."""
+    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
+    if not (is_definite(pivots) and (pivots >= LEAST).all() and (pivots <= MOST).all()):
+        states = _states(conditions, f, np.array([problem.span[0]]), x[None])
+        model = problem.model
+        metric = interpret_in_blocks(model.program, states.symbols(model), ["metric"], 1)["metric"]
+        if not np.isfinite(metric).all():
+            return f"{OVERFLOW.format('metric')} (at the start)"
+        diagonal = np.einsum("nkk->nk", metric)
+        if (diagonal > 0).all() and not ((diagonal >= LEAST) & (diagonal <= MOST)).all():
+            return f"at the start {RANGE}"
+        # the pivots as parts of the diagonal, whatever the units of the coordinates
+        if not is_usable(definite_solve(metric, np.zeros(diagonal.shape))[1]).all():
+            return SINGULAR
+    if not np.isfinite(acceleration).all():
+        return "a force is not finite at the start: look at springs of length 0 and roots or divisions in loads"
+    return ""
 
 
 def tree_conditions(problem: MotionProblem) -> Conditions:
