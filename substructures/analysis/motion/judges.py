@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,6 +97,13 @@ def energy_balance(
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
     noise = ROUNDING * float(np.abs(T + V).max(initial=0)) + np.minimum(doubt, DOUBTED * limit * scale)
     return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
+
+
+def unbalanced(names: Sequence[str]) -> Check:
+    """In place of a balance of energy where the inputs ``names`` are part of the potential."""
+    culprits = ", ".join(f"'{name}'" for name in names)
+    why = f"no balance of energy is known with inputs in the potential ({culprits}): a second run judges instead"
+    return Check.left_out("energy", "constant", why)
 
 
 def spread(values: Array) -> Array:

@@ -92,6 +92,17 @@ def accurate(runs: TwoRuns, groups: Mapping[str, tuple[slice, str, slice]], limi
     return tuple(checks)
 
 
+def state_groups(n: int, p: int, velocities: str = "qd") -> dict[str, tuple[slice, str, slice]]:
+    """Groups of states (q, velocities, ...) with n and p numbers."""
+    both = slice(n + p)
+    return {"q": (slice(n), "rad, m", both), velocities: (slice(n, n + p), "rad/s, m/s", both)}
+
+
+def at_end(report: ProgressReport | None) -> ProgressReport | None:
+    """The progress of a second run that nobody expected: done, but whoever watches may still stop it."""
+    return None if report is None else lambda _: report(1.0)
+
+
 def halves(report: ProgressReport | None) -> tuple[ProgressReport | None, ProgressReport | None]:
     """The first and the second half of a progress, for two runs."""
     if report is None:

@@ -14,12 +14,12 @@ from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.fixed_step import FixedStep, march
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
-from substructures.analysis.motion.judges import MotionStates, integral_series, judge
+from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
-from substructures.analysis.motion.second_run import accurate, second_run
+from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.steppers import Stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
@@ -72,8 +72,9 @@ def simulate_tree(
     found = _judged(conditions, problem, f, motion, figures)
     if any(check.name.startswith("energy") for check in found.checks):
         return found
-    alive = None if progress is None else lambda _: progress(1.0)
-    return replace(found, checks=(*found.checks, *_repeated(conditions, problem, f, x, motion, alive)))
+    instead = unbalanced(conditions.in_potential(list(problem.start.inputs)))
+    repeated = _repeated(conditions, problem, f, x, motion, at_end(progress))
+    return replace(found, checks=(*found.checks, instead, *repeated))
 
 
 def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Array) -> str:
@@ -192,9 +193,7 @@ def _repeated(
         other = replace(problem, times=OutputTimes(span, times), integrator=choice, fixed_step=fixed, events=())
         return _moved(replace(conditions, events=()), other, f, x, progress, None)[0]
 
-    n = f.n
-    both = slice(2 * n)
-    groups = {"q": (slice(n), "rad, m", both), "qd": (slice(n, 2 * n), "rad/s, m/s", both)}
+    groups = state_groups(f.n, f.n)
     return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
 
 
