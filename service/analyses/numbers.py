@@ -121,7 +121,9 @@ def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> A
 
 def _identification(source: Source, read: IdentificationRequest, _: ProgressReport) -> Any:
     model = source.model if read.known else None
-    return identify(base_of(source, read.drives), **_motion(read), tau=read.tau, model=model)
+    return identify(
+        base_of(source, read.drives), **_motion(read), tau=read.tau, model=model, error_limit=read.error_limit
+    )
 
 
 def _motion(read: ExcitationRequest) -> dict[str, Any]:

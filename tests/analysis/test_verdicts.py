@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from analysis_models import oscillator, shipped
+from closed_trees import four_bar
 from random_trees import Plain, model_of
 
-from substructures import Definition, Model, TreeSpec, couple, derive
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.closed import loops
+from substructures.analysis.closed.loops import least_multipliers, loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
+from substructures.analysis.identification import fit
+from substructures.analysis.identification.base_parameters import base_parameters
+from substructures.analysis.identification.fit import identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import Event, FixedStep, Linear, Table, simulate
+from substructures.analysis.stability.equilibria import Equilibrium, equilibria
+from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check, verdict
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.regressor import regressor
 
 HOLDS = Check("a", "constant", "", "J", 0.0, 1.0, 1e-7)
 VIOLATED = Check("b", "zero", "", "m", 1.0, 1.0, 1e-7, 0.3)
@@ -246,3 +257,69 @@ def test_optimal_controls_are_judged_along_accurate_motions() -> None:
 def held(found: Any) -> Any:
     """The controls between their nodes, linear, as a table."""
     return Table(np.linspace(0, 2, 5).tolist(), found.controls[:, 0].tolist(), "linear")
+
+
+def measured(noise: float = 0.0, friction: float = 0.0, moving: float = 1.0) -> tuple[Any, Plain]:
+    """Base parameters of a planar arm, and a motion of it with its forces."""
+    name, rng = "planar-2r", np.random.default_rng(11)
+    part = derive(Definition.read(catalogue.load(name)))
+    spec = TreeSpec.read({"name": "t", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": name}]})
+    model, base = couple(spec, {"x": part}), base_parameters(regressor(spec, {"x": part}))
+    data = {key: rng.uniform(-1, 1, (60, 2)) * moving for key in ("q", "qd", "qdd")}
+    tau = np.asarray(evaluate(model, "inverse_dynamics", **data)["inverse_dynamics"])
+    tau = tau + friction * np.sign(data["qd"]) + noise * rng.normal(size=tau.shape) * tau.std(axis=0)
+    return base, data | {"tau": tau}
+
+
+@pytest.mark.parametrize(
+    ("given", "limit", "expected"),
+    [
+        ({}, 0.1, True),
+        ({"noise": 0.01}, 0.1, True),
+        ({"noise": 0.01}, 1e-3, False),
+        ({"noise": 1.0}, 0.1, False),
+        ({"friction": 30.0}, 0.1, False),
+        ({"moving": 0.0}, 0.1, None),
+    ],
+)
+def test_identifications_are_judged(given: Plain, limit: float, expected: bool | None) -> None:
+    """By what the parameters do not explain, and what they leave uncertain; not where the motion does not show them."""
+    base, data = measured(**given)
+    found = identify(base, **data, error_limit=limit)
+    assert found.is_right is expected, (found, found.checks)
+    assert [check.name for check in found.checks] == ["normal equations", "explained force", "deviations"]
+
+
+def test_normal_equations_are_those_of_the_weighted_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solver that is a little off: explained to a percent still, and no least squares."""
+    base, data = measured(noise=0.01)
+    solve = fit._solved
+    monkeypatch.setattr(fit, "_solved", lambda *given: solve(*given) * (1 + 1e-5))
+    found = identify(base, **data)
+    assert {check.name: check.holds for check in found.checks}["normal equations"] is False
+    assert found.is_right is False
+
+
+def test_equilibria_are_judged_by_other_equations() -> None:
+    model = shipped("double-pendulum")
+    found = equilibria(model)
+    assert found.is_right
+    assert len(found.checks) == len(found.found) == 4
+    wrong = Equilibrium(np.array([0.1, 0.0]), np.zeros((0, 2)), linearise(model, [0.1, 0.0]))
+    assert wrong.check().holds is False
+    assert replace(found, found=(*found.found, wrong)).is_right is False
+    assert equilibria(model_of(oscillator(axis=[0, 0, 1], placement={}), (0, 0, -9.81))).is_right is None
+
+
+def test_loop_states_are_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = four_bar((0, -9.81, 0))
+    assert loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0]).is_right
+    # hanging at rest, with no accelerations but rounding
+    low = equilibria(model).found[0].q
+    assert loop_state(model, low).is_right
+    apart = loop_state(model, [0.7, 0.2, 1.2], parameters={"x.l1": 50})
+    assert (bool(apart.message), apart.is_right) == (True, None)
+    monkeypatch.setattr(loops, "least_multipliers", lambda s, qdd: 1.001 * least_multipliers(s, qdd))
+    wrong = loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0])
+    assert {check.name for check in wrong.checks if not check.holds} == {"equations of motion"}
+    assert wrong.is_right is False
