@@ -64,14 +64,14 @@ def is_usable(pivots: Array) -> NDArray[np.bool_]:
     return pivots.min(axis=1, initial=1) > least
 
 
-def solved_anew(found: Mapping[str, Array], name: str, look: Look) -> dict[str, Array]:
+def solved_anew(found: dict[str, Array], name: str, look: Look) -> dict[str, Array]:
     """The outputs of formulas of accelerations with those states solved by numbers whose formulas leave the range of
     numbers. A derivative is not computed anew: it has no result there.
     """
     inertias = found["inertias"]
     # one look at all of them; the comparison is false for what is not a number
     if not inertias.size or (inertias.min() >= LEAST and inertias.max() <= MOST):
-        return dict(found)
+        return found
     inside = (inertias >= LEAST) & (inertias <= MOST)
     states = np.flatnonzero(~inside.all(axis=1))
     result = {key: np.array(x) for key, x in found.items()}
@@ -87,13 +87,11 @@ def solved_anew(found: Mapping[str, Array], name: str, look: Look) -> dict[str, 
 
 def doubts(result: Array, pivots: Array, look: Look) -> dict[int, Doubt]:
     """What is to be said of accelerations or their derivatives (N, n) by state."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        failed = np.zeros(0, dtype=np.int64)
-        if not np.isfinite(result.sum()):
-            failed = np.flatnonzero(~np.isfinite(result).all(axis=1))
-    near = np.zeros(0, dtype=np.int64)
-    if pivots.size and not pivots.min() > SUSPICIOUS:
-        near = np.flatnonzero(~(pivots > SUSPICIOUS).all(axis=1))
+    # two looks at all states, which are all that is needed where nothing is wrong
+    if (not pivots.size or pivots.min() > SUSPICIOUS) and np.isfinite(result).all():
+        return {}
+    failed = np.flatnonzero(~np.isfinite(result).all(axis=1))
+    near = np.flatnonzero(~(pivots > SUSPICIOUS).all(axis=1))
     states = np.union1d(failed, near)
     if not len(states):
         return {}

@@ -194,11 +194,11 @@ def _computed(
 
 def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
     """Outputs of the model at some of the states."""
-    # symbols without a value, which no result depends on, are not numbers
-    known = {s.name: np.nan for s in model.program.symbols} | dict(values)
 
     def look(states: NDArray[np.int64], names: list[str]) -> Mapping[str, Array]:
         """The outputs there."""
+        # symbols without a value, which no result depends on, are not numbers
+        known = {s.name: np.nan for s in model.program.symbols} | dict(values)
         some = {name: x[states] if np.shape(x) == (count,) else x for name, x in known.items()}
         return interpreted(model.program, some, names, len(states))
 

@@ -221,8 +221,10 @@ def test_cost_gradients_state_their_error() -> None:
     coarse, fine = gradient(1), gradient(40)
     assert exact.is_right
     assert coarse.is_right is False
+    assert "'steps'" in coarse.message
     assert coarse.cost > 20 * exact.cost
     assert fine.is_right
+    assert not fine.message
     stated = {check.name: check.relative for check in fine.checks}
     assert stated["cost"] == pytest.approx(abs(fine.cost / exact.cost - 1), rel=0.2)
     off = np.abs(fine.controls - exact.controls).max() / np.abs(exact.controls).max()
@@ -245,6 +247,7 @@ def test_optimal_controls_are_judged_along_accurate_motions() -> None:
     problem |= {"end": End([0.5], [0])}
     coarse, fine = optimal_control(model, **problem), optimal_control(model, **problem, steps=8)
     assert (coarse.status, coarse.is_right) == ("optimal", False)
+    assert "'steps'" in coarse.message
     assert (fine.status, fine.is_right) == ("optimal", True), fine.checks
     assert {check.name for check in fine.checks} == {"end", "stationarity", "cost", "q", "qd"}
     # the controls of the coarse search miss the end by what its check states

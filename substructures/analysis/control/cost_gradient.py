@@ -31,6 +31,7 @@ FAILED = (
     "the motion is not finite from here on: take more 'steps', smaller controls or a shorter 'horizon', "
     "and check that the metric is positive definite"
 )
+COARSE = "cost, motion or gradient are not as accurate as 'error_limit' asks for: take more 'steps'"
 ROUGH = (
     "the motion is finite, its gradient is not: a cost or load is not smooth where the motion passes (a square root of "
     "zero, a spring of no length); change the cost, the load or the state at the start"
@@ -43,7 +44,8 @@ class CostGradient:
     ``q`` and dJ/dq' ``qd`` (n,); dJ/dp ``parameters`` by name. ``trajectory``: the motion with the series ``controls``,
     ``costates`` and ``hamiltonian``.
 
-    ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change.
+    ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change,
+    also where they are not accurate.
     """
 
     cost: float
@@ -148,7 +150,9 @@ def _gradient(
     if motion.status == "failed":
         return replace(result, status="failed", message=motion.message)
     finite = all(np.isfinite(x).all() for x in (result.controls, result.q, result.qd, slope.parameters))
-    return result if finite else replace(result, status="failed", message=ROUGH)
+    if not finite:
+        return replace(result, status="failed", message=ROUGH)
+    return result if result.is_right else replace(result, message=COARSE)
 
 
 def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:

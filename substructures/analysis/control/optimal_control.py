@@ -34,10 +34,11 @@ from substructures.analysis.control.shooting import Rollout
 from substructures.analysis.control.step_error import motion_checks
 from substructures.analysis.given import StateArray
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.verdict import About, Check
+from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.tree.model import Model
 
+STEPS = "the motion is not as accurate as 'error_limit' asks for: take more 'steps' or 'intervals'"
 #: called with the number of an iteration, the cost and the violation
 IterationReport = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
@@ -185,14 +186,15 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
     still: About = ("stationarity", "zero", "the gradient of the Lagrangian, relative to that of the cost", "1")
     end = float(motion.t[-1])
     necessary = Check.at(met, violation, end, 1.0, limit), Check.at(still, stationarity, end, 1.0, STATIONARY)
-    checks = (*necessary, *motion_checks(search.shooting, run, search.first, error_limit))
+    accuracy = motion_checks(search.shooting, run, search.first, error_limit)
+    advice = ADVICE[status] or ("" if verdict(accuracy) else STEPS)
     return Optimum(
         status,
-        ADVICE[status],
+        advice,
         cost,
         tuple(search.problem.controls),
         run.controls,
-        replace(motion, checks=checks),
+        replace(motion, checks=(*necessary, *accuracy)),
         stationarity,
         violation,
         drift,
