@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from substructures.analysis import drawings
-from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory
+from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.stability.root_locus import RootLocus
+from substructures.analysis.verdict import Check
 from substructures.pictures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
 
 GRID = np.linspace(0.0, 1.0, 11)

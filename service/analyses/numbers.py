@@ -93,7 +93,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = _without(given, "q", "events", "fixed_step", "series", "drift_limit")
+    rest = _without(given, "q", "events", "fixed_step", "series")
     return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 
@@ -133,7 +133,9 @@ def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> A
 
 def _identification(source: Source, read: IdentificationRequest, _: ProgressReport) -> Any:
     model = source.model if read.known else None
-    return identify(base_of(source, read.drives), **_motion(read), tau=read.tau, model=model)
+    return identify(
+        base_of(source, read.drives), **_motion(read), tau=read.tau, model=model, error_limit=read.error_limit
+    )
 
 
 def _motion(read: ExcitationRequest) -> dict[str, Any]:

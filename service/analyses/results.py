@@ -10,9 +10,13 @@ import numpy as np
 import orjson
 
 from substructures.analysis.closed.loops import LoopState
+from substructures.analysis.control.cost_gradient import CostGradient
+from substructures.analysis.control.optimal_control import Optimum
 from substructures.analysis.drawings import draw_root_locus, draw_trajectory
+from substructures.analysis.identification.fit import Identification
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
+from substructures.analysis.stability.equilibria import Equilibria
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.vibrations import Mode
@@ -29,6 +33,10 @@ DRAWN = (*PLAIN, SVG)
 #: properties that are written beside the fields, each with the field that it is written before
 PROPERTIES: dict[type, dict[str, str]] = {
     Linearisation: {"is_equilibrium": "modes"},
+    Identification: {"is_right": "checks"},
+    Equilibria: {"is_right": "message", "checks": "message"},
+    CostGradient: {"is_right": "trajectory", "checks": "trajectory"},
+    Optimum: {"is_right": "trajectory", "checks": "trajectory"},
     Mode: {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
 }
 
@@ -106,7 +114,15 @@ def _loop_state(found: LoopState) -> dict[str, Any]:
     state = {k: getattr(found.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
     mobility = {**vars(found.mobility), "redundant": found.mobility.redundant}
     forces = {"qdd": found.qdd, "multipliers": found.multipliers, "actuation": found.actuation}
-    return state | forces | {"mobility": mobility, "reactions": found.reactions, "message": found.message}
+    return (
+        state
+        | forces
+        | {"mobility": mobility, "reactions": found.reactions, "message": found.message}
+        | {
+            "is_right": found.is_right,
+            "checks": found.checks,
+        }
+    )
 
 
 def _pairs(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

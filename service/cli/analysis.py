@@ -32,6 +32,8 @@ from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
 
 SUFFIXES = (".yaml", ".yml", ".json")
+#: what is said of results that are not known to be right
+VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
 
 
 def _add_simulate(command: argparse.ArgumentParser) -> None:
@@ -126,29 +128,40 @@ def _media(out: Path | None, name: str) -> str:
 
 def _tell(told: Mapping[str, Any], data: bytes, out: Path | None) -> int:
     """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
+    is_motion = "checks" in told and "t" in told
     if out is not None:
         out.write_bytes(data)
         print(f"{out}: {len(data)} bytes")
-    if out is not None or "checks" in told:
+    if out is not None or is_motion:
         _summary(told)
     else:
         print(data.decode())
-    return int(told.get("status") == "failed" or not told.get("is_right", True))
+    return int(told.get("status") == "failed" or told.get("is_right") is False)
 
 
 def _summary(told: Mapping[str, Any]) -> None:
     words = [str(told[key]) for key in ("status", "message") if told.get(key)]
-    print(*words, *([] if told.get("is_right", True) else ["WRONG: a necessary condition is violated"]))
+    print(*words, *([VERDICTS[told["is_right"]]] if told.get("is_right", True) is not True else []))
     for check in told.get("checks", []):
-        verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
-        drift = f"{check['relative']:.2g} (limit {check['limit']:.2g})"
-        print(f"{check['name']}: {check['rule']}, {verdict}, {drift}: {check['reason']}")
+        print(f"{check['name']}: {check['rule']}, {_found(check)}: {check['reason']}")
     tell_warnings(told)
     for event in told.get("events", []):
         print(f"{event['name']} at t = {event['t']:.9g} s")
     if "t" in told and "q" in told:
         last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
         print(f"t = {told['t'][-1]:.9g} s: {last}")
+
+
+def _found(check: Mapping[str, Any]) -> str:
+    """What became of a check."""
+    if check["holds"] is None:
+        return "not made"
+    verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
+    return f"{verdict}, {_short(check['relative'])} (limit {_short(check['limit'])})"
+
+
+def _short(number: float | None) -> str:
+    return "not finite" if number is None else f"{number:.2g}"
 
 
 def is_document(tree: str) -> bool:

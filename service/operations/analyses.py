@@ -5,6 +5,8 @@ from __future__ import annotations
 from time import perf_counter
 from typing import Any
 
+import orjson
+
 from service.analyses.formulas import Made, Options, made, velocity_equations_of
 from service.analyses.numbers import ANALYSES
 from service.analyses.printing import Style, made_text
@@ -62,7 +64,7 @@ def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answ
     headers = {"Content-Type": media}
     motion = trajectory_of(result)
     if motion is not None:  # a CSV file has no place for them
-        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": str(motion.is_right).lower()}
+        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": orjson.dumps(motion.is_right).decode()}
     return Answer(200, written(result, media, model), headers)
 
 

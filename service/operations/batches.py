@@ -112,8 +112,8 @@ def _cut(fields: Mapping[str, Any], some: slice, count: int, above: str) -> dict
 
 
 def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    """What an answer says beside the quantities and failures: coordinates, digest, ..."""
-    return {key: value for key, value in answer.items() if key not in {*names, "failures"}}
+    """What an answer says beside the quantities and single states: coordinates, digest, ..."""
+    return {key: value for key, value in answer.items() if key not in {*names, "failures", "warnings"}}
 
 
 def as_arrow(

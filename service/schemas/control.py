@@ -12,6 +12,8 @@ from service.schemas.parts import RequestPart
 from substructures.analysis.control import nonlinear_program, problem
 from substructures.documents import DocumentPart
 
+LIMIT = "largest relative error by the size of steps in a right result, by a second run with steps half as long"
+
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -46,11 +48,16 @@ class ControlProblem(DocumentPart):
     parameters: dict[str, Finite] = Field({}, description="instead of their defaults")
 
 
+#: of requests with a second run
+ErrorLimit = Annotated[float, Field(gt=0, allow_inf_nan=False, description=LIMIT)]
+
+
 class GradientRequest(ControlProblem):
     """A problem with controls."""
 
     values: dict[str, Any] = Field({}, description="by control: one number, or one for each node; default: zero")
     vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
+    error_limit: ErrorLimit = problem.ERROR_LIMIT
 
 
 class End(RequestPart):
@@ -73,3 +80,4 @@ class OptimalControlRequest(ControlProblem):
     segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
     iterations: int = Field(500, ge=1, le=100_000)
     tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")
+    error_limit: ErrorLimit = problem.ERROR_LIMIT

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from substructures.analysis.identification.fit import ERROR_LIMIT
 from substructures.documents import DocumentPart
 
 
@@ -34,3 +35,9 @@ class IdentificationRequest(ExcitationRequest):
 
     tau: Any = Field(description="forces of the actuators, as q; N m, N")
     known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
+    error_limit: float = Field(
+        ERROR_LIMIT,
+        gt=0,
+        allow_inf_nan=False,
+        description="part of the force of a joint that may be unexplained or uncertain in a right result",
+    )

@@ -129,7 +129,9 @@ def _faults(error: ValidationError, data: Mapping[str, Any]) -> list[Fault]:
 
 
 class EvaluationResult(BaseModel):
-    """Arrays by quantity, states first; a state without a finite result is null and listed in failures."""
+    """Arrays by quantity, states first; a state without a finite result is null and listed in failures, one whose
+    accelerations are doubtful, as the metric is nearly singular there, in warnings.
+    """
 
     model_config = ConfigDict(extra="allow")
 
@@ -171,7 +173,8 @@ class AnalysisResult(BaseModel):
 
     A trajectory has ``coordinates``, ``t`` (K,) in s, ``q``, ``qd`` (K, n), ``series`` by name, and ``checks``: each
     with ``name``, ``rule``, ``reason``, ``unit``, ``worst``, ``scale``, ``limit``, ``holds`` and ``time``, when it was
-    violated first; ``is_right`` is false when one is violated. Numbers that are not finite are null.
+    violated first. ``is_right`` is true when at least one check was made and all hold, false when one is violated, null
+    when nothing could be checked or the computation did not finish. Numbers that are not finite are null.
     """
 
     model_config = ConfigDict(extra="allow")

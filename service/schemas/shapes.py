@@ -34,6 +34,8 @@ class Warned(BaseModel):
     pointer: str = Field(description="RFC 6901 pointer into the document, or into the request of an evaluation")
     code: str
     message: str
+    state: int | None = Field(None, description="number of the state that it is about, from 0")
+    quantity: str | None = None
 
 
 class Shape(BaseModel):

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.stability.root_locus import RootLocus
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.pictures.plot import Line, Panel, plot
 
@@ -32,11 +33,14 @@ def draw_trajectory(motion: Trajectory, joints: str) -> str:
 
 
 def _title(motion: Trajectory) -> str:
-    wrong = [check for check in motion.checks if not check.holds]
+    made = [check for check in motion.checks if check.made]
+    wrong = [check for check in made if not check.holds]
     if wrong:
         first = min(wrong, key=lambda check: check.time or 0.0)
         return f"{motion.status}, WRONG: {first.name} violated at t = {first.time:.6g} s"
-    return f"{motion.status}: all {len(motion.checks)} checks hold" if motion.checks else motion.status
+    if motion.is_right is None:
+        return f"{motion.status}, not known to be right"
+    return f"{motion.status}: all {len(made)} checks hold"
 
 
 def _coordinates(motion: Trajectory, joints: str, kind: str) -> Iterator[Line]:

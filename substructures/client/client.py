@@ -87,7 +87,8 @@ class Client(JobCaller):
     def analysis(
         self, tree: str, analysis: str, request: Any, media_type: str = "application/json"
     ) -> tuple[bytes, dict[str, Any]]:
-        """The answer to a request for numbers in one of its media types, and ``status`` and ``is_right`` of a motion.
+        """The answer to a request for numbers in one of its media types, and ``status`` of a motion and
+        ``is_right`` (None where that is not known).
 
         Waits where it takes so long that it becomes a job.
         """
@@ -95,8 +96,9 @@ class Client(JobCaller):
         path, headers = f"/v1/trees/{step(tree)}/{analysis}", {"Accept": media_type}
         answer = self.request("POST", path, plain, headers=headers)
         if answer.status_code != 202:
-            right = answer.headers.get("trajectory-right", "true") == "true"
-            return answer.content, {"status": answer.headers.get("trajectory-status", "finished"), "is_right": right}
+            told = {"status": answer.headers.get("trajectory-status", "finished")}
+            right = answer.headers.get("trajectory-right")
+            return answer.content, told | ({} if right is None else {"is_right": json.loads(right)})
         item = self._item_of_job(answer.json()["id"])
         return self.request("GET", item["files"][0]["href"]).content, item["result"]
 

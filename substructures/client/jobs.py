@@ -189,12 +189,17 @@ def joined_parts(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         for name, value in columns[0].items()
         if isinstance(value, np.ndarray)
     }
-    failures = [
-        {**failure, "state": failure["state"] + part["range"][0]} for part in parts for failure in part["failures"]
-    ]
-    warnings: list[Any] = []
-    for part in parts:
-        warnings += [warning for warning in part.get("warnings", ()) if warning not in warnings]
+    told = {name: _noted(parts, name) for name in ("failures", "warnings")}
     whole = nested({**columns[0], **arrays})
-    told = {"failures": failures, "warnings": warnings}
     return {**whole, "count": sum(part["count"] for part in parts), **told}
+
+
+def _noted(parts: Sequence[Mapping[str, Any]], name: str) -> list[dict[str, Any]]:
+    """What the parts say about their states, with the places of the states in the whole; the same is said once."""
+    told = []
+    for part in parts:
+        for note in part.get(name, ()):
+            state = note["state"] + part["range"][0] if "state" in note else None
+            placed = {**note, **({} if state is None else {"state": state})}
+            told.append({**placed, "pointer": f"/q/{state}"} if state is not None and "pointer" in note else placed)
+    return [note for i, note in enumerate(told) if "state" in note or note not in told[:i]]

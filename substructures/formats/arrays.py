@@ -19,6 +19,8 @@ from zlib_ng.zlib_ng import crc32
 from substructures.errors import InvalidDocument, TooLarge
 
 MEDIA_TYPE = "application/x-npz"
+#: what an answer says about states, and the fields that it has beside state, quantity, code and message
+NOTES: dict[str, tuple[str, ...]] = {"failures": (), "warnings": ("pointer",)}
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 MAX_HEADER = 10_000  # bytes
@@ -199,24 +201,26 @@ def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def as_npz(answer: Mapping[str, Any]) -> Npz:
-    """The answer as npz: arrays by name, nested names joined by dots, ``failures``, ``warnings`` as parallel arrays."""
-    rows = answer["failures"]
-    failures = {"state": np.array([row["state"] for row in rows], np.int64)}
-    failures |= _texts(rows, ("quantity", "code", "message"))
-    warnings = _texts(answer.get("warnings", ()), ("pointer", "code", "message"))
-    return write_npz(flat({**answer, "failures": failures, "warnings": warnings}))
+    """The answer as npz: arrays by name, nested ones joined by dots, ``failures`` and ``warnings`` parallel arrays."""
+    told = {name: _parallel(answer.get(name, ()), also) for name, also in NOTES.items()}
+    return write_npz(flat({**answer, **told}))
 
 
-def _texts(rows: Sequence[Mapping[str, Any]], keys: Sequence[str]) -> dict[str, np.ndarray[Any, Any]]:
-    """Members of rows as parallel arrays."""
-    return {key: np.array([row[key] for row in rows], np.str_) for key in keys}
+def _parallel(rows: Sequence[Mapping[str, Any]], also: tuple[str, ...]) -> dict[str, np.ndarray[Any, Any]]:
+    """Rows of the same fields as arrays; state -1 and no text where a row does not have them."""
+    arrays: dict[str, np.ndarray[Any, Any]] = {"state": np.array([row.get("state", -1) for row in rows], np.int64)}
+    fields = ("quantity", "code", "message", *also)
+    return arrays | {key: np.array([row.get(key, "") for row in rows], np.str_) for key in fields}
 
 
 def as_answer(arrays: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
     """The inverse of :func:`as_npz`: the answer as JSON would have it, with arrays for the quantities."""
     result = nested({name: a if a.dtype.kind == "f" else a.tolist() for name, a in arrays.items()})
-    return {**result, **{name: _rows(result.get(name, {})) for name in ("failures", "warnings")}}
+    told = {name: _rows(result[name]) for name in NOTES if name in result}
+    return {**result, **told}
 
 
 def _rows(columns: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
-    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    """The inverse of :func:`_parallel`."""
+    rows = (dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True))
+    return [{key: x for key, x in row.items() if x not in (-1, "")} for row in rows]

@@ -29,7 +29,8 @@ except ImportError:
 
 MEDIA_TYPE = "application/vnd.apache.arrow.stream"
 END = b"\xff\xff\xff\xff\x00\x00\x00\x00"  # the end-of-stream marker
-FAILURES = "failures"
+#: columns of texts: what is to be said of a state, as JSON
+FAILURES, WARNINGS = "failures", "warnings"
 # places in the flatbuffers of the format's Message.fbs: Message.header, RecordBatch.compression
 _HEADER, _COMPRESSION = 2, 3
 
@@ -151,11 +152,11 @@ def _width(pointer: str, column: Any) -> int:
 
 @dataclass(frozen=True, slots=True)
 class ArrowTable:
-    """Columns (N, ...); ``missing``: True where a column has no value; ``notes``: texts by state, if any."""
+    """Columns (N, ...); ``missing``: True where a column has no value; ``notes``: columns of texts by state, if any."""
 
     columns: Mapping[str, Array]
     missing: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
-    notes: Mapping[int, str] | None = None
+    notes: Mapping[str, Mapping[int, str]] = field(default_factory=dict)
 
     @property
     def count(self) -> int:
@@ -164,18 +165,26 @@ class ArrowTable:
 
 
 def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> ArrowTable:
-    """The named parts of the answer of an evaluation with a leading axis, with a note for every state that failed."""
+    """The named parts of the answer of an evaluation with a leading axis, with notes for every state that failed and
+    every one that is doubtful.
+    """
     columns, count = flat({name: answer[name] for name in names}), answer["count"]
-    failures: dict[int, list[dict[str, Any]]] = {}
     missing: dict[str, NDArray[np.bool_]] = {}
-    for failure in answer["failures"]:
+    for failure in answer[FAILURES]:
         state, quantity = failure["state"], failure["quantity"]
-        failures.setdefault(state, []).append({key: value for key, value in failure.items() if key != "state"})
         for name in columns:
             if name == quantity or name.startswith(f"{quantity}."):
                 missing.setdefault(name, np.zeros(count, np.bool_))[state] = True
-    notes = {state: orjson.dumps(some).decode() for state, some in failures.items()}
-    return ArrowTable(columns, missing, notes)
+    return ArrowTable(columns, missing, {kind: _notes(answer[kind]) for kind in (FAILURES, WARNINGS)})
+
+
+def _notes(rows: Iterable[Mapping[str, Any]]) -> dict[int, str]:
+    """Rows about states as one text for each state; a row that is about none is about the first."""
+    found: dict[int, list[dict[str, Any]]] = {}
+    for row in rows:
+        about = {key: value for key, value in row.items() if key not in ("state", "pointer")}
+        found.setdefault(row.get("state", 0), []).append(about)
+    return {state: orjson.dumps(some).decode() for state, some in found.items()}
 
 
 def write_tables(tables: Iterable[ArrowTable], metadata: Mapping[str, Any]) -> Iterator[memoryview | bytes]:
@@ -187,11 +196,10 @@ def write_tables(tables: Iterable[ArrowTable], metadata: Mapping[str, Any]) -> I
     schema = None
     for table in tables:
         arrays = [_to_arrow(values, table.missing.get(name)) for name, values in table.columns.items()]
-        if table.notes is not None:
-            arrays.append(_texts(table.notes, table.count))
+        arrays += [_texts(notes, table.count) for notes in table.notes.values()]
         if schema is None:
             fields = [_field_of(name, values) for name, values in table.columns.items()]
-            fields += [] if table.notes is None else [pa.field(FAILURES, pa.string())]
+            fields += [pa.field(kind, pa.string()) for kind in table.notes]
             texts = {key: v if isinstance(v, str) else orjson.dumps(v) for key, v in metadata.items()}
             schema = pa.schema(fields, metadata=texts)
             yield memoryview(schema.serialize())
@@ -200,14 +208,16 @@ def write_tables(tables: Iterable[ArrowTable], metadata: Mapping[str, Any]) -> I
 
 
 def read_tables(file: io.BufferedIOBase) -> Iterator[dict[str, Any]]:
-    """The batches of a stream from :func:`write_tables`: arrays (N, ...), and ``failures`` with places in the batch."""
+    """The batches of a stream from :func:`write_tables`: arrays (N, ...), and ``failures`` and ``warnings`` with places
+    in the batch.
+    """
     for batch in pa.ipc.open_stream(file):
         result: dict[str, Any] = {"count": len(batch)}
         for described in batch.schema:
             values = batch.column(described.name)
-            if described.name == FAILURES:
+            if described.name in (FAILURES, WARNINGS):
                 notes = {i: orjson.loads(text) for i, text in enumerate(values.to_pylist()) if text is not None}
-                result[FAILURES] = [{"state": i, **each} for i, note in notes.items() for each in note]
+                result[described.name] = [{"state": i, **each} for i, note in notes.items() for each in note]
             else:
                 result[described.name] = _from_arrow(values, orjson.loads(described.metadata[b"shape"]))
         yield result

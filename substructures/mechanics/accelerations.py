@@ -21,13 +21,24 @@ MET_RATE = 1e-6
 
 def cholesky_solve(g: Array, f: Array) -> Array:
     """x with g x = f for (N, n, n) and (N, n), by g = L L^T; NaN in states where g is not positive definite."""
+    return definite_solve(g, f)[0]
+
+
+def definite_solve(g: Array, f: Array) -> tuple[Array, Array]:
+    """x (N, n) with g x = f for (N, n, n) and (N, n), by g = L L^T, and the pivots L_kk^2 / g_kk (N, n) in (0, 1].
+
+    NaN in states where g is not positive definite. Entries of L are as large as the roots of those of g: no product
+    leaves the range of numbers before g does.
+    """
     try:
         L = np.linalg.cholesky(g)
     except np.linalg.LinAlgError:
         half = len(f) // 2
         if not half:
-            return np.full_like(f, np.nan)
-        return np.concatenate([cholesky_solve(g[:half], f[:half]), cholesky_solve(g[half:], f[half:])])
+            return np.full_like(f, np.nan), np.full_like(f, np.nan)
+        parts = definite_solve(g[:half], f[:half]), definite_solve(g[half:], f[half:])
+        x, pivots = (np.concatenate(both) for both in zip(*parts, strict=True))
+        return x, pivots
     # L y = f forwards, L^T x = y backwards, in all states at once
     x = np.array(f, dtype=np.float64)
     n = x.shape[1]
@@ -35,11 +46,36 @@ def cholesky_solve(g: Array, f: Array) -> Array:
         x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k, :k], x[:, :k])) / L[:, k, k]
     for k in reversed(range(n)):
         x[:, k] = (x[:, k] - np.einsum("ni,ni->n", L[:, k + 1 :, k], x[:, k + 1 :])) / L[:, k, k]
-    return x
+    return x, np.einsum("nkk->nk", L) ** 2 / np.einsum("nkk->nk", g)
 
 
-def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callable[[Array], Array]) -> Array:
+def condition(g: Array) -> Array:
+    """Condition number (N,) of g (N, n, n) after its rows and columns are scaled to a unit diagonal.
+
+    That of h = S g S, S = diag(g_kk)^-1/2, the largest eigenvalue over the smallest: whatever the units of the
+    coordinates, about the least that scaling can reach (A. van der Sluis, Numerische Mathematik 14, 1969), and the
+    relative error of g^-1 f is about that times the unit of rounding (N. J. Higham, Accuracy and Stability of Numerical
+    Algorithms, 2002, section 10.1). Infinite where g is not positive definite to rounding, NaN where it is not finite.
+    """
+    diagonal = np.einsum("nkk->nk", g)
+    result = np.full(len(g), np.nan)
+    finite = np.isfinite(g).all(axis=(1, 2))
+    result[finite] = np.inf
+    good = np.flatnonzero(finite & (diagonal > 0).all(axis=1))
+    if g.shape[1] and len(good):
+        s = 1 / np.sqrt(diagonal[good])
+        sizes = np.linalg.eigvalsh(s[:, :, None] * g[good] * s[:, None, :])
+        with np.errstate(divide="ignore"):
+            result[good] = np.where(sizes[:, 0] > 0, sizes[:, -1] / sizes[:, 0], np.inf)
+    return result if g.shape[1] else np.ones(len(g))
+
+
+def closed_solve(
+    found: Mapping[str, Array], q: Array, qd: Array, second: Callable[[Array], Array]
+) -> tuple[Array, Array]:
     """q'' (N, n) with g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G'q' = 0; the rows of G may depend on each other.
+
+    The second result (N,): the condition of N^T g N below times the largest over the smallest singular value of G.
 
     ``found``: metric, bias, forces and CLOSED at states (N, n); ``second``: G'q' for other velocities (N, n). NaN where
     a state does not meet the closures (also their velocities), where they lose rank, so that the motion is not
@@ -52,6 +88,7 @@ def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callab
     G, c = found["closure.jacobian"], found["closure.acceleration"]
     f = found["forces"] - found["bias"]
     result = np.full(np.broadcast_shapes(q.shape, qd.shape, f.shape), np.nan)
+    conditions = np.full(len(result), np.nan)
     # G = U diag(sizes) V^T; the rows of V^T beyond the rank span the velocities that G leaves free
     left, sizes, rows = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
     ranks = (sizes > RANK * sizes[:, :1]).sum(axis=1)
@@ -74,6 +111,8 @@ def closed_solve(found: Mapping[str, Array], q: Array, qd: Array, second: Callab
         solved = np.einsum("nka,nk->na", V, np.einsum("njk,nj->nk", U, c[some]) / sizes[some, :rank])
         # N^T g N z = N^T (f + g G^+ c),   q'' = N z - G^+ c
         right = f[some] + np.einsum("nab,nb->na", found["metric"][some], solved)
-        z = cholesky_solve(N.swapaxes(1, 2) @ found["metric"][some] @ N, np.einsum("nak,na->nk", N, right))
+        reduced = N.swapaxes(1, 2) @ found["metric"][some] @ N
+        z = cholesky_solve(reduced, np.einsum("nak,na->nk", N, right))
         result[some] = np.einsum("nak,nk->na", N, z) - solved
-    return result
+        conditions[some] = condition(reduced) * (sizes[some, 0] / sizes[some, rank - 1] if rank else 1.0)
+    return result, conditions

@@ -84,28 +84,28 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
 
 
 def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
-    """q''^a from g q'' = Q - Gamma q' q', by g = L^T D L without exchange of rows: one program with two outputs.
+    """q''^a from g q'' = Q - Gamma q' q', by g = L^T D L without exchange of rows: one program with three outputs.
 
     ``forward_dynamics`` (n,) [rad/s^2, m/s^2]; ``pivots`` (n,): D_k / |g_kk|, between 0 (singular metric) and 1, all
-    positive where the metric is positive definite. In a state with a singular metric the division by zero gives
-    infinities and NaN. Raises TooLarge for more than ``max_nodes`` operations, SingularMetric where no state has
-    accelerations, InvalidDocument for closures.
+    positive where the metric is positive definite; ``inertias`` (n,): |g_kk|, whose products must stay within the range
+    of numbers. In a state with a singular metric the division by zero gives infinities and NaN. Raises TooLarge for
+    more than ``max_nodes`` operations, SingularMetric where no state has accelerations, InvalidDocument for closures.
     """
     require_open(model.closures, BY_STATE)
     r = Workspace(model)
-    factors, pivots = _factors(r, max_nodes)
-    return r.program({FD: vector(_accelerations(r, factors)), "pivots": vector(pivots)})
+    factors, told = _factors(r, max_nodes)
+    return r.program({FD: vector(_accelerations(r, factors)), **told})
 
 
 def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Program:
-    """Forward dynamics and its directional derivative: ``forward_dynamics``, ``pivots``, both as above, and
+    """Forward dynamics and its directional derivative: ``forward_dynamics``, ``pivots``, ``inertias`` as above, and
 
     ``forward_dynamics_derivative`` (n,): g d(q'') = -dID at q'' = FD with dq'' = 0, along the symbols ``d.*`` of
     coordinates, velocities and inputs. Raises as forward_dynamics.
     """
     require_open(model.closures, "use linearisations")
     r = Workspace(model)
-    factors, pivots = _factors(r, max_nodes)
+    factors, told = _factors(r, max_nodes)
     found = _accelerations(r, factors)
     # dID at the symbols q'' with dq'' = 0, then at q'' = FD
     slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
@@ -113,11 +113,11 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     at_found = replay(slopes, r.graph, bindings)["slopes"].entries
     # g d(q'') = -dID
     result = factors.solve([-at_found.get((a,), r.graph.zero) for a in range(r.n)])
-    return r.program({FD: vector(found), "pivots": vector(pivots), f"{FD}_derivative": vector(result)})
+    return r.program({FD: vector(found), **told, f"{FD}_derivative": vector(result)})
 
 
-def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
-    """L and D of the metric, and D_k / |g_kk|."""
+def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], dict[str, Formulas]]:
+    """L and D of the metric, and the outputs ``pivots`` and ``inertias``."""
     size = factor_operations(r.n, r.model.program.outputs["metric"].index)
     if size > max_nodes:
         raise TooLarge("forward dynamics (in operations)", size, max_nodes)
@@ -127,7 +127,9 @@ def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], list[Expr]]:
     except ZeroDivisionError:
         raise SingularMetric.at("", "singular-metric", SINGULAR) from None
     # D_k / |g_kk|: 1 for a coordinate alone, 0 where others leave it no inertia
-    return factors, [pivot / r.graph.function("abs", metric[k, k]) for k, pivot in enumerate(factors.pivots)]
+    sizes = [r.graph.function("abs", metric[k, k]) for k in range(r.n)]
+    pivots = [pivot / size for pivot, size in zip(factors.pivots, sizes, strict=True)]
+    return factors, {"pivots": vector(pivots), "inertias": vector(sizes)}
 
 
 def _accelerations(r: Workspace, factors: Factors[Expr]) -> list[Expr]:

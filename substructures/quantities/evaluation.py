@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
-from substructures.mechanics.accelerations import CLOSED, cholesky_solve, closed_solve
+from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
+from substructures.quantities.conditioning import Doubt, Look, closed_doubts, doubts, is_usable, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
-from substructures.quantities.derivatives import FD, SINGULAR
+from substructures.quantities.derivatives import FD
 from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.result import Evaluation, Failure, ParameterColumns, failures_of, without_axis
 from substructures.quantities.states import (
@@ -28,6 +29,7 @@ from substructures.quantities.states import (
     require,
 )
 from substructures.quantities.table import (
+    CONDITION,
     QUANTITIES,
     REGRESSOR,
     Quantity,
@@ -65,14 +67,8 @@ _OPEN = (
     "the state does not meet the closures (also their velocities), or they lose rank there, or the metric is singular: "
     "take consistent states from loop states"
 )
-
-
-def _advice(singular: str) -> Callable[[str], str]:
-    """What to say about a quantity without a finite result; ``singular``: where it takes the inverse metric."""
-    return lambda name: singular if QUANTITIES[name].pivots else "the result is not finite"
-
-
-ADVICE, OPEN_ADVICE = _advice(SINGULAR), _advice(_OPEN)
+_ENDLESS = "the metric is singular to rounding, or not positive definite, or not finite: it has no condition number"
+_NOT_FINITE = "the result is not finite: numbers overflow, or a formula divides by zero in this state"
 
 #: outputs of a program for (program, values, names, number of states)
 Evaluator = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
@@ -111,7 +107,8 @@ def evaluate(
     ``limit``: most states; ``evaluator``: what computes outputs of programs; ``sources``: the programs (default: formed
     when they are first needed, and kept). Raises InvalidArgument (pointers start with the name of the argument),
     MissingValue (a parameter without a value), TooLarge, and InvalidDocument for closures where they are not taken.
-    States without a finite result are no exceptions but ``failures``.
+    States without a finite result are no exceptions but ``failures``; accelerations that rounding changes noticeably,
+    as the metric is nearly singular, are ``warnings`` (``condition`` is the number that tells).
 
     >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
     >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))
@@ -127,17 +124,21 @@ def evaluate(
     values = _values(sources, given, along, states, names)
     found = _computed(sources, names, values, evaluator, states)
     results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
+    told = _told(names, found, results, _looking(model, values, states.count))
     columns = sources.columns() if REGRESSOR in found else None
     return Evaluation(
         model.coordinates,
         states.count,
         model.program.digest,
         {name: without_axis(value) for name, value in results.items()} if states.single else results,
-        failures_of(results, OPEN_ADVICE if model.closures else ADVICE),
+        failures_of(results, lambda name, state: _advice(name, told.get(name, {}).get(state))),
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
-        tuple(value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q)),
+        (
+            *value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q),
+            *_warnings(results, told, states.single),
+        ),
     )
 
 
@@ -172,32 +173,66 @@ def _computed(
     sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], evaluator: Evaluator, states: States
 ) -> dict[str, dict[str, Array]]:
     """Outputs by source."""
-    count = states.count
+    count, model = states.count, sources.model
+    look = _looking(model, values, count)
     found: dict[str, dict[str, Array]] = {}
     for source, program, names in steps(sources, quantities):
         if program is None:
-            found[source] = {name: np.full((count, sources.model.dof), np.nan) for name in names}
+            nothing = {name: np.full((count, model.dof), np.nan) for name in names}
+            found[source] = nothing | {"pivots": np.zeros((count, model.dof))}
             continue
         require(program, names, values)
-        if source == FD and sources.model.closures:
-            found[source] = _closed(sources.model, program, values, evaluator, states)
-        elif program is sources.model.program and source == FD:
-            found[source] = _solved(sources.model, values, evaluator, count)
+        if source == CONDITION:
+            found[source] = {CONDITION: _conditions(model, values, evaluator, count)}
+        elif source == FD and model.closures:
+            found[source] = _closed(model, program, values, evaluator, states)
+        elif program is model.program and source == FD:
+            found[source] = _solved(model, values, evaluator, count)
         else:
             found[source] = evaluator(program, values, names, count)
+            if "inertias" in names:
+                found[source] = solved_anew(found[source], source, look)
     return found
+
+
+def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
+    """Outputs of the model at some of the states."""
+
+    def look(states: NDArray[np.int64], names: list[str]) -> Mapping[str, Array]:
+        """The outputs there."""
+        # symbols without a value, which no result depends on, are not numbers
+        known = {s.name: np.nan for s in model.program.symbols} | dict(values)
+        some = {name: x[states] if np.shape(x) == (count,) else x for name, x in known.items()}
+        return interpreted(model.program, some, names, len(states))
+
+    return look
+
+
+def _blocks(model: Model, values: Mapping[str, Any], count: int) -> Iterator[tuple[slice, dict[str, Any], int]]:
+    """Parts of the states with their values, so many that matrices of all of them fit into memory."""
+    size = max(1, BLOCK // max(1, model.dof) ** 2)
+    for start in range(0, count, size):
+        part = slice(start, min(start + size, count))
+        some = {name: x[part] if np.shape(x) == (count,) else x for name, x in values.items()}
+        yield part, some, part.stop - start
+
+
+def _conditions(model: Model, values: Mapping[str, Any], evaluator: Evaluator, count: int) -> Array:
+    """Condition numbers of the metric (N,)."""
+    result = np.empty(count)
+    for part, some, size in _blocks(model, values, count):
+        result[part] = condition(evaluator(model.program, some, ["metric"], size)["metric"])
+    return result
 
 
 def _solved(model: Model, values: Mapping[str, Any], evaluator: Evaluator, count: int) -> dict[str, Array]:
     """Forward dynamics of a model too large for formulas of it: g q'' = Q - Gamma q' q' by numbers, in blocks."""
-    result, size = np.empty((count, model.dof)), max(1, BLOCK // model.dof**2)
-    for start in range(0, count, size):
-        part = slice(start, start + size)
-        some = {name: x[part] if np.shape(x) == (count,) else x for name, x in values.items()}
-        found = evaluator(model.program, some, list(DYNAMICS), len(result[part]))
+    result, pivots = np.empty((count, model.dof)), np.empty((count, model.dof))
+    for part, some, size in _blocks(model, values, count):
+        found = evaluator(model.program, some, list(DYNAMICS), size)
         # g_ab q''^b = Q_a - Gamma_abc q'^b q'^c
-        result[part] = cholesky_solve(found["metric"], found["forces"] - found["bias"])
-    return {FD: result, "pivots": np.ones((count, model.dof))}
+        result[part], pivots[part] = definite_solve(found["metric"], found["forces"] - found["bias"])
+    return {FD: result, "pivots": pivots}
 
 
 def _closed(
@@ -212,8 +247,8 @@ def _closed(
         given = {f"{name}'": velocities[:, a] for a, name in enumerate(model.coordinates)}
         return evaluator(program, {**values, **given}, [CLOSED[2]], states.count)[CLOSED[2]]
 
-    found = closed_solve(outputs, states.q, states.qd, second)
-    return {FD: found, "pivots": np.ones_like(found)}
+    found, conditions = closed_solve(outputs, states.q, states.qd, second)
+    return {FD: found, CONDITION: conditions}
 
 
 def _values(
@@ -236,9 +271,45 @@ def _result(quantity: Quantity, found: Mapping[str, Array]) -> Any:
     if quantity.fields:
         return {field: found[name] for field, name in zip(quantity.fields, quantity.outputs, strict=True)}
     result = found[quantity.outputs[0]]
-    for name in quantity.pivots:
-        # g = L^T D L is positive definite where all D_k are: here D_k / |g_kk| beyond the rounding of n steps
-        n = found[name].shape[1]
-        usable = found[name].min(axis=1, initial=1) > 8 * n * np.finfo(np.float64).eps
-        result = np.where(usable[:, None], result, np.nan)
+    if "pivots" in quantity.pivots and "pivots" in found:
+        usable = is_usable(found["pivots"])
+        result = result if usable.all() else np.where(usable[:, None], result, np.nan)
     return result
+
+
+def _told(
+    names: Sequence[str],
+    found: Mapping[str, Mapping[str, Array]],
+    results: Mapping[str, Any],
+    look: Look,
+) -> dict[str, dict[int, Doubt]]:
+    """What is to be said of accelerations and their derivatives, by quantity and state."""
+    told = {}
+    for name in names:
+        outputs = found[QUANTITIES[name].source]
+        if not QUANTITIES[name].pivots:
+            continue
+        if CONDITION in outputs:
+            told[name] = closed_doubts(results[name], outputs[CONDITION], _OPEN)
+        elif "pivots" in outputs:
+            told[name] = doubts(results[name], outputs["pivots"], look)
+    return told
+
+
+def _advice(name: str, doubt: Doubt | None) -> tuple[str, str]:
+    """Code and message of a failure."""
+    if doubt is not None:
+        return doubt.code, doubt.message
+    return "not-finite", _ENDLESS if name == CONDITION else _NOT_FINITE
+
+
+def _warnings(
+    results: Mapping[str, Any], told: Mapping[str, Mapping[int, Doubt]], single: bool
+) -> Iterator[dict[str, Any]]:
+    """A warning for every state with results that are doubtful."""
+    for name, by_state in told.items():
+        for state, doubt in by_state.items():
+            if np.isfinite(results[name][state]).all():
+                place = "/q" if single else f"/q/{state}"
+                told_of = {"pointer": place, "code": doubt.code, "message": doubt.message}
+                yield {**told_of, "state": state, "quantity": name}

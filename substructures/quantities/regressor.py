@@ -99,7 +99,7 @@ class RegressorModel:
             states.count,
             self.program.digest,
             {name: x[0] if states.single else x for name, x in results.items()},
-            failures_of(results, lambda _: "the result is not finite"),
+            failures_of(results, lambda _name, _state: ("not-finite", "the result is not finite")),
             columns=ParameterColumns(self.names, self.units),
             single=states.single,
         )

@@ -43,7 +43,8 @@ class Evaluation:
 
     ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor. ``count`` = N;
     ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states;
-    ``warnings`` (pointer, code, message): parameters that no body can have, limits that states leave, and more.
+    ``warnings`` (pointer, code, message; state and quantity of some): parameters that no body can have, limits that
+    states leave, accelerations that are doubtful, and more.
     """
 
     coordinates: tuple[str, ...]
@@ -54,7 +55,7 @@ class Evaluation:
     frames: tuple[str, ...] | None = None
     columns: ParameterColumns | None = None
     single: bool = False
-    warnings: tuple[Mapping[str, str], ...] = ()
+    warnings: tuple[Mapping[str, Any], ...] = ()
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
@@ -63,7 +64,8 @@ class Evaluation:
     def __repr__(self) -> str:
         shapes = ", ".join(f"{name} {shape}" for name, shape in _shapes(self.quantities))
         failed = f", {len(self.failures)} failures" if self.failures else ""
-        warned = "".join(f"\n  warning: {warning['message']}" for warning in self.warnings)
+        failed += f", {len(self.warnings)} warnings" if self.warnings else ""
+        warned = "".join(f"\n  warning: {warning['message']}" for warning in self.warnings[:3])
         return f"Evaluation of {self.count} state(s) of {listed(self.coordinates)}{failed}\n  {shapes}{warned}"
 
     def plain(self, digest: str | None = None) -> dict[str, Any]:
@@ -94,13 +96,13 @@ def without_axis(value: Value) -> Value:
     return {name: v[0] for name, v in value.items()} if isinstance(value, dict) else value[0]
 
 
-def failures_of(results: Mapping[str, Value], message: Callable[[str], str]) -> tuple[Failure, ...]:
+def failures_of(results: Mapping[str, Value], advice: Callable[[str, int], tuple[str, str]]) -> tuple[Failure, ...]:
     """A failure for every quantity and state with a number that is not finite; arrays have the axis N.
 
-    ``message``: advice for a quantity by its name.
+    ``advice``: code and message for a quantity in a state.
     """
-    bad = ((name, state) for name, value in results.items() for state in _not_finite(value))
-    return tuple(Failure(int(state), name, "not-finite", message(name)) for name, state in bad)
+    bad = ((name, int(state)) for name, value in results.items() for state in _not_finite(value))
+    return tuple(Failure(state, name, *advice(name, state)) for name, state in bad)
 
 
 def _not_finite(value: Value) -> NDArray[np.int64]:

@@ -16,7 +16,7 @@ from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import KINEMATICS, Model
 from substructures.tree.plausibility import Plausibility
 
-MODEL, REGRESSOR = "model", "regressor"
+MODEL, REGRESSOR, CONDITION = "model", "regressor", "condition"
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Quantity:
     outputs: tuple[str, ...]
     fields: tuple[str, ...] = ()
     requires: tuple[str, ...] = ()  #: arguments that it needs
-    pivots: tuple[str, ...] = ()  #: the output that tells whether the metric could be inverted
+    pivots: tuple[str, ...] = ()  #: the outputs that tell whether the metric could be inverted
 
 
 def _outputs(source: str, *names: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
@@ -35,11 +35,12 @@ def _outputs(source: str, *names: str, requires: tuple[str, ...] = ()) -> dict[s
 
 
 def _forward(name: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
-    return {name: Quantity(name, (name,), requires=requires, pivots=("pivots",))}
+    return {name: Quantity(name, (name,), requires=requires, pivots=("pivots", "inertias"))}
 
 
 QUANTITIES: dict[str, Quantity] = {
     **_outputs(MODEL, "metric", "christoffel", "forces", "gravity", "bias", "potential_energy"),
+    "condition": Quantity(CONDITION, ("condition",)),
     **_outputs("coriolis", "coriolis"),
     **_outputs("inverse_dynamics", "inverse_dynamics", requires=("qdd",)),
     **_forward("forward_dynamics"),
@@ -125,20 +126,24 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     n, columns = max(1, dof), 10 * frames
     # position 3 and rotation 9 of every frame, U and Omega 3 each for every frame and coordinate; ten parameters a link
     several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
-    several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6}
+    several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6, "condition": 1}
     return sum(several.get(name, n) for name in quantities)
 
 
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
     """(source, program, its outputs); no program: no state has a result.
 
-    Forward dynamics of a tree with closures, or of one too large for formulas of it, comes from outputs of the model.
+    Forward dynamics of a tree with closures, or of one too large for formulas of it, and condition numbers come from
+    outputs of the model.
     """
     wanted: dict[str, set[str]] = {}
     for name in quantities:
         quantity = QUANTITIES[name]
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     for source, names in wanted.items():
+        if source == CONDITION:
+            yield source, sources.program(MODEL), ["metric"]
+            continue
         if source == FD and sources.model.closures:
             yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
             continue

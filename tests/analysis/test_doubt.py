@@ -12,8 +12,9 @@ from closed_trees import at, closed_entry
 from substructures import Model
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.reductions import Reduction
-from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import simulate
+from substructures.analysis.verdict import Check
 
 PIN = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
 #: the crank [rad] of the parallelogram below goes from 0.5 to the singular position at 0

@@ -12,8 +12,9 @@ from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, R, disc, sleigh
 
 from substructures import Model
-from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import Event, FixedStep, simulate
+from substructures.analysis.verdict import Check
 from substructures.quantities.evaluation import evaluate
 
 TREES: dict[str, tuple[str, Plain]] = {

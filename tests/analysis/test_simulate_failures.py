@@ -157,3 +157,41 @@ def test_a_parameter_without_value_is_missing() -> None:
     definition["bodies"][0]["mass"] = "m"
     with pytest.raises(MissingValue):
         simulate(model_of(definition), [0], (0, 1))
+
+
+def pendulum(m: str, length: str) -> Plain:
+    """Two point masses on links of the same length."""
+    bodies: list[Plain] = []
+    for k, row in enumerate(({"theta": "pi/2"}, {"d": length})):
+        joint = {"type": "revolute", "coordinate": f"q{k}", **row}
+        parent = "base" if k == 0 else "b0"
+        bodies.append({"name": f"b{k}", "parent": parent, "joint": joint, "mass": m, "com": [length, 0, 0]})
+    return {"name": "two", "parameters": {"m": {"value": 1}, "L": {"value": 1}}, "bodies": bodies}
+
+
+def test_inertias_beyond_the_range_of_numbers_are_named() -> None:
+    """Products of two of them are 0 or infinite: the formulas of the accelerations would be wrong or not numbers."""
+    for length in ("1e-84", "1e84"):
+        motion = simulate(model_of(pendulum("1", length), (0, 0, 0)), [0.1, 0.7], (0, 1), qd=[0.3, 0.2])
+        assert (motion.status, motion.is_right) == ("failed", None)
+        assert "1e-100 to 1e100" in motion.message
+    free = model_of(pendulum("m", "L"), (0, 0, 0))
+    motion = simulate(free, [0.1, 0.7], (0, 1), parameters={"m": 1e200, "L": 1e100})
+    assert "overflow" in motion.message
+    assert "definite" not in motion.message
+    small = simulate(model_of(pendulum("1e-20", "1e-9"), (0, 0, 0)), [0.1, 0.7], (0, 1), qd=[0.3, 0.2])
+    large = simulate(model_of(pendulum("1", "1"), (0, 0, 0)), [0.1, 0.7], (0, 1), qd=[0.3, 0.2])
+    assert small.is_right
+    np.testing.assert_allclose(small.q, large.q, rtol=1e-9)
+
+
+def test_a_small_rotor_on_a_heavy_cart_is_not_singular() -> None:
+    """1e6 kg beside 1e-12 kg m^2: their ratio says nothing, as their units differ."""
+    joints: list[Plain] = [{"type": "prismatic", "coordinate": "x"}, {"type": "revolute", "coordinate": "a"}]
+    bodies = [
+        {"name": "cart", "parent": "base", "joint": joints[0], "mass": 1e6},
+        {"name": "rotor", "parent": "cart", "joint": joints[1], "inertia": dict.fromkeys(("xx", "yy", "zz"), 1e-12)},
+    ]
+    motion = simulate(model_of({"name": "c", "bodies": bodies}, (0, 0, 0)), [0, 0], (0, 1), qd=[1, 2])
+    assert motion.is_right
+    np.testing.assert_allclose(motion.q[-1], [1, 2])

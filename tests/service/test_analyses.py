@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -32,13 +33,38 @@ def test_a_pendulum_swings_with_its_period(client: TestClient) -> None:
 def test_a_violated_condition_is_told(client: TestClient) -> None:
     fixed = {"step": 0.1, "method": "semi-implicit-euler"}
     found = ask(client, "clock/simulations", q=[1.0], span=[0, 5], fixed_step=fixed)
-    assert not found["is_right"]
+    assert found["is_right"] is False
     (check,) = found["checks"]
     assert check["time"] > 0
     assert check["relative"] > check["limit"]
     stopped = ask(client, "clock/simulations", q=[1.0], span=[0, 5], max_steps=3)
-    assert stopped["status"] == "failed"
+    assert (stopped["status"], stopped["is_right"]) == ("failed", None)
     assert "max_steps" in stopped["message"]
+
+
+def test_verdicts_in_answers_and_headers(client: TestClient) -> None:
+    """Three values, also where the format has no place for them."""
+    swing = {"q": [1.0], "span": [0, 5]}
+    loose = {"relative_tolerance": 0.1, "absolute_tolerance": 0.1}
+    control = {"controls": ["tau.p.q1"], "cost": {"running": "p.q1^2"}, "horizon": 4, "intervals": 2, "q": [1.0]}
+    for name, request, expected in (
+        ("simulations", swing, "true"),
+        ("simulations", swing | loose, "false"),
+        ("simulations", swing | {"max_steps": 3}, "null"),
+        ("sensitivities", swing | {"of_start": True}, "true"),
+        ("sensitivities", swing | {"of_start": True} | loose, "false"),
+        ("sensitivities", swing | {"of_start": True, "drift_limit": 1e-14}, "false"),
+        ("cost-gradients", control | {"steps": 40}, "true"),
+        ("cost-gradients", control, "false"),
+        ("cost-gradients", control | {"steps": 40, "error_limit": 1e-12}, "false"),
+        ("optimal-controls", control | {"steps": 20, "cost": {"running": "tau.p.q1^2 + p.q1^2"}}, "true"),
+    ):
+        found = client.post(f"/v1/trees/clock/{name}", json=request)
+        assert found.status_code == 200, found.text
+        told = found.json()
+        assert json.dumps(told["is_right"]) == found.headers["trajectory-right"] == expected, (name, told["checks"])
+        csv = client.post(f"/v1/trees/clock/{name}", json=request, headers={"Accept": "text/csv"})
+        assert csv.headers["trajectory-right"] == expected
 
 
 def test_linearisation_has_the_frequency_of_small_swings(client: TestClient) -> None:

@@ -102,6 +102,7 @@ def test_on_a_server(folder: Path, settings: Settings, capsys: pytest.CaptureFix
         assert (folder / "x.csv").read_text().startswith("t,arm.q,arm.q'")
         (folder / "long.yaml").write_text("q: [0.5]\nspan: [0, 2]\nmax_steps: 2\n")
         assert main(["simulate", "cell", str(folder / "long.yaml"), "--out", str(folder / "y.csv"), *server]) == 1
+        assert "NOT KNOWN to be right" in capsys.readouterr().out
         assert main(["simulate", "cell", str(folder / "swing.yaml"), *server]) == 0
         assert "energy: constant, holds" in capsys.readouterr().out
         assert main(["analyse", "cell", "first_integrals", "--bind", "defaults", *server]) == 0

@@ -51,6 +51,8 @@ FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.st
 ABOUT = ("coordinates", "digest", "frames", "columns", "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
+#: warnings in the summary of an item; its result has all
+MOST_WARNINGS = 20
 CAPACITY = 2_000_000
 
 _kernels: Cache[Kernel] = Cache(
@@ -195,7 +197,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "media_type": FORMATS[item["format"]],
         "bytes": len(data),
         "failures": len(answer["failures"]),
-        "warnings": answer["warnings"],
+        "warnings": answer["warnings"][:MOST_WARNINGS],
     }
     return Outcome(summary, {"result": data})
 
@@ -204,7 +206,7 @@ def _written(answer: dict[str, Any], form: str, has_axis: bool) -> bytes:
     """The file of an answer; as Arrow always with an axis for the states."""
     if form == "npz":
         return b"".join(as_npz(answer).pieces)
-    names = [name for name in answer if name not in (*ABOUT, "count", "failures")]
+    names = [name for name in answer if name not in (*ABOUT, "count", "failures", "warnings")]
     rows = answer if has_axis else {**answer, **{name: _row(answer[name]) for name in names}}
     arrow = import_module("substructures.formats.arrow")  # an extra; most runners need not load it
     metadata = {name: answer[name] for name in ABOUT if name in answer} | {"quantities": names}

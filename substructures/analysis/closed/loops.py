@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,12 +15,15 @@ from substructures.analysis.closed.constrained import SINGULAR, Constrained, Sin
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
 from substructures.analysis.motion.problem import Start, StateVector
 from substructures.analysis.motion.signals import Signal
+from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.mechanics.accelerations import RANK
 from substructures.tree.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
 NEARBY = 1e-3
+#: residuals of a right state: of positions and velocities over their largest number or 1, and of equations over terms
+MET, SOLVED = 1e-9, 1e-8
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,12 @@ class LoopState:
     reactions: tuple[Reaction, ...]
     actuation: Mapping[str, float]
     message: str = ""
+    checks: tuple[Check, ...] = ()
+
+    @property
+    def is_right(self) -> bool | None:
+        """Whether the state is closed and obeys the equations of motion; None where the ``message`` says why not."""
+        return verdict(self.checks, not self.message)
 
     def __repr__(self) -> str:
         place, state = self.mobility, self.consistent
@@ -119,7 +128,30 @@ def loop_state(
         (qdd, multipliers), message = nothing, message or str(error)
     actuation = zip(s.labels[s.closed :], multipliers[s.closed :], strict=True)
     forces = {label.removeprefix("motion."): float(x) for label, x in actuation}
-    return LoopState(state, place, qdd, multipliers, reactions(s, multipliers, place), forces, message)
+    checks = tuple(_checks(s, state, qdd, multipliers))
+    return LoopState(state, place, qdd, multipliers, reactions(s, multipliers, place), forces, message, checks)
+
+
+def _checks(s: Constrained, state: Consistent, qdd: Array, multipliers: Array) -> Iterator[Check]:
+    """Residuals of the closures, and of the equations that the accelerations and multipliers solve, where s is."""
+    size, speed = (max(1.0, float(np.abs(x).max(initial=0))) for x in (state.q, state.qd))
+    met: About = ("position residual", "zero", "the closures (and prescribed motions) are met", "m, 1")
+    yield Check.at(met, state.residual, s.t, size, MET)
+    moved: About = ("velocity residual", "zero", "G q' + phi_t = 0", "m/s, 1/s")
+    yield Check.at(moved, state.velocity_residual, s.t, speed, MET)
+    # what forces cause where nothing holds: accelerations that the closures cancel are rounding beside it
+    free = float(np.abs(s.f).max(initial=0)) / (float(np.abs(s.g).max(initial=0)) or 1.0)
+    largest = float((np.abs(s.G) @ (np.abs(qdd) + free)).max(initial=0))
+    dynamics: About = ("equations of motion", "zero", "g q'' + Gamma q'q' = Q + G^T lambda", "N m, N")
+    yield _solved(dynamics, s, (s.g @ qdd, -s.f, -s.G.T @ multipliers), 0.0)
+    second: About = ("acceleration residual", "zero", "G q'' + c = 0", "m/s^2, 1/s^2")
+    yield _solved(second, s, (s.G @ qdd, s.c), largest)
+
+
+def _solved(about: About, s: Constrained, terms: tuple[Array, ...], least: float) -> Check:
+    """The sum of the terms is zero beside the largest of them, or ``least``."""
+    scale = max(least, *(float(np.abs(x).max(initial=0)) for x in terms))
+    return Check.at(about, float(np.abs(np.sum(terms, axis=0)).max(initial=0)), s.t, scale, SOLVED)
 
 
 def mobility(s: Constrained, t: float, q: Array) -> Mobility:

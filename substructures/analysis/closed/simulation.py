@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,11 +17,14 @@ from substructures.analysis.closed.projection import Consistent, consistent_stat
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
-from substructures.analysis.motion.judges import energy_balance
-from substructures.analysis.motion.problem import MotionProblem
+from substructures.analysis.motion.judges import energy_balance, unbalanced
+from substructures.analysis.motion.output_times import OutputTimes
+from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.signals import Signal
-from substructures.analysis.motion.trajectory import Check, Trajectory, crossings
+from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.quantities.limits import reached
 from substructures.tree.model import Model
@@ -61,10 +64,10 @@ def simulate_closed(
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
     of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, and
-    T + V - work is constant; work is that of forces without potential and of prescribed coordinates. Loops that cannot
-    be closed, a singular position at the start or on the way and a span that cannot be finished are ``failed``, with
-    advice and the motion up to there. Raises InvalidInput (pointers start with names of arguments of ``simulate``) and
-    MissingValue.
+    T + V - work is constant, or, where an input that varies is part of V, a second run finds the same; work is that of
+    forces without potential and of prescribed coordinates. Loops that cannot be closed, a singular position at the
+    start or on the way and a span that cannot be finished are ``failed``, with advice and the motion up to there.
+    Raises InvalidInput (pointers start with names of arguments of ``simulate``) and MissingValue.
     """
     require_fixed(problem.model, problem.fixed)
     s, start = _constrained(problem, folder), problem.span[0]
@@ -77,7 +80,30 @@ def simulate_closed(
     s.move(start, state.q, state.qd)
     # x = (q, q', W), W the work of forces without potential and of prescribed coordinates
     x = np.concatenate((state.q, state.qd, (0.0,)))
-    return _judged(s, problem, _moved(s, problem, x, place.rank, progress, folder), place.rank)
+    motion = _moved(s, problem, x, place.rank, progress, folder)
+    found = _judged(s, problem, motion, place.rank)
+    if not s.conditions.varied_potential():
+        return found
+    return replace(found, checks=(*found.checks, *_repeated(s, problem, x, place.rank, motion, progress)))
+
+
+def _repeated(
+    s: Constrained,
+    problem: ClosedProblem,
+    x: Array,
+    rank: int,
+    first: IntegratedMotion,
+    progress: ProgressReport | None,
+) -> tuple[Check, ...]:
+    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
+    s.conditions = replace(s.conditions, events=())
+
+    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """The same motion more carefully."""
+        other = replace(problem, times=OutputTimes(span, times), integrator=choice, events=())
+        return _moved(s, other, x, rank, at_end(progress), None)
+
+    return accurate(second_run(first, problem.integrator, again), state_groups(s.n, s.n), problem.drift_limit)
 
 
 def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:
@@ -114,8 +140,12 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _at_states(_judged_quantities, s, t, x) | {"work": x[:, -1]}
-    doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
-    balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
+    names = s.conditions.varied_potential()
+    if names:
+        balance = unbalanced(names)
+    else:
+        doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
+        balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
     checks = (*_residual_checks(t, judged), balance)
     span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
@@ -136,7 +166,8 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.steps,
         found,
         figures,
-        reached=span,
+        motion.cancelled,
+        span,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from substructures.expr.differentiate import gradient
-from substructures.expr.graph import Expr, Graph
+from substructures.expr.graph import Graph
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
 from substructures.tree.model import Model
@@ -14,7 +14,8 @@ POWER = "lost_power"
 
 
 def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) -> Program:
-    """These outputs of the model and ``lost_power`` (): (Q_a + dV/dq^a) q'^a [W], for ``inputs``; others are zero.
+    """These outputs of the model and ``lost_power`` (): (Q_a + dV/dq^a) q'^a + dV/dt [W], for ``inputs``; others are
+    zero.
 
     V: potential energy of gravity and all springs. The power of dampers is negative, that of drives positive; the
     output has no entry when the forces have a potential. Raises ZeroDivisionError where a derivative is infinite.
@@ -24,8 +25,7 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
     absent = {s.name: graph.zero for s in model.program.symbols if s.kind == "input" and s.name not in inputs}
     found = replay(model.program, graph, absent, [*outputs, "forces", "potential_energy"])
     potential = graph.zero + found["potential_energy"].entries.get((), 0)
-    (slopes,) = gradient([potential], model.coordinates)
-    total: Expr = graph.zero
+    ((*slopes, total),) = gradient([potential], [*model.coordinates, "t"])
     for a, name in enumerate(model.coordinates):
         # (Q_a + dV/dq^a) q'^a
         force = graph.zero + found["forces"].entries.get((a,), 0)

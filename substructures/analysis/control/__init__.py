@@ -6,6 +6,7 @@ module             what is there
 problem            ``ControlProblem`` and ``Cost``: what is controlled, what it costs, and for how long
 adjoint            ``adjoint_equations``: the costates' equations as formulas
 shooting           motions under controls and derivatives of their cost, exact for the computed motion
+step_error         what the size of the steps makes of cost, motion and gradient, by a second run
 cost_gradient      ``cost_gradient``: J of given controls and dJ
 nonlinear_program  variables, conditions and their derivatives of direct multiple shooting; ``End``
 optimal_control    ``optimal_control``: solves it, and judges the result by the necessary conditions

@@ -8,7 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import positive
 from substructures.analysis.control.problem import (
+    ERROR_LIMIT,
     NO_COST,
     ControlProblem,
     Cost,
@@ -18,9 +20,11 @@ from substructures.analysis.control.problem import (
     require_solvable,
 )
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.control.step_error import gradient_checks
 from substructures.analysis.given import StateArray, require_known
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.tree.model import Model
 
@@ -28,6 +32,7 @@ FAILED = (
     "the motion is not finite from here on: take more 'steps', smaller controls or a shorter 'horizon', "
     "and check that the metric is positive definite"
 )
+COARSE = "cost, motion or gradient are not as accurate as 'error_limit' asks for: take more 'steps'"
 ROUGH = (
     "the motion is finite, its gradient is not: a cost or load is not smooth where the motion passes (a square root of "
     "zero, a spring of no length); change the cost, the load or the state at the start"
@@ -40,7 +45,8 @@ class CostGradient:
     ``q`` and dJ/dq' ``qd`` (n,); dJ/dp ``parameters`` by name. ``trajectory``: the motion with the series ``controls``,
     ``costates`` and ``hamiltonian``.
 
-    ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change.
+    ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change,
+    also where they are not accurate.
     """
 
     cost: float
@@ -53,11 +59,22 @@ class CostGradient:
     status: Literal["finished", "failed"] = "finished"
     message: str = ""
 
+    @property
+    def is_right(self) -> bool | None:
+        """Whether cost, motion and gradient have the accuracy asked for; None where the status is ``failed``."""
+        return verdict(self.checks, self.status == "finished")
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Those of the trajectory."""
+        return self.trajectory.checks
+
     def __repr__(self) -> str:
         sizes = f"controls={len(self.names)}, nodes={len(self.controls)}, parameters={len(self.parameters)}"
         largest = float(np.abs(self.controls).max(initial=0))
         finding = f"cost {self.cost:.6g}, its largest derivative by a control {largest:.6g}"
-        return f"CostGradient({sizes})\n{f'failed: {self.message}' if self.status == 'failed' else finding}"
+        found = f"failed: {self.message}" if self.status == "failed" else f"{finding}, is_right={self.is_right}"
+        return f"CostGradient({sizes})\n{found}"
 
 
 def cost_gradient(
@@ -76,6 +93,7 @@ def cost_gradient(
     parameters: Mapping[str, float] | None = None,
     values: Mapping[str, Any] | None = None,
     vary: Sequence[str] = (),
+    error_limit: float = ERROR_LIMIT,
 ) -> CostGradient:
     """J of a motion under given controls, and dJ by them, by the start and by parameters.
 
@@ -85,8 +103,10 @@ def cost_gradient(
     control one number, or one for each node [N m, N], default 0: nodes are the ends of the ``intervals`` (``hold``:
     linear, intervals + 1 of them) or the intervals (constant). ``vary``: parameters by which the cost is
     differentiated. The gradient is that of the discrete adjoint of the Runge-Kutta scheme, exact to rounding, for about
-    three times the run. A motion that leaves the range of numbers is a result with status ``failed``. Raises
-    InvalidInput (``/controls/i``, ``/cost/running``, ``/values/name``, ``/vary/i``, ...) and MissingValue.
+    three times the run. A second run with steps half as long judges them: its relative differences, the stated errors
+    of cost, motion and gradient, may reach ``error_limit``; with it all takes three times as long. A motion that leaves
+    the range of numbers is a result with status ``failed``. Raises InvalidInput (``/controls/i``, ``/cost/running``,
+    ``/values/name``, ``/vary/i``, ...) and MissingValue.
     Source: W. W. Hager, Numerische Mathematik 87, 2000; notation.md, section 7.
     """
     problem = ControlProblem(
@@ -104,10 +124,12 @@ def cost_gradient(
     )
     require_solvable(model, problem)
     require_known("vary", "parameter", vary, model.parameters)
-    return _gradient(model, problem, values or {}, tuple(vary))
+    return _gradient(model, problem, values or {}, tuple(vary), positive(error_limit, "error_limit"))
 
 
-def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], vary: tuple[str, ...]) -> CostGradient:
+def _gradient(
+    model: Model, problem: ControlProblem, values: Mapping[str, Any], vary: tuple[str, ...], limit: float
+) -> CostGradient:
     controls = per_node(problem, values, "values")
     # x_0 = (q, q') and dJ/dx_0 = lambda_0
     start = initial_state(model, problem)
@@ -115,7 +137,8 @@ def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], 
     run = shooting.run(start[None], controls)
     # W = 1: of the cost alone, no end state
     slope = shooting.pullback(run, np.zeros((1, 1, 2 * model.dof)), np.ones(1))
-    motion = with_limits(model, problem.parameters, trajectory(shooting, run, slope))
+    judged = replace(trajectory(shooting, run, slope), checks=gradient_checks(shooting, run, slope, limit))
+    motion = with_limits(model, problem.parameters, judged)
     n, by_parameter = model.dof, dict(zip(vary, slope.parameters[0].tolist(), strict=True))
     result = CostGradient(
         run.cost,
@@ -129,7 +152,9 @@ def _gradient(model: Model, problem: ControlProblem, values: Mapping[str, Any], 
     if motion.status == "failed":
         return replace(result, status="failed", message=motion.message)
     finite = all(np.isfinite(x).all() for x in (result.controls, result.q, result.qd, slope.parameters))
-    return result if finite else replace(result, status="failed", message=ROUGH)
+    if not finite:
+        return replace(result, status="failed", message=ROUGH)
+    return result if result.is_right else replace(result, message=COARSE)
 
 
 def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:

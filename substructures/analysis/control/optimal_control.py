@@ -26,16 +26,20 @@ from typing import Any, Literal
 import numpy as np
 from scipy.optimize import Bounds, minimize
 
+from substructures.analysis.arguments import positive
 from substructures.analysis.control.cost_gradient import trajectory
 from substructures.analysis.control.nonlinear_program import BEYOND, Demands, End, ShootingProgram
-from substructures.analysis.control.problem import NO_COST, ControlProblem, Cost, Hold, require_solvable
+from substructures.analysis.control.problem import ERROR_LIMIT, NO_COST, ControlProblem, Cost, Hold, require_solvable
 from substructures.analysis.control.shooting import Rollout
+from substructures.analysis.control.step_error import motion_checks
 from substructures.analysis.given import StateArray
 from substructures.analysis.motion.limits import with_limits
-from substructures.analysis.motion.trajectory import Check, Trajectory
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.tree.model import Model
 
+STEPS = "the motion is not as accurate as 'error_limit' asks for: take more 'steps' or 'intervals'"
 #: called with the number of an iteration, the cost and the violation
 IterationReport = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
@@ -71,10 +75,20 @@ class Optimum:
     history: Array
     iterations: int
 
+    @property
+    def is_right(self) -> bool | None:
+        """Whether all checks hold: an optimum that meets the demands, along an accurate motion."""
+        return self.trajectory.is_right
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Those of the trajectory."""
+        return self.trajectory.checks
+
     def __repr__(self) -> str:
         sizes = f"controls={len(self.names)}, nodes={len(self.controls)}, iterations={self.iterations}"
         judged = f"cost {self.cost:.6g}, violation {self.violation:.2g}, stationarity {self.stationarity:.2g}"
-        return f"Optimum({sizes})\n{self.status}: {judged}"
+        return f"Optimum({sizes})\n{self.status}: {judged}, is_right={self.is_right}"
 
 
 def optimal_control(
@@ -97,6 +111,7 @@ def optimal_control(
     segments: int | None = None,
     iterations: int = 500,
     tolerance: float = 1e-8,
+    error_limit: float = ERROR_LIMIT,
     progress: IterationReport | None = None,
 ) -> Optimum:
     """Controls of least cost J (see above) under demands on the end and bounds, by multiple shooting.
@@ -106,8 +121,10 @@ def optimal_control(
     begin with, by name one number or one for each node; ``segments``: divides ``intervals`` (default: the largest such
     up to 10); ``tolerance``: change of the cost at which the search ends, after ``iterations`` at the latest.
     ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
-    search. Demands that are not met are a result with status ``failed`` and advice. Raises InvalidInput
-    (``/controls/i``, ``/end/q``, ``/bounds/name``, ``/segments``, ...) and MissingValue. Source: see above.
+    search. The motion under the controls that were found is judged by a second run with steps half as long, from the
+    start to the end in one piece: it may differ by ``error_limit``, relative. Demands that are not met are a result
+    with status ``failed`` and advice. Raises InvalidInput (``/controls/i``, ``/end/q``, ``/bounds/name``,
+    ``/segments``, ...) and MissingValue. Source: see above.
     """
     problem = ControlProblem(
         controls=controls,
@@ -124,10 +141,10 @@ def optimal_control(
     )
     wanted = Demands(end or End(), bounds or {}, guess or {}, segments, iterations, tolerance)
     require_solvable(model, problem)
-    return _searched(ShootingProgram(model, problem, wanted), progress)
+    return _searched(ShootingProgram(model, problem, wanted), positive(error_limit, "error_limit"), progress)
 
 
-def _searched(search: ShootingProgram, progress: IterationReport | None) -> Optimum:
+def _searched(search: ShootingProgram, limit: float, progress: IterationReport | None) -> Optimum:
     """The result of the search from the guess."""
     z = search.guess()
     history = [search.progress(z)]
@@ -139,7 +156,7 @@ def _searched(search: ShootingProgram, progress: IterationReport | None) -> Opti
             progress(len(history) - 1, *history[-1])
 
     found = _solve(search, z, note)
-    return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), int(found.nit))
+    return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), int(found.nit), limit)
 
 
 def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
@@ -154,7 +171,7 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
     return minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
 
 
-def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) -> Optimum:
+def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:
     """The necessary conditions at z."""
     cost, _ = search.cost(z)
     nu, stationarity = _multipliers(search, z)
@@ -166,15 +183,19 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int) 
         status = "optimal" if stationarity <= STATIONARY else "feasible"
     run, _ = search.evaluated(z)
     motion, drift = _motion(search, run, nu)
-    check = Check("end", "zero", "the end state and the joints of segments are demanded", "", violation, 1.0, limit)
-    late = replace(check, time=None if violation <= limit else float(motion.t[-1]))
+    met: About = ("end", "zero", "the end state and the joints of segments are demanded", "")
+    still: About = ("stationarity", "zero", "the gradient of the Lagrangian, relative to that of the cost", "1")
+    end = float(motion.t[-1])
+    necessary = Check.at(met, violation, end, 1.0, limit), Check.at(still, stationarity, end, 1.0, STATIONARY)
+    accuracy = motion_checks(search.shooting, run, search.first, error_limit)
+    advice = ADVICE[status] or ("" if verdict(accuracy) else STEPS)
     return Optimum(
         status,
-        ADVICE[status],
+        advice,
         cost,
         tuple(search.problem.controls),
         run.controls,
-        replace(motion, checks=(late,)),
+        replace(motion, checks=(*necessary, *accuracy)),
         stationarity,
         violation,
         drift,

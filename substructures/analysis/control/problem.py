@@ -32,6 +32,9 @@ MAX_STEPS = 10_000
 #: numbers that are kept of a motion, for the way back
 MAX_NUMBERS = 50_000_000
 
+#: relative error by the size of steps that a right result may have
+ERROR_LIMIT = 1e-3
+
 #: what takes closures
 LINEAR = "use the state space of linearisations, and simulations to try controls"
 #: how a control runs between its nodes

@@ -14,7 +14,8 @@ Congress 1984); all segments and all rows of a Jacobian are integrated in one ba
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -122,6 +123,13 @@ class Shooting:
             # + phi(x(T))
             cost += float(self._terminal(x[-1:], controls)["terminal_cost"][0])
         return Rollout(controls, stages, accelerations, metrics, x, cost)
+
+    def refined(self) -> Shooting:
+        """The same problem in one piece with steps half as long; what was compiled is shared."""
+        finer = copy(self)
+        finer.problem = replace(self.problem, steps=2 * self.problem.steps)
+        finer.segments, finer.h, finer.count = 1, self.h / 2, 2 * self.count * self.segments
+        return finer
 
     def pullback(self, run: Rollout, ends: Array, costs: Array) -> Slope:
         """Derivatives of ``ends``_ws . end_s + ``costs``_w cost for (W, S, 2 n) and (W,), by one pass backwards."""

@@ -212,9 +212,9 @@ class _Equations:
 
     def _lost_power(self, Q: Sequence[Expr]) -> Expr:
         potential = self.f.graph.zero + self.model["potential_energy"].get((), 0)
-        # (Q_a + dV/dq^a) q'^a
-        (slopes,) = gradient([potential], self.f.model.coordinates)
-        return self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
+        # (Q_a + dV/dq^a) q'^a + dV/dt
+        ((*slopes, rate),) = gradient([potential], [*self.f.model.coordinates, "t"])
+        return rate + self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
 
     def _sum(self, terms: Any) -> Expr:
         return self.f.graph.sum(self.f.graph.zero + x for x in terms)

@@ -21,8 +21,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import positive
 from substructures.analysis.given import StateArray
 from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
@@ -34,6 +36,10 @@ from substructures.tree.model import Model
 LIMIT = 1e3
 #: relative size of a singular value that counts as zero
 RANK = 1e-10
+#: what the normal equations may leave
+NORMAL = 1e-8
+#: part of the force of a joint that may be unexplained or uncertain in a right result
+ERROR_LIMIT = 0.1
 REGRESSOR, OWN = "base_regressor", "base_parameters"
 
 
@@ -103,6 +109,12 @@ class Identification:
     excitation: Excitation
     status: Literal["identified", "failed"]
     message: str
+    checks: tuple[Check, ...] = ()
+
+    @property
+    def is_right(self) -> bool | None:
+        """Whether forces are explained, and parameters known, as accurately as was asked for; None if failed."""
+        return verdict(self.checks, self.status == "identified")
 
     def __repr__(self) -> str:
         worst = float(self.residual.max(initial=0))
@@ -137,23 +149,27 @@ def identify(
     *,
     parameters: Mapping[str, Any] | None = None,
     model: Model | None = None,
+    error_limit: float = ERROR_LIMIT,
 ) -> Identification:
     """Base parameters beta from a measured motion: beta = argmin |D^-1 (W beta - tau + known)|^2 (see above).
 
     ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N]; states also as columns by coordinate; ``qd`` None: at
     rest. ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and
     armature are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is
-    explained by the base parameters alone. A motion that does not excite all of them is a result with status
+    explained by the base parameters alone. Checks: the normal equations hold; the force that is not explained, and the
+    force that any one standard deviation of a parameter makes, are parts of the force of every joint (root mean
+    squares) that may reach ``error_limit``. A motion that does not excite all of them is a result with status
     ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
     IEEE ICRA 1997.
     """
     motion = _Motion(q, qd, qdd, parameters or {})
     data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
     force = _forces(tau, data)
-    return _fitted(base, data, force if model is None else force - _known(model, motion, data))
+    limit = positive(error_limit, "error_limit")
+    return _fitted(base, data, force if model is None else force - _known(model, motion, data), limit)
 
 
-def _fitted(base: BaseParameters, data: _Data, tau: Array) -> Identification:
+def _fitted(base: BaseParameters, data: _Data, tau: Array, limit: float) -> Identification:
     """Least squares twice, the second time with the standard deviations of the first as weights."""
     W, b = data.outputs[REGRESSOR], base.count
     judged = _excitation(base.names, W)
@@ -171,6 +187,7 @@ def _fitted(base: BaseParameters, data: _Data, tau: Array) -> Identification:
     residual = tau - W @ values
     spread = _deviations(flat * weight[:, None], residual.reshape(-1) * weight)
     full = judged.rank == b
+    normal = flat * weight[:, None], residual.reshape(-1) * weight, force * weight
     return Identification(
         base.names,
         tuple(base.units[i] for i in base.base),
@@ -180,6 +197,31 @@ def _fitted(base: BaseParameters, data: _Data, tau: Array) -> Identification:
         judged,
         "identified" if full else "failed",
         "" if full else judged.advice,
+        (_normal(*normal), *_explained(W, tau, residual, spread, limit)),
+    )
+
+
+def _normal(W: Array, residual: Array, tau: Array) -> Check:
+    """The condition of least squares, W^T D^-2 r = 0, relative to W^T D^-2 tau."""
+    with np.errstate(invalid="ignore"):
+        sizes = np.linalg.norm(W, axis=0) * float(np.linalg.norm(tau))
+        worst = float((np.abs(residual @ W) / np.where(sizes > 0, sizes, 1.0)).max(initial=0))
+    return Check.at(("normal equations", "zero", "W^T D^-2 (tau - W beta) = 0", "1"), worst, 0.0, 1.0, NORMAL)
+
+
+def _explained(W: Array, tau: Array, residual: Array, deviations: Array, limit: float) -> tuple[Check, ...]:
+    """What is not explained, and what is uncertain, as parts of the force of a joint, the worst one."""
+    size = np.sqrt(np.mean(tau**2, axis=0))
+    # of rounding, where a joint needs no force at all
+    size = np.maximum(size, 1e-12 * float(size.max(initial=0))) + (0.0 if size.any() else 1.0)
+    left = float((np.sqrt(np.mean(residual**2, axis=0)) / size).max(initial=0))
+    share = np.sqrt(np.mean(W**2, axis=0)) / size[:, None] * np.where(np.isfinite(deviations), deviations, 0.0)
+    doubt = float(share.max(initial=0)) if np.isfinite(deviations).all() else np.inf
+    explained = "root mean square of the force that is not explained, over that of the force, of the worst joint"
+    known = "force that the standard deviation of a parameter makes, over that of the joint, of the worst of both"
+    return (
+        Check.at(("explained force", "accurate", explained, "1"), left, 0.0, 1.0, limit),
+        Check.at(("deviations", "accurate", known, "1"), doubt, 0.0, 1.0, limit),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,6 +57,14 @@ class Conditions:
     def qd(self) -> Array:
         """Velocities at the start (n,)."""
         return self.start[self.model.dof :]
+
+    def varied_potential(self) -> list[str]:
+        """Inputs that vary and are part of the potential energy, which then changes by a power that is not known."""
+        return self.in_potential([*self.formulas, *self.curves])
+
+    def in_potential(self, inputs: Collection[str]) -> list[str]:
+        """Those of the inputs that are part of the potential energy."""
+        return [s.name for s in self.model.program.select(["potential_energy"]).symbols if s.name in inputs]
 
     def breaks(self, span: tuple[float, float]) -> list[float]:
         """Inner times where an input or its slope jumps [s]: the integrator begins anew there."""

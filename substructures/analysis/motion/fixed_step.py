@@ -111,4 +111,4 @@ def _accepted(
     if motion.steps >= max_steps and motion.steps < count:
         motion.end("failed", f"{motion.steps:,} steps reached only t = {t:.9g} s: raise 'max_steps'")
     elif progress is not None and progress(t) is False:
-        motion.end("stopped", f"cancelled at t = {t:.9g} s")
+        motion.cancel(t)

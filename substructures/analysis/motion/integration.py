@@ -60,6 +60,7 @@ class IntegratedMotion:
     steps: int = 0
     evaluations: int = 0
     stride: int = 1
+    cancelled: bool = False
 
     def judged(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Times (J,) and states (J, N), in order, of all that the judges see: steps that were kept, results and zeros;
@@ -75,6 +76,11 @@ class IntegratedMotion:
     def end(self, status: Literal["stopped", "failed"], message: str) -> None:
         """No further steps."""
         self.status, self.message = status, message
+
+    def cancel(self, t: float) -> None:
+        """No further steps: whoever watches the progress has had enough."""
+        self.end("stopped", f"cancelled at t = {t:.9g} s")
+        self.cancelled = True
 
     def keep(self, t: float, x: Array) -> None:
         """Note an accepted step; every second one is dropped when there are too many."""
@@ -193,7 +199,7 @@ class _Run:
             advice = f"raise 'max_steps', loosen the tolerances, or {self.settings.advice}"
             motion.end("failed", f"{motion.steps:,} steps reached only t = {solver.t:.9g} s: {advice}")
         if self.progress is not None and self.progress(solver.t) is False and motion.status == "finished":
-            motion.end("stopped", f"cancelled at t = {solver.t:.9g} s")
+            motion.cancel(solver.t)
 
     def collect(self, last: float, dense: Callable[[float], Array]) -> None:
         """Results at the wanted times up to ``last``."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral
-from substructures.analysis.motion.trajectory import Check, Rule
+from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.tree.model import Model
@@ -23,13 +23,13 @@ SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 @dataclass(frozen=True)
 class MotionStates:
-    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,)."""
+    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,), None if unknown."""
 
     t: Array
     q: Array
     qd: Array
     values: Mapping[str, float | Array]
-    work: Array
+    work: Array | None
 
     def symbols(self, model: Model) -> dict[str, float | Array]:
         """Values of all symbols, (K,) each where they vary."""
@@ -59,6 +59,10 @@ def judge(
         noise = ROUNDING * float(np.abs(value).max(initial=0))
         if integral.rule == "constant":
             checks.append(Check.of(_about(integral, "constant"), spread(value), states.t, scale, limit, noise))
+            continue
+        if states.work is None:
+            why = "the work of the forces without potential was not integrated"
+            checks.append(Check.left_out("energy-balance", "constant", why))
             continue
         # H - W with W' = Q_a q'^a + V' is constant for every model
         balanced = value - states.work
@@ -94,6 +98,13 @@ def energy_balance(
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
     noise = ROUNDING * float(np.abs(T + V).max(initial=0)) + np.minimum(doubt, DOUBTED * limit * scale)
     return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
+
+
+def unbalanced(names: Sequence[str]) -> Check:
+    """In place of a balance of energy where the inputs ``names`` are part of the potential."""
+    culprits = ", ".join(f"'{name}'" for name in names)
+    why = f"no balance of energy is known with inputs in the potential ({culprits}): a second run judges instead"
+    return Check.left_out("energy", "constant", why)
 
 
 def spread(values: Array) -> Array:

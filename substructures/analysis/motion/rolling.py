@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,12 +15,15 @@ from substructures.analysis.equations.quasi_velocities import QuasiVelocities, q
 from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
-from substructures.analysis.motion.judges import energy_balance, spread
-from substructures.analysis.motion.problem import MotionProblem, StateVector
+from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
+from substructures.analysis.motion.output_times import OutputTimes
+from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.steppers import METHODS
-from substructures.analysis.motion.trajectory import Check, Crossing, Trajectory, crossings
+from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import InvalidArgument
@@ -120,7 +123,25 @@ def simulate_rolling(
         motion = IntegratedMotion([start], [y], [start], [y], status="failed", message=advice)
     else:
         motion = _moved(rolling, problem, y, progress, folder)
-    return _judged(rolling, problem, motion)
+    found = _judged(rolling, problem, motion)
+    if not conditions.varied_potential():
+        return found
+    return replace(found, checks=(*found.checks, *_repeated(rolling, problem, y, motion, progress)))
+
+
+def _repeated(
+    rolling: _Rolling, problem: RollingProblem, y: Array, first: IntegratedMotion, progress: ProgressReport | None
+) -> tuple[Check, ...]:
+    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
+    rolling.conditions = replace(rolling.conditions, events=())
+
+    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """The same motion more carefully."""
+        other = replace(problem, times=OutputTimes(span, times), integrator=choice, events=())
+        return _moved(rolling, other, y, at_end(progress), None)
+
+    groups = state_groups(rolling.n, rolling.p, "v")
+    return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
 
 
 def _moved(
@@ -193,7 +214,7 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
     series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
     # B_ka q'^a
     series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
-    checks = _checks(t, series, problem.drift_limit)
+    checks = _checks(t, series, problem.drift_limit, conditions.varied_potential())
     span = reached(t, x[:, :n], x[:, n:])
     t, x = t[results], x[results]
     return Trajectory(
@@ -208,7 +229,8 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
         motion.steps,
         _events(rolling, problem, motion),
         {"evaluations": float(motion.evaluations)},
-        reached=span,
+        motion.cancelled,
+        span,
     )
 
 
@@ -217,10 +239,10 @@ def _events(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
     return crossings(problem.events, found, rolling.n)
 
 
-def _checks(t: Array, series: Mapping[str, Array], limit: float) -> tuple[Check, ...]:
+def _checks(t: Array, series: Mapping[str, Array], limit: float, varied: Sequence[str]) -> tuple[Check, ...]:
     slips = np.abs(series["constraints"]).max(axis=1, initial=0)
     checks = [
-        energy_balance(t, series, not series["work"].any(), limit),
+        unbalanced(varied) if varied else energy_balance(t, series, not series["work"].any(), limit),
         Check.of(("constraints", "zero", "B q' = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
     ]
     if "gaps" in series:

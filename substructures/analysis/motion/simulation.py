@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 
@@ -14,15 +14,21 @@ from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.fixed_step import FixedStep, march
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
-from substructures.analysis.motion.judges import MotionStates, integral_series, judge
-from substructures.analysis.motion.problem import TAYLOR, MotionProblem
+from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
+from substructures.analysis.motion.output_times import OutputTimes
+from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
+from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.steppers import Stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument, InvalidInput
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.mechanics.accelerations import definite_solve
+from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
 from substructures.quantities.limits import reached
 
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
@@ -60,13 +66,36 @@ def simulate_tree(
         raise
     # x = (q, q', W), W only where there is any power
     x = np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
-    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
-    if not is_definite(pivots):
-        return _failed(conditions, problem, SINGULAR)
-    if not np.isfinite(acceleration).all():
-        message = "a force is not finite at the start: look at springs of length 0 and roots or divisions in loads"
+    message = _unfit(conditions, problem, f, x)
+    if message:
         return _failed(conditions, problem, message)
-    return _judged(conditions, problem, f, *_moved(conditions, problem, f, x, progress, folder))
+    motion, figures = _moved(conditions, problem, f, x, progress, folder)
+    found = _judged(conditions, problem, f, motion, figures)
+    if any(check.name.startswith("energy") for check in found.checks):
+        return found
+    instead = unbalanced(conditions.in_potential(list(problem.start.inputs)))
+    repeated = _repeated(conditions, problem, f, x, motion, at_end(progress))
+    return replace(found, checks=(*found.checks, instead, *repeated))
+
+
+def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Array) -> str:
+    """Why there are no accelerations at the start that formulas of them can be trusted with."""
+    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
+    if not (is_definite(pivots) and (pivots >= LEAST).all() and (pivots <= MOST).all()):
+        states = _states(conditions, f, np.array([problem.span[0]]), x[None])
+        model = problem.model
+        metric = interpret_in_blocks(model.program, states.symbols(model), ["metric"], 1)["metric"]
+        if not np.isfinite(metric).all():
+            return f"{OVERFLOW.format('metric')} (at the start)"
+        diagonal = np.einsum("nkk->nk", metric)
+        if (diagonal > 0).all() and not ((diagonal >= LEAST) & (diagonal <= MOST)).all():
+            return f"at the start {RANGE}"
+        # the pivots as parts of the diagonal, whatever the units of the coordinates
+        if not is_usable(definite_solve(metric, np.zeros(diagonal.shape))[1]).all():
+            return SINGULAR
+    if not np.isfinite(acceleration).all():
+        return "a force is not finite at the start: look at springs of length 0 and roots or divisions in loads"
+    return ""
 
 
 def tree_conditions(problem: MotionProblem) -> Conditions:
@@ -129,7 +158,7 @@ def _judged(
     states = _states(conditions, f, t, x)
     series = integral_series(model, integrals, states)
     checks = judge(model, integrals, states, series, problem.drift_limit)
-    if f.has_power and "energy" in series:
+    if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
     span = reached(t, x[:, : f.n], x[:, f.n : 2 * f.n])
     x = x[results, : 2 * f.n]
@@ -146,8 +175,29 @@ def _judged(
         motion.steps,
         crossings(problem.events, motion.found, model.dof),
         figures,
-        reached=span,
+        motion.cancelled,
+        span,
     )
+
+
+def _repeated(
+    conditions: Conditions,
+    problem: TreeProblem,
+    f: RightHandSide,
+    x: Array,
+    first: IntegratedMotion,
+    progress: ProgressReport | None,
+) -> tuple[Check, ...]:
+    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
+
+    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """The same motion more carefully."""
+        fixed = problem.fixed_step and FixedStep(problem.fixed_step.step / 2, problem.fixed_step.method)
+        other = replace(problem, times=OutputTimes(span, times), integrator=choice, fixed_step=fixed, events=())
+        return _moved(replace(conditions, events=()), other, f, x, progress, None)[0]
+
+    groups = state_groups(f.n, f.n)
+    return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:

@@ -6,61 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-
 from substructures.analysis.motion.events import Event
+from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.errors import listed
-
-Rule = Literal["constant", "falling", "zero"]
-
-
-@dataclass(frozen=True)
-class Check:
-    """A necessary condition along a motion.
-
-    ``rule``: the quantity ``name`` is constant (first integral), never rises (energy with dissipation) or is zero (a
-    residual of closures). ``worst``: the largest violation at all steps and all results, in ``unit``: of a constant the
-    largest difference of two of its values, of what falls the largest rise. Relative to ``scale`` it is judged against
-    ``limit``, and what rounding may add (next to singular positions of closures up to a hundred limits). ``time``: when
-    the limit was first exceeded [s], None where the condition holds.
-    """
-
-    name: str
-    rule: Rule
-    reason: str
-    unit: str
-    worst: float
-    scale: float
-    limit: float
-    time: float | None = None
-
-    @classmethod
-    def of(
-        cls,
-        about: tuple[str, Rule, str, str],
-        violation: Array,
-        t: Array,
-        scale: float,
-        limit: float,
-        noise: Array | float = 0,
-    ) -> Check:
-        """``about``: name, rule, reason, unit; ``violation`` (K,): allowed up to limit * scale + noise (K,)."""
-        # |violation| <= limit * scale + noise; not a number is a violation, too
-        size = np.abs(violation)
-        bad = np.flatnonzero(~(size <= limit * scale + noise))
-        first = float(t[bad[0]]) if len(bad) else None
-        return cls(*about, float(np.nanmax(size, initial=0.0)), scale, limit, first)
-
-    @property
-    def holds(self) -> bool:
-        """Whether the condition holds everywhere."""
-        return self.time is None
-
-    @property
-    def relative(self) -> float:
-        """The largest violation over its scale."""
-        return self.worst / self.scale if self.scale else self.worst
 
 
 @dataclass(frozen=True)
@@ -85,8 +34,9 @@ class Trajectory:
     ``series``: further quantities by name, (K, ...): energies, momenta, residuals, reactions. ``status`` is a value:
     ``finished``; ``stopped`` by an event; ``failed``, and ``message`` says why and what to change, with the motion up
     to there. ``steps``: accepted steps of the integrator. ``figures``: numbers about the computation (evaluations of
-    the right-hand side, seconds, real-time factor). ``reached``: lowest and highest values of the coordinates on the
-    way, (n,) each, between steps too; ``limits``: those of the joints; ``warnings``: what was left of them.
+    the right-hand side, seconds, real-time factor). ``cancelled``: stopped by whoever watched its progress.
+    ``reached``: lowest and highest values of the coordinates on the way, (n,) each, between steps too; ``limits``:
+    those of the joints; ``warnings``: what was left of them.
     """
 
     coordinates: tuple[str, ...]
@@ -100,25 +50,29 @@ class Trajectory:
     steps: int = 0
     events: tuple[Crossing, ...] = ()
     figures: Mapping[str, float] = field(default_factory=dict)
+    cancelled: bool = False
     reached: tuple[Array, Array] | None = None
     limits: Mapping[str, list[float]] = field(default_factory=dict)
     warnings: tuple[Mapping[str, str], ...] = ()
 
     def __repr__(self) -> str:
         when = f"t = {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else "at no time"
-        kept = sum(check.holds for check in self.checks)
-        names = ", ".join(f"{check.name} {check.rule}" for check in self.checks)
+        made = [check for check in self.checks if check.made]
+        kept = sum(check.holds is True for check in made)
+        names = ", ".join(f"{check.name} {check.rule}" for check in made)
         states = f"{len(self.t)} states of {listed(self.coordinates)}"
         return (
             f"Trajectory: {states}, {when}, {self.steps} steps, {self.status}\n"
-            f"is_right={self.is_right}: {kept} of {len(self.checks)} checks hold ({names or 'none'}); "
+            f"is_right={self.is_right}: {kept} of {len(made)} checks hold ({names or 'none'}); "
             f"series: {listed(self.series) or 'none'}"
         )
 
     @property
-    def is_right(self) -> bool:
-        """False when a necessary condition is violated: the numbers are wrong, whatever the integrator says."""
-        return all(check.holds for check in self.checks)
+    def is_right(self) -> bool | None:
+        """True when all checks hold; False when a necessary condition is violated: the numbers are wrong, whatever the
+        integrator says; None when nothing could be checked, or the motion failed or was cancelled.
+        """
+        return verdict(self.checks, self.status != "failed" and not self.cancelled)
 
     def arrays(self) -> dict[str, Array]:
         """t, q, qd and all series by name."""
@@ -126,7 +80,6 @@ class Trajectory:
 
     def summary(self) -> dict[str, Any]:
         """What was found beside the arrays, as plain data."""
-        checks = [{**vars(c), "relative": c.relative, "holds": c.holds} for c in self.checks]
         events = [{"name": e.name, "t": e.t, "q": e.q.tolist(), "qd": e.qd.tolist()} for e in self.events]
         return {
             "coordinates": list(self.coordinates),
@@ -134,7 +87,7 @@ class Trajectory:
             "status": self.status,
             "message": self.message,
             "is_right": self.is_right,
-            "checks": checks,
+            "checks": [check.summary() for check in self.checks],
             "events": events,
             "steps": self.steps,
             "figures": dict(self.figures),

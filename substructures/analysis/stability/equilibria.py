@@ -14,6 +14,8 @@ from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.stability.equilibrium_search import ClosedSearch, RestConditions, RestSearch, SearchRange
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.operating_point import AT_REST
+from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.tree.model import Model
 
@@ -44,6 +46,18 @@ class Equilibrium:
         """What the linearisation says about its stability; ``failed`` where there is none."""
         return "failed" if self.at.stability is None else self.at.stability.verdict
 
+    def check(self) -> Check:
+        """That nothing accelerates there, by the equations of motion of the linearisation, which the search had not."""
+        place = ", ".join(f"{x:.6g}" for x in self.q.tolist())
+        if self.at.status == "failed" or not len(self.at.K):
+            why = self.at.message or "nothing is left to move"
+            return Check.left_out(f"rest at {place}", "zero", why, needed=self.at.status == "failed")
+        # |q''| beside what a unit displacement causes, or 1
+        scale = max(1.0, float(np.abs(np.linalg.solve(self.at.M, self.at.K)).max(initial=0)))
+        worst = float(np.abs(self.at.qdd).max(initial=0))
+        about: About = (f"rest at {place}", "zero", "no accelerations at rest", "rad/s^2, m/s^2")
+        return Check.at(about, worst, 0.0, scale, AT_REST)
+
 
 @dataclass(frozen=True, repr=False)
 class Equilibria:
@@ -54,6 +68,16 @@ class Equilibria:
     found: tuple[Equilibrium, ...]
     held: tuple[str, ...]
     message: str = ""
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """One for each equilibrium."""
+        return tuple(equilibrium.check() for equilibrium in self.found)
+
+    @property
+    def is_right(self) -> bool | None:
+        """Whether all that were found are equilibria; None where there are none."""
+        return verdict(self.checks)
 
     def __repr__(self) -> str:
         verdicts = Counter(e.verdict for e in self.found)

@@ -92,7 +92,10 @@ def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> P
 def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array) -> str:
     """What is not finite, with its place and what to change; else nothing. Leading axes of states are allowed."""
     if not np.isfinite(qdd).all():
-        return "the metric is singular or not positive definite here: change masses, inertias or the state"
+        return (
+            "the accelerations are not finite here: the metric is singular or not positive definite, or numbers "
+            "overflow (beyond 1.8e308); change masses, inertias or the state"
+        )
     for matrix, by in ((D, "the velocity of "), (K, "")):
         bad = np.argwhere(~np.isfinite(matrix))
         if len(bad):

@@ -1,0 +1,85 @@
+"""The error that the size of the steps makes: the same controls once more, with steps half as long.
+
+The gradient of the discrete adjoint is exact for the cost that was computed, whatever the steps; how far that cost, its
+motion and its gradient are from those of the equations of motion is what two runs tell. The error of a Runge-Kutta
+scheme of order 4 falls by 16 when its steps are halved: the difference of both runs is 15/16 of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from substructures.analysis.control.problem import MAX_NUMBERS
+from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.verdict import Check
+from substructures.array import Array
+
+HOW = "a second run with steps half as long finds the same: its difference is the error"
+LARGE = "a second run with steps half as long would need too much memory: take fewer 'steps' or 'intervals'"
+#: of numbers that are zero but for it, beside the others
+ROUNDING = 1e-12
+ABRUPT = "the motion is not finite"
+
+
+def motion_checks(shooting: Shooting, run: Rollout, start: Array, limit: float) -> tuple[Check, ...]:
+    """Cost and motion of ``run`` are those of a run with half the steps from ``start`` (2 n,), in one piece."""
+    reason = _unable(shooting, run)
+    if reason:
+        return _left_out(("cost", "q", "qd"), reason)
+    return tuple(_motion(shooting, run, shooting.refined().run(start[None], run.controls), limit))
+
+
+def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float) -> tuple[Check, ...]:
+    """Cost, motion and gradient are those of steps half as long, relative to the largest number of each."""
+    names = ("gradient by controls", "gradient by q", "gradient by qd", "gradient by parameters")
+    reason = _unable(shooting, run)
+    if reason:
+        return _left_out(("cost", "q", "qd", *names), reason)
+    n, finer = shooting.model.dof, shooting.refined()
+    two = finer.run(run.states[:1], run.controls)
+    careful = finer.pullback(two, np.zeros((1, 1, 2 * n)), np.ones(1))
+    pairs = [(slope.controls, careful.controls)]
+    pairs += [(slope.start[..., part], careful.start[..., part]) for part in (slice(n), slice(n, None))]
+    pairs.append((slope.parameters, careful.parameters))
+    begin = np.full(1, shooting.problem.t)
+    noise = ROUNDING * max(abs(two.cost), *(float(np.abs(b).max(initial=0)) for _, b in pairs))
+    # a gradient belongs to the whole motion, and so to its start
+    derivatives = (
+        _compared(name, "", begin, a.reshape(1, -1), b.reshape(1, -1), limit, noise)
+        for name, (a, b) in zip(names, pairs, strict=True)
+    )
+    return (*_motion(shooting, run, two, limit), *derivatives)
+
+
+def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Iterator[Check]:
+    n, problem = shooting.model.dof, shooting.problem
+    end = np.full(1, problem.t + problem.horizon)
+    yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit)
+    one, other = run.states, two.states[::2]
+    noise = ROUNDING * float(np.abs(other).max(initial=0))
+    t = np.asarray(problem.t + shooting.h * np.arange(len(one)), dtype=np.float64)
+    yield _compared("q", "rad, m", t, one[:, :n], other[:, :n], limit, noise)
+    yield _compared("qd", "rad/s, m/s", t, one[:, n:], other[:, n:], limit, noise)
+
+
+def _compared(name: str, unit: str, t: Array, one: Array, two: Array, limit: float, noise: float = 0.0) -> Check:
+    with np.errstate(invalid="ignore", over="ignore"):
+        error, scale = np.abs(one - two).max(axis=1, initial=0), float(np.abs(two).max(initial=0))
+    # a second run that is not finite confirms nothing
+    if not np.isfinite(scale + noise):
+        error, scale, noise = np.full_like(error, np.inf), 1.0, 0.0
+    return Check.of((name, "accurate", HOW, unit), error, t, scale, limit, noise)
+
+
+def _unable(shooting: Shooting, run: Rollout) -> str:
+    """Why no second run is made."""
+    n, steps = shooting.model.dof, len(run.states) - 1
+    if not (np.isfinite(run.states).all() and np.isfinite(run.cost)):
+        return ABRUPT
+    return LARGE if 2 * steps * 4 * n * (n + 3) > MAX_NUMBERS else ""
+
+
+def _left_out(names: tuple[str, ...], reason: str) -> tuple[Check, ...]:
+    return tuple(Check.left_out(name, "accurate", reason, needed=True) for name in names)
