@@ -12,7 +12,7 @@ from random_trees import Plain
 
 from substructures import Definition, InvalidInput, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import Table
+from substructures.analysis.simulate import Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -184,6 +184,19 @@ def test_a_tree_without_loops_is_the_special_case() -> None:
     needed = evaluate(catalogue_model("double-pendulum"), ["inverse_dynamics"], **state)
     np.testing.assert_allclose(held.qdd, state["qdd"])
     np.testing.assert_allclose(list(held.actuation.values()), needed["inverse_dynamics"], rtol=1e-9)
+
+
+def test_a_force_on_a_coordinate_whose_velocity_occurs_nowhere() -> None:
+    """A mass of 2 kg on a slide, pushed by a force 3 t: no output of the model depends on its velocity."""
+    slide = {"name": "m", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": 2}
+    part = {"name": "p", "bodies": [slide], "loads": [{"type": "joint", "coordinate": "s", "force": "3*t"}]}
+    model = tree_model({"instances": [{"name": "x", "substructure": "p"}]}, {"p": part})
+    np.testing.assert_allclose(loop_state(model, [0.0], t=2).qdd, [3], rtol=1e-14)
+    # s = t^2: the drive adds 2 s'' - 3 t, and both together do the work T = 2 (2 t)^2 / 2
+    motion = simulate(model, [0.0], (0, 1), prescribed={"x.s": "t^2"})
+    assert motion.is_right
+    np.testing.assert_allclose(motion.series["actuation"][:, 0], 4 - 3 * motion.t, atol=1e-9)
+    np.testing.assert_allclose(motion.series["work"], 4 * motion.t**2, atol=1e-9)
 
 
 def test_a_loop_state_says_in_two_lines_what_it_is() -> None:

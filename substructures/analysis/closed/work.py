@@ -8,6 +8,7 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
 POWER = "lost_power"
@@ -30,5 +31,6 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
         # (Q_a + dV/dq^a) q'^a
         force = graph.zero + found["forces"].entries.get((a,), 0)
         total = total + (force + slopes[a]) * graph.symbol(f"{name}'")
-    symbols = {s.name: s for s in model.program.symbols}
+    # velocities also where no output of the model depends on them
+    symbols = Workspace(model).symbols
     return program(graph, found | {POWER: array((), lambda: total)}, symbols)
