@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.linalg import svdvals
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
@@ -184,11 +183,9 @@ class ClosedStepper:
         rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
         def share(part: float) -> float:
-            """sigma_min / sigma_max of G at a part of the step."""
+            """The share of the least singular value of the independent rows at a part of the step."""
             state(start + part * h)
-            # sigma_min / sigma_max of the independent rows
-            values = svdvals(self.s.G[rows])
-            return float(values[-1] / values[0])
+            return self.s.share(len(rows), rows)
 
         k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
         bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
