@@ -62,6 +62,43 @@ def test_reactions_hold_the_parts_in_balance() -> None:
     np.testing.assert_allclose(found.reactions[0].force, [-across, -along, 0], rtol=1e-10, atol=1e-10)
 
 
+AXES: list[tuple[str, Any]] = [("pin", None), ("weld", None), ("pin", [1, 0, 0]), ("pin", [1, 1, 1])]
+AXES += [("slider", [1, 2, 0]), ("cylindrical", [0.6, 0, 0.8]), ("universal", [1, -1, 2]), ("planar", [0, 0.1, 1])]
+
+
+@pytest.mark.parametrize(("kind", "axis"), AXES)
+def test_reactions_are_in_the_axes_of_from(kind: str, axis: Any) -> None:
+    """Newton and Euler in the world: weight less rate of momentum is what the closure lays on its frame `to` there,
+    about whose origin moments are. An axis turns no component.
+    """
+    free = {"type": "free", "coordinate": ["x", "y", "z", "a", "b", "c"]}
+    body = {"name": "b", "parent": "base", "joint": free, "mass": 2, "com": [0.3, -0.2, 0.5]}
+    body |= {"inertia": {"xx": 1, "yy": 1, "zz": 1}}
+    closure = {"name": "hook", "type": kind, "from": "x.b", "to": "world"} | ({"axis": axis} if axis else {})
+    closure["placement"] = {"position": [0.1, 0.2, 0.3], "rpy": [0, 0, 0.7]}
+    document = {"gravity": [0, 0, -9.81], "instances": [{"name": "x", "substructure": "b"}], "closures": [closure]}
+    model = tree_model(document, {"b": {"name": "b", "bodies": [body]}})
+    found = loop_state(model, [0.1, 0.2, 0.3, 0.7, 0, 0])
+    assert found.message == ""
+    place = evaluate(model, ["kinematics"], q=found.consistent.q)["kinematics"]
+    rotation = place["rotation"][model.frames.index("x.b")]
+    centre, alpha = rotation @ np.array([0.3, -0.2, 0.5]), _turning(found.consistent.q, found.qdd)
+    # at rest: m (g - r'' - alpha x c), and c x that less Theta alpha, Theta = 1
+    force = 2 * (np.array([0, 0, -9.81]) - found.qdd[:3] - np.cross(alpha, centre))
+    np.testing.assert_allclose(found.consistent.q[:3], [0.1, 0.2, 0.3], atol=1e-12)
+    np.testing.assert_allclose(rotation @ found.reactions[0].force, force, atol=1e-9)
+    np.testing.assert_allclose(rotation @ found.reactions[0].moment, np.cross(centre, force) - alpha, atol=1e-9)
+    assert np.abs(force).max() > 1
+
+
+def _turning(q: np.ndarray, qdd: np.ndarray) -> np.ndarray:
+    """Angular acceleration in the world at rest: yaw about z, pitch about the new y, roll about the new x."""
+    yaw, pitch = q[3], q[4]
+    y = np.array([-np.sin(yaw), np.cos(yaw), 0])
+    x = np.array([np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), -np.sin(pitch)])
+    return qdd[3] * np.array([0, 0, 1]) + qdd[4] * y + qdd[5] * x
+
+
 def test_consistent_start_keeps_fixed_coordinates() -> None:
     """Slider-crank in closed form: x = r cos a + sqrt(l^2 - r^2 sin^2 a)."""
     model, a, w = slider_crank(), 0.9, 12.0
