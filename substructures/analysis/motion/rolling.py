@@ -87,7 +87,8 @@ class _Rolling:
         self._run()
         out, result = self._out, np.empty(len(y))
         force = out["forces"][0] - out[self.form][0]
-        _, acceleration, info = lapack.dposv(out["metric"][0], force)
+        # LAPACK takes no matrix without rows: nothing is left free
+        _, acceleration, info = lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
         result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
         result[self.n : -1] = acceleration if not info else np.nan
         return result
