@@ -5,25 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from closed_motions import METHODS, right
-from closed_trees import tree_model
+from closed_trees import slides, tree_model
 from random_trees import Plain
 
 from substructures import Model
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import simulate
-
-
-def slides() -> Model:
-    """A mass of 1 kg that slides along x and y on a rod of 1 m about the origin."""
-    first = {"type": "prismatic", "coordinate": "x", "psi": "pi/2", "theta": "pi/2"}
-    second = {"type": "prismatic", "coordinate": "y", "theta": "pi/2"}
-    bodies = [
-        {"name": "a", "parent": "base", "joint": first},
-        {"name": "b", "parent": "a", "joint": second, "mass": 1},
-    ]
-    rod = {"name": "rod", "type": "rod", "from": "x.b", "to": "world", "length": 1}
-    document = {"instances": [{"name": "x", "substructure": "slides"}], "closures": [rod]}
-    return tree_model(document, {"slides": {"name": "slides", "bodies": bodies}})
 
 
 def parallelogram() -> Model:
