@@ -158,7 +158,7 @@ class Constrained:
 
     @property
     def lost_power(self) -> float:
-        """(Q + dV/dq) q': power of the applied forces that have no potential [W]."""
+        """(Q + dV/dq) q' + dV/dt: power of the applied forces that have no constant potential [W]."""
         return float(self._out[POWER][0])
 
     def directions(self) -> Array:

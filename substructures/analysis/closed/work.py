@@ -15,18 +15,20 @@ POWER = "lost_power"
 
 
 def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) -> Program:
-    """These outputs of the model and ``lost_power`` (): (Q_a + dV/dq^a) q'^a [W], for ``inputs``; others are zero.
+    """These outputs of the model and ``lost_power`` () [W]: (Q_a + dV/dq^a) q'^a + dV/dt, for ``inputs``; others are 0.
 
-    V: potential energy of gravity and all springs. The power of dampers is negative, that of drives positive; the
-    output has no entry when the forces have a potential. Raises ZeroDivisionError where a derivative is infinite.
+    V: potential energy of gravity and all springs, whose laws may depend on time. The power of dampers is negative,
+    that of drives positive; the output has no entry when the forces have a potential that does not change. Raises
+    ZeroDivisionError where a derivative is infinite.
     """
     graph = Graph()
     # inputs that are not given are 0
     absent = {s.name: graph.zero for s in model.program.symbols if s.kind == "input" and s.name not in inputs}
     found = replay(model.program, graph, absent, [*outputs, "forces", "potential_energy"])
     potential = graph.zero + found["potential_energy"].entries.get((), 0)
-    (slopes,) = gradient([potential], model.coordinates)
-    total: Expr = graph.zero
+    (slopes,) = gradient([potential], [*model.coordinates, "t"])
+    # dV/dt at rest
+    total: Expr = slopes[-1]
     for a, name in enumerate(model.coordinates):
         # (Q_a + dV/dq^a) q'^a
         force = graph.zero + found["forces"].entries.get((a,), 0)

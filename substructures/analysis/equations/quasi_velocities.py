@@ -23,7 +23,7 @@ structure             n p p  c^k_ij at [k, i, j]
 multipliers           m      lambda in g q'' + Gamma q'q' = Q + B^T lambda; needs v' (``name'``): S^T (g q'' + ... - Q)
 kinetic_energy               T* = v^T g* v / 2 [J]
 potential_energy             of gravity and springs [J]
-lost_power                   power of the forces without potential [W]
+lost_power                   power of the forces without potential, and dV/dt of springs that change with time [W]
 gaps                  k      constant [m, 1]: distances of rolling bodies from planes, residuals of closures
 ====================  =====  ==============================================================================
 """
@@ -212,9 +212,9 @@ class _Equations:
 
     def _lost_power(self, Q: Sequence[Expr]) -> Expr:
         potential = self.f.graph.zero + self.model["potential_energy"].get((), 0)
-        # (Q_a + dV/dq^a) q'^a
-        (slopes,) = gradient([potential], self.f.model.coordinates)
-        return self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
+        # (Q_a + dV/dq^a) q'^a + dV/dt
+        (slopes,) = gradient([potential], [*self.f.model.coordinates, "t"])
+        return self._sum((q + s) * x for q, s, x in zip(Q, slopes[:-1], self.rates, strict=True)) + slopes[-1]
 
     def _sum(self, terms: Any) -> Expr:
         return self.f.graph.sum(self.f.graph.zero + x for x in terms)

@@ -58,6 +58,12 @@ class Conditions:
         """Velocities at the start (n,)."""
         return self.start[self.model.dof :]
 
+    @property
+    def is_balanced(self) -> bool:
+        """Whether T + V has a balance: V contains no input that varies, whose rate is not known."""
+        found = {s.name for s in self.model.program.select(["potential_energy"]).symbols}
+        return found.isdisjoint((*self.formulas, *self.curves))
+
     def breaks(self, span: tuple[float, float]) -> list[float]:
         """Inner times where an input or its slope jumps [s]: the integrator begins anew there."""
         return sorted({t for curve in self.curves.values() for t in curve.breaks if span[0] < t < span[1]})
