@@ -66,6 +66,19 @@ def bricard(gravity: Any = (0, -9.81, 0)) -> Model:
     return tree_model({"gravity": list(gravity), "instances": instances, "closures": [closure]}, named)
 
 
+def slides() -> Model:
+    """A mass of 1 kg that slides along x and y on a rod of 1 m about the origin."""
+    first = {"type": "prismatic", "coordinate": "x", "psi": "pi/2", "theta": "pi/2"}
+    second = {"type": "prismatic", "coordinate": "y", "theta": "pi/2"}
+    bodies = [
+        {"name": "a", "parent": "base", "joint": first},
+        {"name": "b", "parent": "a", "joint": second, "mass": 1},
+    ]
+    rod = {"name": "rod", "type": "rod", "from": "x.b", "to": "world", "length": 1}
+    document = {"instances": [{"name": "x", "substructure": "slides"}], "closures": [rod]}
+    return tree_model(document, {"slides": {"name": "slides", "bodies": bodies}})
+
+
 def at(model: Model, **values: float) -> np.ndarray:
     """A state by coordinate names without the instance."""
     return np.array([values.get(name.partition(".")[2], 0.0) for name in model.coordinates])

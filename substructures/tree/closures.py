@@ -1,7 +1,8 @@
 """Closures of loops as formulas: residuals, Jacobian and acceleration terms from U and Omega alone.
 
-A closure equates a frame A (``from``) and a frame B (``to``) as far as its joint demands. With everything in the axes
-of A, d = r_B - r_A, M = R_A R_B^T (components in B -> components in A, columns m_j = axes of B) and the relative
+A closure equates a frame A (``from``) and a frame B (``to``) as far as its joint demands. Where the joint has an
+``axis``, A and B are these frames turned by one constant rotation that makes it the third axis. With everything in the
+axes of A, d = r_B - r_A, M = R_A R_B^T (components in B -> components in A, columns m_j = axes of B) and the relative
 partial velocities of coordinate a
 
     u_a = M U_Ba - U_Aa - Omega_Aa x d        w_a = M Omega_Ba - Omega_Aa
@@ -26,7 +27,7 @@ output                    shape  meaning (m rows of all closures in order)
 closure.residual          m      phi
 closure.jacobian          m n    G
 closure.acceleration      m      G' q'
-closure.direction         m 3    force or moment on B of a unit multiplier, in the axes of A
+closure.direction         m 3    force or moment on B of a unit multiplier, in the axes of ``from``
 closure.alignment         m      m_j . e_j of the axes that a row makes parallel: 1 when closed, -1 when upside down;
                                  0 for all other rows
 ========================  =====  ====================================================================
@@ -155,7 +156,9 @@ def closure_formulas(placed: Sequence[PlacedPart], cuts: Sequence[Cut], rates: S
             entries["residual"][(k,)] = residual
             entries["jacobian"] |= {(k, a): x for a, x in columns.items()}
             entries["acceleration"][(k,)] = acceleration
-            directions |= {(k, i): direction[i] for i in range(3)}
+            # from the axes of A, turned to the joint axis, to those of the frame ``from``
+            shown = apply(transpose(cut.start.E), direction)
+            directions |= {(k, i): shown[i] for i in range(3)}
             alignment[(k,)] = relative.axes[ALIGNED[name]][ALIGNED[name]] if name in ALIGNED else 0
             k += 1
     shapes = {"residual": (k,), "jacobian": (k, len(rates)), "acceleration": (k,)}

@@ -183,6 +183,28 @@ def test_multipliers_converge_to_the_costates() -> None:
     assert found.trajectory.q[-1, 0] == pytest.approx(motion.y[0, -1], rel=1e-9)
 
 
+@pytest.mark.parametrize("hold", ["linear", "constant"])
+def test_the_hamiltonian_at_every_time_and_at_the_end(hold: Any) -> None:
+    """A mass on a slide, m q'' = u: H = q^2 + t u + lambda_q q' + lambda_qd u / m, and lambda(T) = (2 q, 3)."""
+    slide = {"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "q"}, "mass": 2}
+    model = model_of({"name": "slide", "bodies": [slide]}, (0, 0, 0))
+    u = [0.5, -1.0, 2.0, 7.0][: 3 + (hold == "linear")]
+    request: Plain = {
+        "controls": ["tau.x.q"],
+        "cost": Cost("x.q^2 + t*tau.x.q", "x.q^2 + 3*x.q'"),
+        "q": [0.4],
+        "qd": [1.0],
+    }
+    request |= {"horizon": 0.6, "intervals": 3, "steps": 2, "hold": hold, "t": 0.3, "values": {"tau.x.q": u}}
+    motion = cost_gradient(model, **request).trajectory
+    nodes = 0.3 + 0.2 * np.arange(len(u))
+    force = np.interp(motion.t, nodes, u) if hold == "linear" else np.repeat(u, [2, 2, 3])
+    q, qd, lam = motion.q[:, 0], motion.qd[:, 0], motion.series["costates"]
+    expected = q**2 + motion.t * force + lam[:, 0] * qd + lam[:, 1] * force / 2
+    np.testing.assert_allclose(lam[-1], [2 * q[-1], 3], rtol=1e-13)
+    np.testing.assert_allclose(motion.series["hamiltonian"], expected, rtol=1e-12)
+
+
 def test_formulas_print_in_every_format_and_cost_little() -> None:
     model = shipped("puma560")
     controls = inputs_of(model)

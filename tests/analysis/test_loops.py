@@ -12,7 +12,7 @@ from random_trees import Plain
 
 from substructures import Definition, InvalidInput, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import Table
+from substructures.analysis.simulate import Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -60,6 +60,43 @@ def test_reactions_hold_the_parts_in_balance() -> None:
     # on the bob, along and across the bar: m (a - g); the closure's force acts on the world
     along, across = 2 * (0.5 * w**2 + 9.81 * np.cos(q)), 2 * (0.5 * qdd + 9.81 * np.sin(q))
     np.testing.assert_allclose(found.reactions[0].force, [-across, -along, 0], rtol=1e-10, atol=1e-10)
+
+
+AXES: list[tuple[str, Any]] = [("pin", None), ("weld", None), ("pin", [1, 0, 0]), ("pin", [1, 1, 1])]
+AXES += [("slider", [1, 2, 0]), ("cylindrical", [0.6, 0, 0.8]), ("universal", [1, -1, 2]), ("planar", [0, 0.1, 1])]
+
+
+@pytest.mark.parametrize(("kind", "axis"), AXES)
+def test_reactions_are_in_the_axes_of_from(kind: str, axis: Any) -> None:
+    """Newton and Euler in the world: weight less rate of momentum is what the closure lays on its frame `to` there,
+    about whose origin moments are. An axis turns no component.
+    """
+    free = {"type": "free", "coordinate": ["x", "y", "z", "a", "b", "c"]}
+    body = {"name": "b", "parent": "base", "joint": free, "mass": 2, "com": [0.3, -0.2, 0.5]}
+    body |= {"inertia": {"xx": 1, "yy": 1, "zz": 1}}
+    closure = {"name": "hook", "type": kind, "from": "x.b", "to": "world"} | ({"axis": axis} if axis else {})
+    closure["placement"] = {"position": [0.1, 0.2, 0.3], "rpy": [0, 0, 0.7]}
+    document = {"gravity": [0, 0, -9.81], "instances": [{"name": "x", "substructure": "b"}], "closures": [closure]}
+    model = tree_model(document, {"b": {"name": "b", "bodies": [body]}})
+    found = loop_state(model, [0.1, 0.2, 0.3, 0.7, 0, 0])
+    assert found.message == ""
+    place = evaluate(model, ["kinematics"], q=found.consistent.q)["kinematics"]
+    rotation = place["rotation"][model.frames.index("x.b")]
+    centre, alpha = rotation @ np.array([0.3, -0.2, 0.5]), _turning(found.consistent.q, found.qdd)
+    # at rest: m (g - r'' - alpha x c), and c x that less Theta alpha, Theta = 1
+    force = 2 * (np.array([0, 0, -9.81]) - found.qdd[:3] - np.cross(alpha, centre))
+    np.testing.assert_allclose(found.consistent.q[:3], [0.1, 0.2, 0.3], atol=1e-12)
+    np.testing.assert_allclose(rotation @ found.reactions[0].force, force, atol=1e-9)
+    np.testing.assert_allclose(rotation @ found.reactions[0].moment, np.cross(centre, force) - alpha, atol=1e-9)
+    assert np.abs(force).max() > 1
+
+
+def _turning(q: np.ndarray, qdd: np.ndarray) -> np.ndarray:
+    """Angular acceleration in the world at rest: yaw about z, pitch about the new y, roll about the new x."""
+    yaw, pitch = q[3], q[4]
+    y = np.array([-np.sin(yaw), np.cos(yaw), 0])
+    x = np.array([np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), -np.sin(pitch)])
+    return qdd[3] * np.array([0, 0, 1]) + qdd[4] * y + qdd[5] * x
 
 
 def test_consistent_start_keeps_fixed_coordinates() -> None:
@@ -184,6 +221,19 @@ def test_a_tree_without_loops_is_the_special_case() -> None:
     needed = evaluate(catalogue_model("double-pendulum"), ["inverse_dynamics"], **state)
     np.testing.assert_allclose(held.qdd, state["qdd"])
     np.testing.assert_allclose(list(held.actuation.values()), needed["inverse_dynamics"], rtol=1e-9)
+
+
+def test_a_force_on_a_coordinate_whose_velocity_occurs_nowhere() -> None:
+    """A mass of 2 kg on a slide, pushed by a force 3 t: no output of the model depends on its velocity."""
+    slide = {"name": "m", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": 2}
+    part = {"name": "p", "bodies": [slide], "loads": [{"type": "joint", "coordinate": "s", "force": "3*t"}]}
+    model = tree_model({"instances": [{"name": "x", "substructure": "p"}]}, {"p": part})
+    np.testing.assert_allclose(loop_state(model, [0.0], t=2).qdd, [3], rtol=1e-14)
+    # s = t^2: the drive adds 2 s'' - 3 t, and both together do the work T = 2 (2 t)^2 / 2
+    motion = simulate(model, [0.0], (0, 1), prescribed={"x.s": "t^2"})
+    assert motion.is_right
+    np.testing.assert_allclose(motion.series["actuation"][:, 0], 4 - 3 * motion.t, atol=1e-9)
+    np.testing.assert_allclose(motion.series["work"], 4 * motion.t**2, atol=1e-9)
 
 
 def test_a_loop_state_says_in_two_lines_what_it_is() -> None:

@@ -110,6 +110,14 @@ def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
     assert simulate(sleigh(), **request, progress=lambda share: share < 0.1).status == "stopped"
 
 
+def test_constraints_that_leave_no_velocity_free() -> None:
+    """The sleigh held by three rows rests where it is."""
+    held = [Linear(name, f"s.{name}'") for name in ("x", "y", "f")]
+    motion = simulate(sleigh(), [0.1, 0.2, 0.3], (0, 1), constraints=held)
+    assert (motion.status, motion.is_right) == ("finished", True)
+    np.testing.assert_array_equal(motion.q[-1], [0.1, 0.2, 0.3])
+
+
 def test_nothing_that_has_mass() -> None:
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 1]}
     motion = simulate(sleigh(), **request, parameters={"s.m": 0, "s.I": 0})

@@ -35,6 +35,9 @@ from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, RANK
 from substructures.tree.model import Model
 
+#: in which the lengths of the rows of G are looked at
+POSITIONS = 8
+ALL = slice(None)
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
@@ -50,7 +53,8 @@ class Constrained:
     """A state at a time and what follows from it, in arrays that the next :meth:`move` overwrites.
 
     ``g`` (n, n), ``f`` = Q - Gamma q'q' (n,), ``phi`` (m,), ``G`` (m, n), ``c`` (m,), ``phi_t`` (m,);
-    ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``.
+    ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``. ``reach`` (m,): how long the rows of
+    G are in other positions, by which ranks and conditions are judged: a row that vanishes alone is singular, too.
     """
 
     def __init__(
@@ -78,6 +82,7 @@ class Constrained:
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
         self._bind(list(start.inputs), folder)
+        self.reach = self._reach(span[0])
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
@@ -99,6 +104,17 @@ class Constrained:
         columns = [(state_names(self.model), self._x), *self.inputs.columns]
         self._run = kernel.bind(self._out, self.conditions.values | {"t": self._t}, columns=columns)
         self.g = self._out["metric"][0]
+
+    def _reach(self, t: float) -> Array:
+        """The greatest length of every row of G at the start and with all joints turned anyhow; 1 of rows of zeros."""
+        start, rest, rng = self.conditions.q, np.zeros(self.n), np.random.default_rng(5)
+        turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
+        found = np.zeros(len(self.labels))
+        for k in range(POSITIONS if len(found) else 0):
+            turned = np.where(turns, rng.uniform(-np.pi, np.pi, self.n), start)
+            self.move(t, turned if k else start, rest)
+            found = np.fmax(found, np.linalg.norm(self.G, axis=1))
+        return np.where((found > 0) & np.isfinite(found), found, 1.0)
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
@@ -125,6 +141,16 @@ class Constrained:
         return self.G @ self.qd + self.phi_t
 
     @property
+    def balanced(self) -> Array:
+        """G with its rows over their ``reach``: numbers without unit, about 1 away from singular positions."""
+        return np.asarray(self.G / self.reach[:, None], dtype=np.float64)
+
+    def share(self, rank: int, rows: NDArray[np.int64] | slice = ALL) -> float:
+        """The rank-th singular value of (some rows of) the balanced G, over the largest there, or elsewhere."""
+        values = svdvals(self.balanced[rows]) if rank else np.ones(1)
+        return 0.0 if len(values) < rank else float(values[rank - 1] / max(values[0], 1.0))
+
+    @property
     def energies(self) -> tuple[float, float]:
         """T and V [J]."""
         # T = q'^T g q' / 2
@@ -132,7 +158,7 @@ class Constrained:
 
     @property
     def lost_power(self) -> float:
-        """(Q + dV/dq) q': power of the applied forces that have no potential [W]."""
+        """(Q + dV/dq) q' + dV/dt: power of the applied forces that have no constant potential [W]."""
         return float(self._out[POWER][0])
 
     def directions(self) -> Array:
@@ -183,7 +209,7 @@ class Constrained:
 
     def rank(self) -> int:
         """Number of independent rows here."""
-        return rank_of(self.G)
+        return rank_of(self.balanced)
 
     def independent_rows(self) -> NDArray[np.int64]:
         """Indices of as many independent rows as there are, chosen by QR with pivoting of G^T; in order."""
@@ -191,7 +217,7 @@ class Constrained:
         if not rank:
             return np.zeros(0, dtype=np.int64)
         # G^T P = Q R: rows in the order of what they add to those before
-        pivots = qr(self.G.T, mode="r", pivoting=True)[1]
+        pivots = qr(self.balanced.T, mode="r", pivoting=True)[1]
         return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
 
 
@@ -218,12 +244,10 @@ def _compiled(
     return source, compile_program(source, [*outputs, POWER], folder)
 
 
-def rank_of(G: Array) -> int:
-    """Number of singular values above RANK times the largest."""
-    if not G.size:
-        return 0
-    values = svdvals(G)
-    return int((values > RANK * values[0]).sum()) if values[0] > 0 else 0
+def rank_of(balanced: Array) -> int:
+    """Number of singular values above RANK times the largest, which is not below 1 but near singular positions."""
+    values = svdvals(balanced) if balanced.size else np.zeros(0)
+    return int((values > RANK * max(1.0, values.max(initial=0))).sum())
 
 
 def require_fixed(model: Model, fixed: Sequence[str]) -> None:

@@ -1,7 +1,8 @@
 """How well the energy of states on closures is known: next to a singular position rounding errors are amplified.
 
-A position that was rounded opens the closures by r, about eps |q| S_1 with the singular values S_1 >= ... >= S_p of G,
-and so do the last steps of Newton's method that are left out. As far as that tells, the motion may be at q + dq too,
+A position that was rounded opens the closures by r, about eps |q| S_1 with the singular values S_1 >= ... >= S_p of G
+(balanced, S_1 at least 1), and so do the last steps of Newton's method that are left out. As far as that tells, the
+motion may be at q + dq too,
 
     dq = (r / S_k) v_k        dq' = -G^+ (G(q + dq) q' + phi_t)
 
@@ -13,7 +14,7 @@ where S_p / S_1 is 1e-3. It is found by evaluating both states; no property of t
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import svd, svdvals
+from scipy.linalg import svd
 
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import CLOSED
@@ -35,8 +36,7 @@ def energy_doubt(s: Constrained, rank: int, t: Array, x: Array, ends: Array) -> 
     shares, found = np.full(len(t), np.nan), np.zeros(len(t))
     for k in np.flatnonzero(np.isfinite(x).all(axis=1)).tolist():
         s.move(float(t[k]), *np.split(x[k], 2))
-        values = svdvals(s.G)
-        shares[k] = values[rank - 1] / values[0]
+        shares[k] = s.share(rank)
     best = float(np.nanmax(shares, initial=0))
     some = np.linspace(0, len(t) - 1, FEW).astype(np.int64)
     for k in np.union1d(np.flatnonzero(shares < NEAR * best), some).tolist():
@@ -51,14 +51,16 @@ def energy_doubt(s: Constrained, rank: int, t: Array, x: Array, ends: Array) -> 
 def _difference(s: Constrained, rank: int, part: float) -> float:
     """The largest difference of T + V between where s is and beside it; ``part``: the share there over the best one."""
     t, q, qd, energy = s.t, s.q, s.qd, sum(s.energies)
-    _, S, W = svd(s.G)
-    opening = UNITS * np.finfo(float).eps * max(1.0, float(np.abs(q).max())) * S[0] + part**2 * CLOSED / 100
+    _, S, W = svd(s.balanced)
+    # r: of rounding, and what project() leaves open, over the lengths of the rows
+    rounding = UNITS * np.finfo(float).eps * max(1.0, float(np.abs(q).max())) * max(1.0, float(S[0]))
+    opening = rounding + part**2 * CLOSED / 100 / float(s.reach.min())
     return max(abs(_energy(s, rank, t, q + opening / S[k] * W[k], qd) - energy) for k in range(rank))
 
 
 def _energy(s: Constrained, rank: int, t: float, q: Array, qd: Array) -> float:
     """T + V with the nearest velocities that meet the closures at q."""
     s.move(t, q, qd)
-    U, S, W = svd(s.G)
-    s.move(t, q, qd - W[:rank].T @ ((U[:, :rank].T @ s.velocity_residual) / S[:rank]))
+    U, S, W = svd(s.balanced)
+    s.move(t, q, qd - W[:rank].T @ ((U[:, :rank].T @ (s.velocity_residual / s.reach)) / S[:rank]))
     return sum(s.energies)

@@ -157,7 +157,7 @@ def _solved(about: About, s: Constrained, terms: tuple[Array, ...], least: float
 def mobility(s: Constrained, t: float, q: Array) -> Mobility:
     """Rank, redundancy and independent coordinates at a position that meets the closures."""
     s.move(t, q, np.zeros(s.n))
-    G = s.G.copy()
+    G = s.balanced
     rank, m = rank_of(G), len(s.labels)
     chosen = set(s.independent_rows().tolist())
     dependent = tuple(label for k, label in enumerate(s.labels) if k not in chosen)
@@ -170,7 +170,7 @@ def mobility(s: Constrained, t: float, q: Array) -> Mobility:
 
 
 def independent_coordinates(G: Array) -> NDArray[np.int64]:
-    """Coordinates whose velocities determine all others, by QR with pivoting of the Jacobian; in order."""
+    """Coordinates whose velocities determine all others, by QR with pivoting of the balanced Jacobian; in order."""
     # G P = Q R: the first columns of the permutation P are dependent coordinates, G_y y' = -G_x x'
     rank = rank_of(G)
     if not rank:

@@ -97,7 +97,8 @@ def _least(s: Constrained, free: NDArray[np.int64], residual: Array) -> Array:
     inertia = np.diag(s.g)[free]
     # dq = -W (G W)^+ phi, W = diag(g)^(-1/2)
     weight = 1 / np.sqrt(np.where(inertia > 0, inertia, 1.0))
-    found = lstsq(s.G[:, free] * weight, -residual, cond=RANK, lapack_driver="gelsd", check_finite=False)
+    G, left = s.balanced[:, free], residual / s.reach
+    found = lstsq(G * weight, -left, cond=RANK, lapack_driver="gelsd", check_finite=False)
     return np.asarray(weight * found[0], dtype=np.float64)
 
 

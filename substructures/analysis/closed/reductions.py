@@ -72,18 +72,14 @@ class Reduction(ABC):
     def land(self, t: float, y: Array) -> tuple[Array, Array]:
         """The state of y (q, q'), on the closures; s stays there. Raises Singular."""
         q, qd = self.unpack(t, y)
-        part = min(1.0, self._share() / self.best_share) if self.best_share else 1.0
+        part = min(1.0, self.s.share(self.rank) / self.best_share) if self.best_share else 1.0
         q, qd, _ = project(self.s, t, q, qd, self.rows, part**2 * CLOSED / 100)
         return q, qd
 
     def is_singular(self, part: float = 0) -> bool:
         """Whether s is at a singular position, or beside one: at less than this part of the best share."""
-        return self.rank > 0 and not self._share() > max(100 * RANK, max(part, self.close) * self.best_share)
-
-    def _share(self) -> float:
-        """The smallest singular value that does not vanish everywhere, over the largest, where s is."""
-        values = svdvals(self.s.G) if self.rank else np.ones(1)
-        return 0.0 if len(values) < self.rank else float(values[self.rank - 1] / values[0])
+        least = max(100 * RANK, max(part, self.close) * self.best_share)
+        return self.rank > 0 and not self.s.share(self.rank) > least
 
     def _acceleration(self) -> tuple[Array, float]:
         """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
@@ -100,11 +96,12 @@ class Reduction(ABC):
         """Rows that stay independent; all other rows depend on them."""
         if not self.rank:
             return
-        self.best_share = max(self.best_share, self._share())
+        share = self.s.share(self.rank)
+        self.best_share = max(self.best_share, share)
         if self.is_singular():
             raise Singular(SINGULAR)
-        if anew or svdvals(self.s.G[self.rows])[-1] < WORN * svdvals(self.s.G)[self.rank - 1]:
-            pivots = qr(self.s.G.T, mode="r", pivoting=True)[1]
+        if anew or self.s.share(self.rank, self.rows) < WORN * share:
+            pivots = qr(self.s.balanced.T, mode="r", pivoting=True)[1]
             self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
 
 
@@ -147,17 +144,21 @@ class Partitioned(Reduction):
         self._partition()
 
     def _partition(self) -> None:
-        pivots = np.arange(self.n) if not self.rank else qr(self.s.G[self.rows], mode="r", pivoting=True)[1]
+        G = self.s.balanced[self.rows]
+        pivots = np.arange(self.n) if not self.rank else qr(G, mode="r", pivoting=True)[1]
         self.dependent: NDArray[np.int64] = np.sort(pivots[: self.rank]).astype(np.int64)
         self.independent: NDArray[np.int64] = np.sort(pivots[self.rank :]).astype(np.int64)
         self.best = self._condition()
 
     def _condition(self) -> float:
-        """Smallest over largest singular value of the columns of the dependent coordinates."""
+        """Smallest singular value of the columns of the dependent coordinates over that of all columns, 0 to 1.
+
+        The condition of those columns alone says nothing: of one column it is 1 wherever that goes through zero.
+        """
         if not self.rank:
             return 1.0
-        values = svdvals(self.s.G[np.ix_(self.rows, self.dependent)])
-        return float(values[-1] / values[0])
+        G = self.s.balanced[self.rows]
+        return float(svdvals(G[:, self.dependent])[-1] / svdvals(G)[-1])
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         """(y, y', work) of the independent coordinates."""
@@ -189,20 +190,20 @@ class Partitioned(Reduction):
         return q, qd
 
     def _factor(self) -> tuple[Array, NDArray[np.int32]]:
-        """L U of the columns G_d of the dependent coordinates, and the order of its rows."""
+        """L U of the balanced columns G_d of the dependent coordinates, and the order of its rows."""
         if not self.rank:
             return np.ones((0, 0)), np.zeros(0, dtype=np.int32)
-        lu, order, info = lapack.dgetrf(self.s.G[np.ix_(self.rows, self.dependent)])
+        lu, order, info = lapack.dgetrf(self.s.balanced[np.ix_(self.rows, self.dependent)])
         if info:
             raise Singular(UNDETERMINED)
         return lu, order
 
     def _part(self, factor: tuple[Array, NDArray[np.int32]]) -> float:
-        """The smallest pivot over the largest, as a part of the best along the motion."""
+        """The smallest pivot over the largest, here or elsewhere, as a part of the best along the motion."""
         if not self.rank:
             return 1.0
         pivots = np.abs(factor[0].diagonal())
-        share = float(pivots.min() / pivots.max())
+        share = float(pivots.min() / max(pivots.max(), 1.0))
         self.best_pivots = max(self.best_pivots, share)
         return share / self.best_pivots
 
@@ -210,7 +211,7 @@ class Partitioned(Reduction):
         """x with G_d x = b. Raises Singular."""
         if not self.rank:
             return b
-        x, _ = lapack.dgetrs(*factor, b)
+        x, _ = lapack.dgetrs(*factor, b / self.s.reach[self.rows])
         if not np.isfinite(x).all():
             raise Singular(UNDETERMINED)
         return np.asarray(x, dtype=np.float64)

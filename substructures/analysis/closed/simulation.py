@@ -65,9 +65,10 @@ def simulate_closed(
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
     of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, and
     T + V - work is constant, or, where an input that varies is part of V, a second run finds the same; work is that of
-    forces without potential and of prescribed coordinates. Loops that cannot be closed, a singular position at the
-    start or on the way and a span that cannot be finished are ``failed``, with advice and the motion up to there.
-    Raises InvalidInput (pointers start with names of arguments of ``simulate``) and MissingValue.
+    forces without potential, of springs that change with time, and of prescribed coordinates. Loops that cannot be
+    closed, a singular position at the start or on the way and a span that cannot be finished are ``failed``, with
+    advice and the motion up to there. Raises InvalidInput (pointers start with names of arguments of ``simulate``) and
+    MissingValue.
     """
     require_fixed(problem.model, problem.fixed)
     s, start = _constrained(problem, folder), problem.span[0]

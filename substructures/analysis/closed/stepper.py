@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.linalg import svdvals
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
@@ -102,7 +101,7 @@ class ClosedStepper:
 
     def _stop_before(self, time: float, message: str) -> None:
         """End this step where states are still determined well enough to go on from there; the next one fails."""
-        self._message, state, end = message, self._search(), self.t
+        self._message, state, end = message, self.rough_output(), self.t
         for _ in range(BISECTIONS):
             middle = (end + time) / 2
             end, time = (middle, time) if self._determined(state, middle) else (end, middle)
@@ -180,15 +179,13 @@ class ClosedStepper:
 
     def _passed(self) -> float | None:
         """When the smallest singular value comes near zero within the last step [s]."""
-        state, start, h = self._search(), self.t, self.inner.t - self.t
+        state, start, h = self.rough_output(), self.t, self.inner.t - self.t
         rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
         def share(part: float) -> float:
-            """sigma_min / sigma_max of G at a part of the step."""
+            """The share of the least singular value of the independent rows at a part of the step."""
             state(start + part * h)
-            # sigma_min / sigma_max of the independent rows
-            values = svdvals(self.s.G[rows])
-            return float(values[-1] / values[0])
+            return self.s.share(len(rows), rows)
 
         k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
         bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
@@ -206,7 +203,7 @@ class ClosedStepper:
 
         return self._landed(within(self.inner, make, self.t))
 
-    def _search(self) -> Callable[[float], Array]:
+    def rough_output(self) -> Callable[[float], Array]:
         """The same, less accurate, but also where the accelerations are not determined."""
         self.reduction.expect(self._way[0])  # the integrator evaluates once more within the step
         return self._landed(self.inner.dense_output())

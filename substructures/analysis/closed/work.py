@@ -8,17 +8,18 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
 POWER = "lost_power"
 
 
 def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) -> Program:
-    """These outputs of the model and ``lost_power`` (): (Q_a + dV/dq^a) q'^a + dV/dt [W], for ``inputs``; others are
-    zero.
+    """These outputs of the model and ``lost_power`` () [W]: (Q_a + dV/dq^a) q'^a + dV/dt, for ``inputs``; others are 0.
 
-    V: potential energy of gravity and all springs. The power of dampers is negative, that of drives positive; the
-    output has no entry when the forces have a potential. Raises ZeroDivisionError where a derivative is infinite.
+    V: potential energy of gravity and all springs, whose laws may depend on time. The power of dampers is negative,
+    that of drives positive; the output has no entry when the forces have a potential that does not change. Raises
+    ZeroDivisionError where a derivative is infinite.
     """
     graph = Graph()
     # inputs that are not given are 0
@@ -30,5 +31,6 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
         # (Q_a + dV/dq^a) q'^a
         force = graph.zero + found["forces"].entries.get((a,), 0)
         total = total + (force + slopes[a]) * graph.symbol(f"{name}'")
-    symbols = {s.name: s for s in model.program.symbols}
+    # velocities also where no output of the model depends on them
+    symbols = Workspace(model).symbols
     return program(graph, found | {POWER: array((), lambda: total)}, symbols)

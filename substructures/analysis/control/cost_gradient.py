@@ -160,16 +160,14 @@ def _gradient(
 def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:
     """The motion before every step and at the end, up to where it is finite; ``slope``: of the cost, W = 1.
 
-    Series: ``controls`` (K, m), ``costates`` (K, 2 n) (of q, then of q'), ``hamiltonian`` (K,), the last one repeated.
+    Series: ``controls`` (K, m), ``costates`` (K, 2 n) (of q, then of q'), ``hamiltonian`` (K,).
     """
     n, states, lam = shooting.model.dof, run.states, slope.costates[0]
     costates = np.concatenate([lam[:-1].swapaxes(0, 1).reshape(-1, 2 * n), lam[-1:, -1]])
-    # H(x_j, u_j, lambda_j) before every step; there is no stage after the last one
-    H = shooting.hamiltonians(run, lam)
     series = {
         "controls": shooting.controls_at_steps(run.controls),
         "costates": costates,
-        "hamiltonian": np.append(H, H[-1:]),
+        "hamiltonian": shooting.hamiltonians(run, lam),
     }
     # t_j = t_0 + j h
     t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(states)), dtype=np.float64)

@@ -159,12 +159,16 @@ class Shooting:
         return Slope(lam, self._joined(parts), parts, parameters, costates)
 
     def hamiltonians(self, run: Rollout, costates: Array) -> Array:
-        """H before every step, (S J,), for the costates (J + 1, S, 2 n) of the cost."""
+        """H before every step and at the last end, (S J + 1,), for the costates (J + 1, S, 2 n) of the cost."""
         e, n = self.equations, self.model.dof
-        flat = [a.swapaxes(0, 1).reshape(-1, a.shape[-1]) for a in (run.stages[:, 0], run.accelerations[:, 0])]
-        lam = costates[:-1].swapaxes(0, 1).reshape(-1, 2 * n)
-        u, t = (np.concatenate(x) for x in zip(*self._all_controls(run.controls), strict=True))
-        columns = [(self.state_names, flat[0]), (e.names(primes="''"), flat[1]), (self.costate_names, lam)]
+        inner = run.accelerations[:, 0].swapaxes(0, 1).reshape(-1, n)
+        # at the end there is no stage: q'' = g^-1 (Q - Gamma q' q') once more
+        found = self._motion(run.end, run.controls, self.count - 1, 3)
+        qdd = np.concatenate([inner, cholesky_solve(found["metric"], found["force"])[-1:]])
+        lam = np.concatenate([costates[:-1].swapaxes(0, 1).reshape(-1, 2 * n), costates[-1, -1:]])
+        last = (x[-1:] for x in self._controls(run.controls, self.count - 1, 3))
+        u, t = (np.concatenate(x) for x in zip(*self._all_controls(run.controls), last, strict=True))
+        columns = [(self.state_names, run.states), (e.names(primes="''"), qdd), (self.costate_names, lam)]
         values = {**self.values, "t": t, WEIGHT: 1.0}
         return self.hamiltonian.evaluate(values, columns=[*columns, (e.controls, u)])["hamiltonian"]
 

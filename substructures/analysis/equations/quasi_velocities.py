@@ -23,7 +23,7 @@ structure             n p p  c^k_ij at [k, i, j]
 multipliers           m      lambda in g q'' + Gamma q'q' = Q + B^T lambda; needs v' (``name'``): S^T (g q'' + ... - Q)
 kinetic_energy               T* = v^T g* v / 2 [J]
 potential_energy             of gravity and springs [J]
-lost_power                   power of the forces without potential [W]
+lost_power                   power of the forces without potential, and dV/dt of springs that change with time [W]
 gaps                  k      constant [m, 1]: distances of rolling bodies from planes, residuals of closures
 ====================  =====  ==============================================================================
 """

@@ -109,7 +109,10 @@ class Conditions:
 
             return g
 
-        return [Watch(e.name, level(k), DIRECTIONS[e.direction], e.action == "stop") for k, e in enumerate(self.events)]
+        return [
+            Watch(e.name, level(k), DIRECTIONS[e.direction], e.action == "stop", e.level)
+            for k, e in enumerate(self.events)
+        ]
 
 
 def state_names(model: Model) -> list[str]:

@@ -16,7 +16,8 @@ ACTIONS = ("stop", "record")
 class Event:
     """``quantity`` (an expression in coordinates, velocities, parameters and t, its unit) crosses ``level``.
 
-    ``direction``: which crossings count; ``action``: whether the motion stops there. Raises InvalidArgument.
+    ``direction``: which crossings count; ``action``: whether the motion stops there. All crossings in a step of the
+    integrator are found, but for a pair that is less than 1/256 of the step apart. Raises InvalidArgument.
     """
 
     name: str

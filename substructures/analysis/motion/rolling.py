@@ -91,7 +91,8 @@ class _Rolling:
         self._run()
         out, result = self._out, np.empty(len(y))
         force = out["forces"][0] - out[self.form][0]
-        _, acceleration, info = lapack.dposv(out["metric"][0], force)
+        # LAPACK takes no matrix without rows: nothing is left free
+        _, acceleration, info = lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
         result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
         result[self.n : -1] = acceleration if not info else np.nan
         return result
@@ -104,10 +105,10 @@ def simulate_rolling(
 
     ``progress`` is told the finished share of the span and cancels by False. ``folder``: a cache of compiled kernels.
     Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``,
-    ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' is zero, gaps and
-    T + V - work are constant. A span that cannot be finished is ``failed``. Raises InvalidInput (also for closures of
-    the model that are not among the constraints; pointers start with names of arguments of ``simulate``), MissingValue
-    and TooLarge.
+    ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' is zero, gaps are
+    constant, and T + V - work is, but where springs depend on an input that varies. A span that cannot be finished is
+    ``failed``. Raises InvalidInput (also for closures of the model that are not among the constraints; pointers start
+    with names of arguments of ``simulate``), MissingValue and TooLarge.
     """
     model, start = problem.model, problem.span[0]
     conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)

@@ -47,6 +47,15 @@ def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[fl
     return found
 
 
+def roughly_within(solver: Any) -> Callable[[Array], Array]:
+    """States (K, N) at times (K,) within the last step by the stepper's own polynomial."""
+    found = getattr(solver, "rough_output", solver.dense_output)()
+    if isinstance(found, scipy.integrate.DenseOutput):
+        return lambda times: np.asarray(found(times).T)
+    # Taylor's output writes into the same array again
+    return lambda times: np.array([np.array(found(t)) for t in times.tolist()])
+
+
 @cache
 def _one_step() -> tuple[Any, ...]:
     return tuple(getattr(scipy.integrate, name) for name in ONE_STEP)

@@ -108,7 +108,7 @@ def _reduced(
     coordinates, n = s.model.coordinates, s.n
     M, D, K, F, C = (found[name] for name in ("metric", "damping", "stiffness", "input", "C"))
     # dq = N dy by the pivots of G
-    y = independent_coordinates(s.G)
+    y = independent_coordinates(s.balanced)
     N, rate, second = _tangent(s.independent_rows(), y, *(found[name] for name in ALONG))
     with np.errstate(invalid="ignore"):
         # of dy'', du, dy' and dy in the equation above

@@ -5,7 +5,9 @@ P. C. Mueller, Stabilitaet und Matrizen, 1977; K. Magnus, Schwingungen, 1961.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -18,6 +20,8 @@ Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
 #: real parts of this size, relative to the largest eigenvalue, cannot be told from zero (double eigenvalues)
 NEUTRAL = 1e-7
 SYMMETRIC = 1e-12
+#: rounding errors of an eigenvalue problem, and relative differences of eigenvalues that count as none
+ROUNDED, SAME = 64 * float(np.finfo(float).eps), 1e-9
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,6 +56,10 @@ class Mode:
         return abs(self.eigenvalue.imag) / (2 * np.pi)
 
 
+#: a mode, and by how much its eigenvalue is uncertain
+_Doubtful = tuple[Mode, float]
+
+
 @dataclass(frozen=True)
 class Stability:
     """The verdict of the linearisation, and why."""
@@ -63,13 +71,32 @@ class Stability:
 def modes(M: Array, D: Array, K: Array) -> tuple[Mode, ...]:
     """Modes by frequency, slowest first. Without dampers and with symmetric K from the symmetric problem K x = w^2 M x.
 
-    A double eigenvalue 0 of the second case (motion without restoring force) is exactly 0 here, listed once.
+    Of equal frequencies the one with the lesser real part comes first, as -k before +k; differences that rounding may
+    have made count as none. A double eigenvalue 0 of the second case (motion without restoring force) is exactly 0
+    here, listed once; eigenvalues whose imaginary parts may come from rounding are real, both listed.
     """
     if not len(M):
         return ()
     undamped = np.abs(D).max() == 0 and is_symmetric(K)
     found = _undamped(M, K) if undamped else _general(M, D, K)
-    return tuple(sorted(found, key=lambda mode: (mode.frequency, mode.eigenvalue.real)))
+    keys = [abs, lambda z: z.real, lambda z: z.imag]
+    return tuple(mode for mode, _ in _ordered(found, keys))
+
+
+def _ordered(found: list[_Doubtful], keys: Sequence[Callable[[complex], float]]) -> list[_Doubtful]:
+    """By the first key of eigenvalues, neighbours within their doubts by the next one, and so on."""
+    if not keys or len(found) < 2:
+        return found
+    size = keys[0]
+    found = sorted(found, key=lambda one: size(one[0].eigenvalue))
+    groups = [[found[0]]]
+    for before, one in pairwise(found):
+        same = size(one[0].eigenvalue) - size(before[0].eigenvalue) <= max(one[1], before[1])
+        if same:
+            groups[-1].append(one)
+        else:
+            groups.append([one])
+    return [one for group in groups for one in _ordered(group, keys[1:])]
 
 
 def is_symmetric(K: Array) -> bool:
@@ -77,32 +104,49 @@ def is_symmetric(K: Array) -> bool:
     return bool(np.abs(K - K.T).max() <= SYMMETRIC * np.abs(K).max())
 
 
-def _undamped(M: Array, K: Array) -> list[Mode]:
+def _undamped(M: Array, K: Array) -> list[_Doubtful]:
     # K x = w^2 M x
     squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
     floor = 1e-13 * np.abs(squares).max()
-    found = []
+    found: list[_Doubtful] = []
     # z = 0 (listed once), +-i w, or +-sqrt(-w^2)
     for square, shape in zip(squares.tolist(), shapes.T, strict=True):
+        size = np.sqrt(abs(square))
         if abs(square) <= floor:
             values = [0j]
         elif square > 0:
-            values = [1j * np.sqrt(square)]
+            values = [1j * size]
         else:
-            values = [complex(np.sqrt(-square)), complex(-np.sqrt(-square))]
-        found += [Mode(complex(value), normed(shape)) for value in values]
+            values = [complex(size), complex(-size)]
+        # dw = d(w^2) / 2w
+        doubt = max(SAME * size, floor / (2 * size)) if size else 0.0
+        found += [(Mode(complex(value), normed(shape)), doubt) for value in values]
     return found
 
 
-def _general(M: Array, D: Array, K: Array) -> list[Mode]:
-    n = len(M)
-    values, vectors = eig(first_order(M, D, K))
-    scale = np.abs(values).max()
-    found = []
-    for value, vector in zip(values.tolist(), vectors.T, strict=True):
-        if value.imag >= -1e-13 * scale:
-            found.append(Mode(complex(value), normed(vector[:n])))
+def _general(M: Array, D: Array, K: Array) -> list[_Doubtful]:
+    n, A = len(M), first_order(M, D, K)
+    values, left, right = eig(A, left=True, right=True)
+    doubts = _doubts(A, values, left, right)
+    found: list[_Doubtful] = []
+    for value, vector, doubt in zip(values.tolist(), right.T, doubts.tolist(), strict=True):
+        z = complex(value.real) if abs(value.imag) <= doubt else complex(value)
+        if z.imag >= 0:
+            found.append((Mode(z, normed(vector[:n])), max(doubt, SAME * abs(z))))
     return found
+
+
+def _doubts(A: Array, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> Array:
+    """What rounding may change an eigenvalue by: eps |A| |x| |y| / |y^H x| (J. H. Wilkinson, 1965), with velocities in
+    units of the largest eigenvalue; of a double one that has a single shape, at most NEUTRAL of the largest.
+    """
+    n, scale = len(A) // 2, float(np.abs(values).max()) or 1.0
+    units = np.repeat([1.0, scale], n)
+    x, y = right / units[:, None], left * units[:, None]
+    size = np.linalg.norm(A / units[:, None] * units)
+    with np.errstate(divide="ignore"):
+        condition = np.linalg.norm(x, axis=0) * np.linalg.norm(y, axis=0) / np.abs(np.sum(y.conj() * x, axis=0))
+    return np.asarray(np.minimum(ROUNDED * size * condition, NEUTRAL * scale), dtype=np.float64)
 
 
 def first_order(M: Array, D: Array, K: Array) -> Array:
@@ -120,9 +164,9 @@ def input_matrix(M: Array, F: Array) -> Array:
 
 
 def normed(shape: Any) -> ComplexArray:
-    """Largest element 1."""
+    """Largest element 1, the first one of several that differ by rounding."""
     z = np.asarray(shape, dtype=np.complex128)
-    k = int(np.abs(z).argmax()) if len(z) else 0
+    k = int((np.abs(z) >= (1 - NEUTRAL) * np.abs(z).max()).argmax()) if len(z) else 0
     return z / z[k] if len(z) and z[k] != 0 else z
 
 
