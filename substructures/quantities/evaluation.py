@@ -128,6 +128,7 @@ def evaluate(
     found = _computed(sources, names, values, evaluator, states)
     results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
     columns = sources.columns() if REGRESSOR in found else None
+    chosen = {name: values[name] for name in parameters or ()}
     return Evaluation(
         model.coordinates,
         states.count,
@@ -137,7 +138,7 @@ def evaluate(
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
-        tuple(value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q)),
+        tuple(value_warnings(sources, chosen, inputs or (), states.q, others=columns.parameters if columns else ())),
     )
 
 
