@@ -126,6 +126,7 @@ def evaluate(
     results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
     told = _told(names, found, results, _looking(model, values, states.count))
     columns = sources.columns() if REGRESSOR in found else None
+    chosen = {name: values[name] for name in parameters or ()}
     return Evaluation(
         model.coordinates,
         states.count,
@@ -136,7 +137,7 @@ def evaluate(
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
         (
-            *value_warnings(sources, {name: values[name] for name in parameters or ()}, inputs or (), states.q),
+            *value_warnings(sources, chosen, inputs or (), states.q, others=columns.parameters if columns else ()),
             *_warnings(results, told, states.single),
         ),
     )

@@ -22,9 +22,11 @@ def value_warnings(
     inputs: Collection[str],
     q: Array,
     t: Array | None = None,
+    others: Collection[str] = (),
 ) -> list[Notice]:
     """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
     limits left by ``q`` (N, n), which is a motion if there are times ``t`` (N,); gravity that nobody gave.
+    ``others``: parameters that other formulas than those of the model depend on.
 
     Pointers lead into the request, and for what is so without it into the document of the tree.
     """
@@ -38,7 +40,7 @@ def value_warnings(
         notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters)]
     else:
         notices += judge.at_defaults
-    effective = model.effective if judge is None else model.effective | judge.limiting
+    effective = model.effective.union(others) if judge is None else model.effective.union(others, judge.limiting)
     notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None:

@@ -213,9 +213,13 @@ def test_parameters_that_the_motion_does_not_feel() -> None:
     spec, parts = of({"name": "t", "instances": [{"name": "x", "definition": definition}]})
     model = couple(spec, parts)
     sources = Sources(model, regressor=lambda: regressor(spec, parts))
-    assert "x.a" not in model.parameters
+    assert "x.a" not in model.effective
     request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
-    assert evaluate(model, **request, sources=sources)["inertial_parameters"][4] == 0.75
+    found = evaluate(model, **request, sources=sources)
+    assert found["inertial_parameters"][4] == 0.75
+    assert [warning["code"] for warning in found.warnings] == ["gravity-not-given"]
+    found = evaluate(model, **request | {"quantities": ["metric"]}, sources=sources)
+    assert [warning["code"] for warning in found.warnings] == ["gravity-not-given", "no-effect"]
 
 
 def test_an_interface_that_carries_nothing_is_no_link() -> None:

@@ -103,7 +103,7 @@ def test_npz_becomes_items_of_bounded_size(client: TestClient, store: Store) -> 
     with running(store, engine):
         assert finished(client, answer.json()["id"])["state"] == "succeeded"
     assert all(sum(map(len, work.blobs.values())) < len(whole()) + 20_000 for work in engine.started)
-    assert {len(work.blobs) for work in engine.started} == {2}  # the program and a chunk
+    assert {len(work.blobs) for work in engine.started} == {3}  # the program, the definition and a chunk
     found = items(client, answer.json()["id"])
     assert [item["result"]["range"] for item in found] == [[0, 10], [10, 20], [20, 25]]
     parts = [read_npz(io.BytesIO(client.get(item["files"][0]["href"]).content), 2**20) for item in found]
