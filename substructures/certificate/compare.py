@@ -18,7 +18,7 @@ from substructures.certificate.linear import Ball
 from substructures.certificate.outputs import Outputs, Values
 from substructures.certificate.states import State, draws
 from substructures.certificate.stored import Stored, operations_in_balls
-from substructures.errors import SubstructuresError
+from substructures.errors import VerificationFailed
 from substructures.expr.operations import Output
 
 #: bits of the arithmetic, and where these do not suffice
@@ -32,10 +32,6 @@ Expected = Callable[[State], Outputs]
 Index = tuple[int, ...]
 #: elements that are to be compared, by output
 Elements = dict[str, set[Index]]
-
-
-class VerificationFailed(SubstructuresError):
-    """Stored formulas disagree with their documents: a defect of this package, or damage. They must not be used."""
 
 
 def compare(

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from time import perf_counter
 from typing import Any
 
-from substructures.certificate.compare import TOLERANCE, VerificationFailed, compare
+from substructures.certificate.compare import TOLERANCE, compare
 from substructures.certificate.states import STATES
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
+from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.certificate import defaults_of, plain
 from substructures.part.definition import Definition

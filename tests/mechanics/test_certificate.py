@@ -13,8 +13,9 @@ from damaged import damages, nudged_numbers
 from random_trees import Kind, random_definition
 
 from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
-from substructures.certificate.compare import TOLERANCE, VerificationFailed
+from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
+from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.part import scope as part_scope
