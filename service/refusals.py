@@ -5,6 +5,7 @@
     Refused                a request that cannot be served: status, code, detail
     InvalidInput           422, one error for every fault, with a pointer into the body
     TooLarge, MissingValue 422
+    VerificationFailed     500, named: formulas that are wrong are not used
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from http import HTTPStatus
 from typing import Any
 
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge
+from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
 
 
 class Refused(Exception):
@@ -60,6 +61,8 @@ def known_refusal(error: Exception) -> Refused | None:
             return unprocessable("too-large", str(error), what=error.what, size=error.size, limit=error.limit)
         case MissingValue():
             return unprocessable("missing-value", str(error), "/parameters" + pointer_step(error.name))
+        case VerificationFailed():
+            return Refused(500, "verification-failed", f"{error}; nothing was stored or computed with it")
     return None
 
 

@@ -8,7 +8,8 @@
     |   `-- InvalidArgument  an argument of a function; pointers start with its name
     |-- TooLarge             something exceeds a limit: what, size, limit
     |-- InvalidProgram       a stored program that is damaged or of an unknown version: position
-    `-- MissingValue         a symbol that needs a number has none: name
+    |-- MissingValue         a symbol that needs a number has none: name
+    `-- VerificationFailed   stored or derived formulas that disagree with their documents
 """
 
 from __future__ import annotations
@@ -83,6 +84,10 @@ class InvalidProgram(SubstructuresError):
     def __init__(self, message: str, position: int | None = None) -> None:
         self.position = position
         super().__init__(message if position is None else f"operation {position}: {message}")
+
+
+class VerificationFailed(SubstructuresError):
+    """Formulas disagree with their documents: a defect of this package, or damage. They are neither stored nor used."""
 
 
 class MissingValue(SubstructuresError):

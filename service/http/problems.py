@@ -26,7 +26,7 @@ from service.http.request_id import current_request_id
 from service.queries.common import is_conflict, is_full, is_outage
 from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from substructures.documents import message_of, pointer_step
-from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge
+from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
@@ -98,5 +98,8 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
             error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
         return response(error, request.url.path)
 
-    for kind in (Refused, InvalidInput, TooLarge, MissingValue, RequestValidationError, HTTPException):
+    for kind in (
+        *(Refused, InvalidInput, TooLarge, MissingValue, VerificationFailed),
+        *(RequestValidationError, HTTPException),
+    ):
         app.add_exception_handler(kind, handle)

@@ -93,11 +93,16 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
         worst = max(known, key=lambda name: float(known[name]))
         sentences.insert(
             0,
-            f"{len(known)} quantities compared with a computation from the definitions' own text at {states} random"
-            f" states; largest deviation {float(known[worst]):.1e}, of the {_NAMES.get(worst, worst)}"
+            f"{len(known)} quantities compared with {_yardstick(report)} at {states} random states; largest deviation"
+            f" {float(known[worst]):.1e}, of the {_NAMES.get(worst, worst)}"
             f" (refused beyond {allowed}).",
         )
     return sentences
+
+
+def _yardstick(report: Mapping[str, Any]) -> str:
+    is_new = report.get("compared_with") == "documents"
+    return "a computation from the definitions' own text" if is_new else "the direct computation of an older version"
 
 
 def _definiteness(report: Mapping[str, Any]) -> list[str]:

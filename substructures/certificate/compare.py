@@ -8,7 +8,7 @@ element of the output, or where both still contain zero at eight times the preci
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,7 +18,7 @@ from substructures.certificate.linear import Ball
 from substructures.certificate.outputs import Outputs, Values
 from substructures.certificate.states import State, draws
 from substructures.certificate.stored import Stored, operations_in_balls
-from substructures.errors import SubstructuresError
+from substructures.errors import VerificationFailed
 from substructures.expr.operations import Output
 
 #: bits of the arithmetic, and where these do not suffice
@@ -26,16 +26,12 @@ PRECISIONS = (128, 1024)
 #: how far an enclosure may reach, relative to its value
 TOLERANCE = 2.0**-40
 #: what needs no closer look
-PRECISE = 2.0**-80
+PRECISE, SMALL = 2.0**-80, 1e-200
 
 Expected = Callable[[State], Outputs]
 Index = tuple[int, ...]
 #: elements that are to be compared, by output
 Elements = dict[str, set[Index]]
-
-
-class VerificationFailed(SubstructuresError):
-    """Stored formulas disagree with their documents: a defect of this package, or damage. They must not be used."""
 
 
 def compare(
@@ -60,21 +56,25 @@ def compare(
 
 @dataclass
 class _Comparison:
-    """What was found so far; ``open``: the elements that had no finite value, None before the first state."""
+    """What was found so far; None before the first state.
+
+    ``open``: elements that had no finite value at some state; ``never``: at none so far.
+    """
 
     program: Stored
     expected: Expected
     errors: dict[str, float] = field(default_factory=dict)
     open: Elements | None = None
-    broken: set[tuple[str, Index]] = field(default_factory=set)
+    never: Elements | None = None
 
     def at(self, states: list[State]) -> None:
-        """Compare what is open at some states; what is not finite at one of them stays open."""
-        left: Elements = {}
-        for state in states:
-            for name, some in self._refined(state, self.open).items():
-                left.setdefault(name, set()).update(some)
-        self.open = left
+        """Compare what is open at some states."""
+        outside = [self._refined(state, self.open) for state in states]
+        names = {name for some in outside for name in some}
+        self.open = {name: set().union(*(some.get(name, set()) for some in outside)) for name in names}
+        nowhere = {name: set.intersection(*(some.get(name, set()) for some in outside)) for name in names}
+        before = nowhere if self.never is None else self.never
+        self.never = {name: some & before.get(name, set()) for name, some in nowhere.items()}
 
     def _refined(self, state: State, elements: Elements | None) -> Elements:
         """Compare at one state, more exactly where balls are too wide; returns what is not finite there."""
@@ -94,6 +94,8 @@ class _Comparison:
         with ctx.workprec(precision):
             wanted = self.expected({name: arb(x) for name, x in state.items()})
             found = operations_in_balls(self.program, {name: arb(x) for name, x in state.items()})
+            for name in self.program.outputs.keys() - wanted.keys():
+                raise VerificationFailed(f"{name[:80]} is no output that the documents know of")
             for name in wanted if elements is None else elements:
                 values = wanted[name]
                 stored = _stored(name, self.program, values, found)
@@ -104,7 +106,7 @@ class _Comparison:
     def _elements(
         self,
         name: str,
-        some: Any,
+        some: Iterable[Index],
         stored: Mapping[Index, Ball],
         values: Values,
         unsure: tuple[Elements, Elements],
@@ -115,14 +117,11 @@ class _Comparison:
         for index in some:
             a, b = stored.get(index, zero), values.entries.get(index, zero)
             difference, size = float((a - b).abs_upper()), abs(float(b))
-            # what is not finite, or a zero that is none exactly, is looked at below
-            if not difference <= size * PRECISE:
+            # most are precise; what is not finite, zero, or beyond the range of doubles is looked at below
+            if difference <= size * PRECISE and SMALL < size < 1 / SMALL:
+                worst = max(worst, difference / size)
+            elif size or difference or not (a.is_zero() and b.is_zero()):
                 worst = max(worst, self._element(name, index, a, b, values, unsure, last))
-                continue
-            if difference > worst * size:
-                worst = difference / size
-            if self.broken:
-                self.broken.discard((name, index))
         self.errors[name] = worst
 
     def _element(
@@ -130,28 +129,25 @@ class _Comparison:
     ) -> float:
         """The relative error of an element; noted instead where it is not finite, or too wide."""
         wide, outside = unsure
-        if not (a.is_finite() and b.is_finite()):
+        if not b.is_finite():
             outside.setdefault(name, set()).add(index)
-            if b.is_finite():
-                self.broken.add((name, index))
-            return 0.0
-        if not a.overlaps(b):
+        elif not a.is_finite():
+            if last:
+                raise VerificationFailed(f"{_place(name, index)} has no finite value where the documents give one")
+            wide.setdefault(name, set()).add(index)
+        elif not a.overlaps(b):
             raise VerificationFailed(_told(name, index, a, b))
-        self.broken.discard((name, index))
-        if _both_zero(a, b, values, last) or (a.is_zero() and b.is_zero()):
-            return 0.0
-        error = (a - b).abs_upper() / b.abs_lower()
-        if error <= TOLERANCE:
-            return float(error)
-        wide.setdefault(name, set()).add(index)
+        elif not _both_zero(a, b, values, last):
+            error = (a - b).abs_upper() / b.abs_lower()
+            if error <= TOLERANCE:
+                return float(error)
+            wide.setdefault(name, set()).add(index)
         return 0.0
 
     def result(self) -> dict[str, float | None]:
-        """The errors by output. Raises VerificationFailed for what is nowhere finite, where the documents are."""
-        broken = sorted((name, index) for name, index in self.broken if index in (self.open or {}).get(name, ()))
-        if broken:
-            raise VerificationFailed(f"{_place(*broken[0])} has no finite value where the documents give one")
-        return {name: None if name in (self.open or {}) else error for name, error in self.errors.items()}
+        """The errors by output; None for those with an element that was finite nowhere."""
+        never = self.never or {}
+        return {name: None if never.get(name) else error for name, error in self.errors.items()}
 
 
 def _stored(name: str, program: Stored, values: Values, found: list[Ball]) -> dict[Index, Ball]:

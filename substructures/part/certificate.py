@@ -20,6 +20,9 @@ from substructures.expr.program import Program
 from substructures.part.mechanism import Mechanism
 from substructures.part.physics import physical_warnings
 
+#: how formulas are compared, in every certificate; those of older versions say less
+HOW = {"compared_with": "documents", "states": STATES, "tolerance": TOLERANCE}
+
 
 def plain(document: Document) -> Plain:
     """The document as it was written, with its numbers in SI, which is all that a certificate knows of it."""
@@ -61,7 +64,7 @@ def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[s
     start = perf_counter()
     warnings = physical_warnings(m)
     definition = plain(m.definition)
-    certificate: dict[str, Any] = {"states": STATES, "tolerance": TOLERANCE, "warnings": warnings}
+    certificate: dict[str, Any] = {**HOW, "warnings": warnings}
     if m.joints:
         certificate["positive_definite"] = _positive_definite(definition)
     kinds = part_symbols(definition)

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from time import perf_counter
 from typing import Any
 
-from substructures.certificate.compare import TOLERANCE, VerificationFailed, compare
-from substructures.certificate.states import STATES
+from substructures.certificate.compare import compare
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
+from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.part.certificate import defaults_of, plain
+from substructures.part.certificate import HOW, defaults_of, plain
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
 
@@ -37,10 +37,6 @@ def certify_tree(
     for name, part in parts.items():
         defaults |= defaults_of(part, f"{name}.")
     errors = compare(result, kinds, lambda values: tree_outputs(tree, parts, values), defaults)
-    certificate: dict[str, Any] = {
-        "states": STATES,
-        "tolerance": TOLERANCE,
-        "direct_form": {"max_relative_error": errors},
-    }
+    certificate: dict[str, Any] = {**HOW, "direct_form": {"max_relative_error": errors}}
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate

@@ -28,14 +28,14 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import Fault, InvalidDocument, TooLarge, listed
+from substructures.errors import Fault, InvalidDocument, TooLarge, VerificationFailed, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.syntax import RESERVED
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
-from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part, told_operations
+from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part, recheck, told_operations
 from substructures.part.topology import christoffel_entries
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
@@ -147,7 +147,8 @@ def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
 def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:
     """Couple stored parts (by instance name) to a model and verify it.
 
-    Raises InvalidDocument with pointers into the tree document, or TooLarge for more than ``max_nodes`` operations.
+    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
+    VerificationFailed, which names the part whose stored formulas are wrong.
     """
     start = perf_counter()
     _require_free_names(spec)
@@ -177,8 +178,22 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     limited = tuple(names[a] for a in sorted(assembly.limits))
     model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
     definitions = {name: part.definition for name, part in parts.items()}
-    certificate = certify_tree(spec, definitions, model.described(), result, seconds)
+    try:
+        certificate = certify_tree(spec, definitions, model.described(), result, seconds)
+    except VerificationFailed as error:
+        raise _blamed(parts, error) from None
     return replace(model, certificate={**certificate, "warnings": warnings, "converted": units.converted})
+
+
+def _blamed(parts: Mapping[str, Part], error: VerificationFailed) -> VerificationFailed:
+    """The failure of a part whose stored formulas are wrong, by name; that of the tree where all parts are right."""
+    for instance, part in parts.items():
+        try:
+            recheck(part)
+        except VerificationFailed as fault:
+            what = f"the stored formulas of '{part.name}' ({part.program.digest}, instance '{instance}') are wrong"
+            return VerificationFailed(f"{what}: {fault}")
+    return error
 
 
 def _require_free_names(spec: TreeSpec) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from substructures.certificate.compare import VerificationFailed
 from substructures.documents.fields import in_si
+from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.tree.certificate import certify_tree

@@ -13,8 +13,9 @@ from damaged import damages, nudged_numbers
 from random_trees import Kind, random_definition
 
 from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
-from substructures.certificate.compare import TOLERANCE, VerificationFailed
+from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
+from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.part import scope as part_scope
@@ -230,11 +231,46 @@ def _json(data: Any) -> bytes:
     return json.dumps(data).encode()
 
 
+def test_formulas_that_exist_on_one_side_only() -> None:
+    """A root of a coordinate is verified where it is real; one that is lost where the documents have it is found."""
+    slider: dict[str, Any] = {
+        "name": "s",
+        "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "x"}}],
+        "loads": [{"type": "joint", "coordinate": "x", "force": "sqrt(x) - 1/(x - 7)"}],
+    }
+    errors = errors_of(derive(Definition.read(slider)).certificate)
+    assert all(error is not None for error in errors.values())
+    slider["loads"][0]["force"] = "x"
+    part = derive(Definition.read(slider))
+    entry = part.program.outputs["applied"].entries[0]
+    n = len(part.program.operations)
+    x = next(k for k, s in enumerate(part.program.symbols) if s.name == "x")
+    # Q + sqrt(x) - sqrt(x): the same function for x > 0, and none for x < 0
+    more = (("sym", x), ("sqrt", n), ("sub", n + 1, n + 1), ("add", entry, n + 2))
+    output = replace(part.program.outputs["applied"], entries=(n + 3,))
+    outputs = {**part.program.outputs, "applied": output}
+    wrong = replace(part.program, operations=(*part.program.operations, *more), outputs=outputs)
+    assert "no finite value" in str(found_in_part(part, wrong))
+
+
+@pytest.mark.parametrize("factor", ["1e-330", "1e250", "1e-150"])
+def test_values_beyond_doubles_are_compared(factor: str) -> None:
+    """Where doubles underflow or overflow."""
+    joint = {"type": "revolute", "coordinate": "x", "d": f"3*{factor}", "theta": 0.3}
+    body = {"name": "b", "parent": "base", "mass": f"7*{factor}", "com": [0, 0, 0.5], "joint": joint}
+    part = derive(Definition.read({"name": "s", "bodies": [body]}))
+    assert len([*nudged_numbers(part.program)]) > 4
+    for kind, place, wrong in nudged_numbers(part.program):
+        assert found_in_part(part, wrong) is not None, (kind, place)
+
+
 def test_structure_is_compared_too() -> None:
     part = derive(Definition.read(EVERYTHING))
     program = part.program
     outputs = dict(program.outputs)
     del outputs["kappa"]
+    more = {**program.outputs, "kappas": program.outputs["kappa"]}
+    assert "kappas is no output" in str(found_in_part(part, replace(program, outputs=more)))
     assert "kappa is missing" in str(found_in_part(part, replace(program, outputs=outputs)))
     flat = replace(program.outputs["metric"], symmetry="none")
     assert "metric" in str(found_in_part(part, replace(program, outputs={**program.outputs, "metric": flat})))

@@ -205,6 +205,20 @@ def other_columns(connection: sqlite3.Connection) -> None:
     connection.execute("""UPDATE parts SET coordinates = '["nose"]' WHERE coordinates = '["q"]'""")
 
 
+def test_a_wrong_part_is_named_when_it_is_coupled(template: Path, tmp_path: Path) -> None:
+    """Its digest is right, so that the certificate of the tree has to find it."""
+    with opened(template, tmp_path, lambda c: wrong_formula(c, "parts")) as client:
+        for name in ("pendulum", "slider"):
+            answer = client.post("/v1/trees", json={"name": "t", "instances": [{"name": "x", "substructure": name}]})
+            if answer.status_code != 201:
+                break
+        problem = answer.json()
+        assert (problem["status"], problem["code"]) == (500, "verification-failed")
+        assert f"'{name}'" in problem["detail"]
+        assert "sha256:" in problem["detail"]
+        assert client.get("/v1/trees/t").status_code == (404 if name == "pendulum" else 200)
+
+
 WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
     (lambda c: wrong_formula(c, "parts"), ("substructure",), True),
     (lambda c: wrong_formula(c, "trees"), ("tree cell@1",), True),

@@ -14,6 +14,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.pages.html import Html, html, tag
+from service.pages.words import certificate
 from service.settings import Settings
 from service.store import Store
 
@@ -216,3 +217,12 @@ def test_the_whole_catalogue_can_be_seen(shipped: TestClient) -> None:
         assert item["title"] in page.text
         assert len(page.text) < 100_000
     assert '"substructure": "puma560"' in read(shipped, "/").text
+
+
+def test_certificates_of_older_versions_are_told() -> None:
+    errors = {"metric": "1e-16", "christoffel": "2e-16", "bias": None}
+    older = {"states": 4, "tolerance": "1e-9", "direct_form": {"max_relative_error": errors}}
+    told = str(certificate(older))
+    for words in ("2 quantities", "older version", "2.0e-16, of the Christoffel symbols", "bias could not be compared"):
+        assert words in told, told
+    assert "own text" in str(certificate({**older, "compared_with": "documents"}))

@@ -20,7 +20,6 @@ from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.certificate.compare import VerificationFailed
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
 
 __all__ = ["KINDS", "Library", "expand", "resolve", "run"]
@@ -99,9 +98,8 @@ def run(kind: str, item: ItemDocument, blobs: Mapping[str, bytes], progress: Ite
         return _KINDS[kind].run(item, CheckedBlobs(blobs), progress)
     except MemoryError:
         raise
-    except (InvalidProgram, VerificationFailed) as error:
-        code = "damaged-content" if isinstance(error, InvalidProgram) else "verification-failed"
-        return failed(Refused(500, code, str(error)))
+    except InvalidProgram as error:
+        return failed(Refused(500, "damaged-content", str(error)))
     except Exception as error:  # one item never takes the others with it
         known = known_refusal(error)
         if known is None:
