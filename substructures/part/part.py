@@ -206,7 +206,8 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     if len(result) > max_nodes:
         raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
-    return Part(definition, result, certify_part(m, result, seconds))
+    certificate = certify_part(m, result, seconds)
+    return Part(definition, result, certificate | {"warnings": [*certificate["warnings"], *m.scope.notices]})
 
 
 def recheck(part: Part) -> dict[str, Any]:
