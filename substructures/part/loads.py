@@ -253,7 +253,7 @@ def _spring_force(
         energy = spring.stiffness * (length - spring.length) ** 2
     if depends_on_state(m.topology, spring.stiffness, spring.length):
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
-        energy = 2 * (spring_potential(m, {a: -(factor * w) for a, w in reach.items()}) or m.graph.zero)
+        energy = 2 * spring_potential(m, {a: -(factor * w) for a, w in reach.items()}, spring.pointer)
     if not spring.damping.is_zero:
         speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
         # c l'/l = c (l l') / l^2

@@ -222,7 +222,7 @@ def _certificate(m: Mechanism, result: Program, seconds: float) -> dict[str, Any
     unused = without_effect(m.definition, {symbol.name for symbol in result.symbols})
     # contradictions in what was stored when units were texts; new definitions were refused
     old = [asdict(fault) for fault in units.faults]
-    warnings = [*certificate["warnings"], *units.warnings, *old, *unused]
+    warnings = [*certificate["warnings"], *units.warnings, *old, *unused, *m.scope.notices]
     return certificate | {"warnings": warnings, "converted": units.converted}
 
 

@@ -16,21 +16,25 @@ from substructures.expr.walk import transfer
 from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
 
+LEFT_OUT = "the potential energy is without it, and energy balances count its work"
+
 
 def gradient_forces(m: Mechanism, energy: Expr) -> list[Expr]:
     """Q_a = -dV/dq^a for every coordinate."""
     return [-x for x in gradient([energy], m.topology.coordinates)[0]]
 
 
-def spring_potential(m: Mechanism, forces: Mapping[int, Expr]) -> Expr | None:
-    """The potential of one spring whose stiffness or length depends on the state, None where there is none.
-
-    With a velocity in it there is none, whatever the derivatives by coordinates are.
+def spring_potential(m: Mechanism, forces: Mapping[int, Expr], pointer: str) -> Expr:
+    """The potential of one spring whose stiffness or length depends on the state; zero, with a notice, where there is
+    none: with a velocity in it, or where none is found.
     """
-    names = m.topology.coordinates
-    if velocity_in(m.topology, forces.values()) is not None:
-        return None
-    return potential([forces.get(a, m.graph.zero) for a in range(len(names))], names)
+    names, found = m.topology.coordinates, None
+    if velocity_in(m.topology, forces.values()) is None:
+        found = potential([forces.get(a, m.graph.zero) for a in range(len(names))], names)
+    if found is None:
+        message = "the force of this spring depends on the state, and no potential of it was found"
+        m.scope.notices.append({"pointer": pointer, "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
+    return m.graph.zero if found is None else found
 
 
 def found_potential(m: Mechanism, forces: Sequence[Expr]) -> Expr:
@@ -45,6 +49,10 @@ def found_potential(m: Mechanism, forces: Sequence[Expr]) -> Expr:
     for group in _groups(held, names):
         whole = potential([held[a] for a in group], [names[a] for a in group])
         result = result + (_own(m, held, group, fixed) if whole is None else whole)
+        if whole is None:
+            on = ", ".join(f"'{names[a]}'" for a in group if not held[a].is_zero)
+            message = f"no potential was found of all forces of joints and loads on {on}"
+            m.scope.notices.append({"pointer": "/loads", "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
     return result
 
 

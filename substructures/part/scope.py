@@ -28,12 +28,16 @@ def no_names(_name: str) -> Expr | None:
 
 @dataclass
 class Scope:
-    """A graph with the symbols that expressions may name. Faults are collected; :meth:`finish` raises them."""
+    """A graph with the symbols that expressions may name. Faults are collected; :meth:`finish` raises them.
+
+    ``notices``: what should be known about a document that can be used: pointer, code, message.
+    """
 
     graph: Graph
     names: dict[str, Expr] = field(default_factory=dict)
     symbols: dict[str, Symbol] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
+    notices: list[dict[str, str]] = field(default_factory=list)
 
     def declare(self, name: str, kind: str, unit: str = "", alias: str | None = None) -> Expr:
         """A symbol of the program, known in expressions by ``alias`` (default: its name)."""

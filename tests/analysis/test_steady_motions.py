@@ -15,7 +15,9 @@ from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
+from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
 
@@ -183,6 +185,43 @@ def test_nothing_accelerates_in_a_steady_motion(name: str, rates: list[float]) -
         qdd = evaluate(model, ["forward_dynamics"], **states)["forward_dynamics"]
         assert np.abs(qdd[0]).max() < 1e-7 * (1 + np.abs(motion.rates).max() ** 2)
         assert np.abs(qdd[1]).max() > 1e-3
+
+
+def folded_arm() -> Model:
+    """A base that turns with two links on it, held by springs in bent positions: g_xs and its slope are not zero."""
+    hinge: Plain = {"type": "revolute", "stiffness": 30, "rest": 1, "d": 0.4}
+    tensor = {"xx": 0.2, "yy": 0.3, "zz": 0.4, "xy": 0.05}
+    bodies: list[Plain] = [
+        {"name": "a", "parent": "base", "joint": {"type": "revolute", "coordinate": "s"}, "inertia": tensor, "mass": 1},
+        {
+            "name": "b",
+            "parent": "a",
+            "joint": hinge | {"coordinate": "x", "theta": 0.7},
+            "mass": 2,
+            "com": [0.3, 0.1, 0],
+        },
+        {"name": "c", "parent": "b", "joint": hinge | {"coordinate": "y"}, "mass": 1, "com": [0.2, 0, 0.1]},
+    ]
+    bodies[1]["inertia"] = bodies[2]["inertia"] = tensor
+    return model_of({"name": "arm", "bodies": bodies}, (0, 0, 0))
+
+
+def test_eigenvalues_are_those_of_the_whole_model() -> None:
+    """The state space of all coordinates about the steady motion has these eigenvalues, and zeros for s; D is skew."""
+    model = folded_arm()
+    found = steady_motions(model, rates={"x.s": 3.0}, count=8)
+    assert found.found
+    for steady in found.found:
+        D = steady.D
+        assert np.abs(D[0, 1]) > 0.01
+        np.testing.assert_allclose(D, -D.T, atol=1e-9)
+        np.testing.assert_allclose(steady.K, steady.K.T, atol=1e-7)
+        rates = [steady.rates[0], 0, 0]
+        whole = np.linalg.eigvals(linearise(model, steady.q, qd=rates, qdd=[0, 0, 0]).A)
+        reduced = np.linalg.eigvals(first_order(steady.M, D, steady.K))
+        # the two zeros of s are found to the root of rounding
+        for z in reduced:
+            assert np.abs(whole - z).min() < 1e-6 * np.abs(reduced).max()
 
 
 @pytest.mark.parametrize("held", ["momenta", "rates"])

@@ -137,6 +137,22 @@ def test_a_spring_whose_stiffness_depends_on_the_state_counts_only_with_its_grad
     np.testing.assert_allclose(slope(model, np.array([[0.5]]), t=2.0), -Q, atol=1e-9)
 
 
+def test_what_has_no_potential_is_told() -> None:
+    """In the warnings of the certificate, with the place; nothing is said of dampers, inputs and forces in time."""
+    ends = {"type": "spring", "from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "b"}, "stiffness": "1 + x^2"}
+    body: Plain = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "x"}}
+    cases: list[tuple[list[Plain], list[str]]] = [
+        ([law("x", "-x'"), ends], []),
+        ([law("x", "sin(t) - 4*x"), ends | {"length": 1}], ["/loads/1"]),
+        ([law("x", "-x/(1 + x^2)")], ["/loads"]),
+    ]
+    for loads, pointers in cases:
+        part = derive(Definition.read({"name": "a", "bodies": [body], "loads": loads}))
+        found = [w for w in part.certificate["warnings"] if w["code"] == "no-potential"]
+        assert [w["pointer"] for w in found] == pointers
+        assert all("without it" in w["message"] for w in found)
+
+
 def test_a_stiffness_that_depends_on_a_velocity_has_no_potential() -> None:
     """Neither in a spring nor in a joint; the joint's spring at rest, k = 4, has one."""
     ends = {"type": "spring", "from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "b"}}
