@@ -40,8 +40,10 @@ def moved(reduction: str, speed: float = -3.0, **more: Any) -> tuple[Trajectory,
 def test_a_right_motion_is_right_up_to_a_singular_position(reduction: str, method: str, speed: float) -> None:
     """And ends at the same place whatever the steps: where states are no longer determined well enough."""
     motion, energy = moved(reduction, speed, method=method, count=201)
-    assert motion.status == "failed"
-    assert motion.is_right, motion.checks
+    # it did not come to its end, and what there is of it obeys all conditions
+    assert (motion.status, motion.is_right) == ("failed", None)
+    assert motion.checks
+    assert all(check.holds for check in motion.checks), motion.checks
     assert energy.relative < 0.5 * energy.limit
     model = parallelogram()
     share = 1e-4 if reduction == "projection" else 1e-3
