@@ -44,20 +44,21 @@ def governor() -> Model:
     return closed_entry("flyball-governor", rods, (0, 0, -9.81), kl=0)
 
 
-def bricard(gravity: Any = (0, -9.81, 0)) -> Model:
-    """Six equal links with axes at right angles, all hinges of one part; the sixth link is the world."""
+def bricard(gravity: Any = (0, -9.81, 0), size: float = 1) -> Model:
+    """Six equal links of ``size`` with axes at right angles, all hinges of one part; the sixth link is the world."""
     links = {}
     for sign in ("pi/2", "-pi/2"):
         body = {"name": "rod", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}}
-        body |= {"mass": 1, "com": [0.5, 0, 0], "inertia": {"yy": "1/12", "zz": "1/12"}}
-        end = {"name": "end", "body": "rod", "position": [1, 0, 0], "rotation": {"rpy": [sign, 0, 0]}}
+        own = "1/12" if size == 1 else size**2 / 12
+        body |= {"mass": 1, "com": [size / 2, 0, 0], "inertia": {"yy": own, "zz": own}}
+        end = {"name": "end", "body": "rod", "position": [size, 0, 0], "rotation": {"rpy": [sign, 0, 0]}}
         links[sign] = {"name": "link", "bodies": [body], "ports": [end]}
     instances = [
         {"name": f"l{k}", "substructure": ("pi/2", "-pi/2")[k % 2], "at": f"l{k - 1}.end" if k else "world"}
         for k in range(5)
     ]
-    # the frame of the last hinge, from which Tx(1) Rx(-pi/2) leads to the first one
-    last = {"position": [-1, 0, 0], "rpy": ["pi/2", 0, 0]}
+    # the frame of the last hinge, from which Tx(size) Rx(-pi/2) leads to the first one
+    last = {"position": [-size, 0, 0], "rpy": ["pi/2", 0, 0]}
     closure = {"name": "hinge", "type": "revolute", "from": "l4.end", "to": "world", "placement": last}
     references = {"pi/2": "plus", "-pi/2": "minus"}
     named = {references[sign]: link for sign, link in links.items()}

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from compared import Case, angular_columns, frame
 from independent import value as read
-from jets import slopes, space
+from jets import slopes, space, value
 from plain_mechanics import Dynamics, cross
 from random_trees import Plain
 
@@ -80,7 +80,10 @@ def constraint_rows(case: Case, d: Dynamics, constraints: Sequence[Any]) -> tupl
         if c.shape == "disc":
             # the lowest point of the rim: down, less what is along the axis
             down = (normal @ R[:, 2]) * R[:, 2] - normal
-            rho = float(c.radius) * down / np.sqrt(down @ down)
+            across = down @ down
+            if value(across) < 1e-3:
+                raise ValueError("the disc lies flat")
+            rho = float(c.radius) * down / np.sqrt(across)
         columns = [x + cross(y, rho) for x, y in zip(u, w, strict=True)]
         rows += [np.array([x[i] for x in columns], dtype=object) for i in range(3)]
         gap = normal @ (r + rho)

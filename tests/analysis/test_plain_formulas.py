@@ -149,12 +149,15 @@ def test_adjoint_formulas(seed: int) -> None:
 def well_determined(rng: Any, seed: int) -> tuple[Case, list[Any], dict[str, str] | None]:
     """A case, independent constraints, and quasi-velocities (or none) that determine the velocities well."""
     joints = (*HINGES, "free") if seed % 3 == 0 else HINGES
-    for attempt in range(30):
+    for attempt in range(100):
         kind = Kind(5, chain=seed % 2 == 0, joints=joints, massive=True, depth=7, loads=2)
         case = random_case(30_000 + 100 * seed + attempt, kind)
         constraints = random_constraints(rng, case, seed % 5)
         d = case.dynamics(3)
-        rows, _ = constraint_rows(case, d, constraints)
+        try:
+            rows, _ = constraint_rows(case, d, constraints)
+        except ValueError:
+            continue
         chosen = random_velocities(rng, case, case.n - len(rows)) if seed % 2 else None
         own = [constraint_rows(case, d, [Linear("v", text)])[0] for text in chosen.values()] if chosen else []
         sizes = np.linalg.svd(values(np.concatenate([*own, rows])), compute_uv=False)

@@ -54,7 +54,8 @@ class Constrained:
 
     ``g`` (n, n), ``f`` = Q - Gamma q'q' (n,), ``phi`` (m,), ``G`` (m, n), ``c`` (m,), ``phi_t`` (m,);
     ``labels``: the names of the m rows, ``closure.row`` and ``motion.coordinate``. ``reach`` (m,): how long the rows of
-    G are in other positions, by which ranks and conditions are judged: a row that vanishes alone is singular, too.
+    G are in other positions, by which ranks and conditions are judged: a row that vanishes alone is singular, too;
+    ``width`` (m,): how far they are open there, by which it is judged whether they are closed.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class Constrained:
         self.labels += tuple(f"motion.{model.coordinates[a]}" for a in self.prescribed.index)
         self._arrays()
         self._bind(list(start.inputs), folder)
-        self.reach = self._reach(span[0])
+        self.reach, self.width = self._sizes(span[0])
 
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
@@ -105,16 +106,21 @@ class Constrained:
         self._run = kernel.bind(self._out, self.conditions.values | {"t": self._t}, columns=columns)
         self.g = self._out["metric"][0]
 
-    def _reach(self, t: float) -> Array:
-        """The greatest length of every row of G at the start and with all joints turned anyhow; 1 of rows of zeros."""
+    def _sizes(self, t: float) -> tuple[Array, Array]:
+        """The greatest length of every row of G, and the greatest |phi|, at the start and with all joints turned anyhow
+        and slides drawn in; 1 of what is zero everywhere.
+        """
         start, rest, rng = self.conditions.q, np.zeros(self.n), np.random.default_rng(5)
         turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
-        found = np.zeros(len(self.labels))
-        for k in range(POSITIONS if len(found) else 0):
-            turned = np.where(turns, rng.uniform(-np.pi, np.pi, self.n), start)
-            self.move(t, turned if k else start, rest)
-            found = np.fmax(found, np.linalg.norm(self.G, axis=1))
-        return np.where((found > 0) & np.isfinite(found), found, 1.0)
+        found = np.zeros((2, len(self.labels)))
+        for k in range(POSITIONS if len(self.labels) else 0):
+            part = rng.uniform(-1, 1, self.n)
+            self.move(t, np.where(turns, np.pi * part, part * start) if k else start, rest)
+            found = np.fmax(found, [np.linalg.norm(self.G, axis=1), np.abs(self.phi)])
+        reach, width = np.where((found > 0) & np.isfinite(found), found, 1.0)
+        # of prescribed coordinates the value says nothing
+        width[self.closed :] = 1.0
+        return reach, width
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
@@ -139,6 +145,11 @@ class Constrained:
     def velocity_residual(self) -> Array:
         """G q' + phi_t."""
         return self.G @ self.qd + self.phi_t
+
+    @property
+    def opening(self) -> float:
+        """The largest |phi| over its width."""
+        return float(np.abs(self.phi / self.width).max(initial=0))
 
     @property
     def balanced(self) -> Array:

@@ -54,7 +54,7 @@ def _difference(s: Constrained, rank: int, part: float) -> float:
     _, S, W = svd(s.balanced)
     # r: of rounding, and what project() leaves open, over the lengths of the rows
     rounding = UNITS * np.finfo(float).eps * max(1.0, float(np.abs(q).max())) * max(1.0, float(S[0]))
-    opening = rounding + part**2 * CLOSED / 100 / float(s.reach.min())
+    opening = rounding + part**2 * CLOSED / 100 * float((s.width / s.reach).max())
     return max(abs(_energy(s, rank, t, q + opening / S[k] * W[k], qd) - energy) for k in range(rank))
 
 

@@ -199,7 +199,7 @@ def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> boo
         step *= NEARBY / float(np.linalg.norm(step))
         beside = consistent_state(s, t, q + step, np.zeros(s.n))
         s.move(t, beside.q, np.zeros(s.n))
-        if beside.residual <= CLOSED and s.rank() > rank:
+        if s.opening <= CLOSED and s.rank() > rank:
             return True
     return False
 
@@ -208,8 +208,14 @@ def least_multipliers(s: Constrained, qdd: Array) -> Array:
     """lambda of least norm with G^T lambda = g q'' + Gamma q'q' - Q."""
     if not len(s.labels):
         return np.zeros(0)
-    # G^T lambda = g q'' - f, f = Q - Gamma q'q'
-    found = lstsq(s.G.T, s.g @ qdd - s.f, cond=RANK, lapack_driver="gelsd", check_finite=False)[0]
+    # G^T lambda = g q'' - f, f = Q - Gamma q'q', for multipliers times the reach of their rows
+    G, right = s.balanced, s.g @ qdd - s.f
+    found = lstsq(G.T, right, cond=RANK, lapack_driver="gelsd", check_finite=False)[0] / s.reach
+    free = null_space(G.T, rcond=RANK) if rank_of(G) < len(G) else np.zeros((len(G), 0))
+    if free.size:
+        # less what closures that depend on each other may add: lambda of least norm in N and N m
+        basis = np.linalg.qr(free / s.reach[:, None])[0]
+        found = found - basis @ (basis.T @ found)
     return np.asarray(found, dtype=np.float64)
 
 

@@ -13,7 +13,7 @@ from substructures.analysis.closed.constrained import Constrained, Factor
 from substructures.array import Array
 from substructures.mechanics.accelerations import RANK
 
-#: residuals that count as none [m, 1]
+#: residuals over the width of their rows (see Constrained) that count as none
 CLOSED = 1e-12
 ITERATIONS = 200
 #: longest step of the search [rad, m]
@@ -50,7 +50,7 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
     q, iterations = _close(s, t, q, free)
     s.move(t, q, qd)
     residual = _largest(s.phi)
-    if not residual <= CLOSED * max(1.0, _largest(q)):
+    if not s.opening <= CLOSED * max(1.0, _largest(q)):
         return Consistent(q, qd, residual, _largest(s.velocity_residual), iterations, _open_message(s, fixed))
     # dq' = -W (G W)^+ (G q' + phi_t): linear, so that once is enough but for rounding
     qd = qd.copy()
@@ -60,7 +60,7 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
     s.move(t, q, qd)
     left = _largest(s.velocity_residual)
     message = _turned_message(s)
-    if not message and not left <= CLOSED * max(1.0, _largest(qd)):
+    if not message and not _largest(s.velocity_residual / s.width) <= CLOSED * max(1.0, _largest(qd)):
         message = _rate_message(s, fixed)
     return Consistent(q, qd, residual, left, iterations, message)
 
@@ -69,9 +69,9 @@ def _close(s: Constrained, t: float, q: Array, free: NDArray[np.int64]) -> tuple
     """Positions, and the number of steps."""
     rest = np.zeros_like(q)
     s.move(t, q, rest)
-    size = float(np.linalg.norm(s.phi))
+    size = float(np.linalg.norm(s.phi / s.width))
     for k in range(ITERATIONS):
-        if _largest(s.phi) <= CLOSED / 100:
+        if s.opening <= CLOSED / 100:
             return q, k
         step = _least(s, free, s.phi)
         # no longer than STRIDE, then halved until |phi| falls
@@ -80,7 +80,7 @@ def _close(s: Constrained, t: float, q: Array, free: NDArray[np.int64]) -> tuple
             trial = q.copy()
             trial[free] += step
             s.move(t, trial, rest)
-            new = float(np.linalg.norm(s.phi))
+            new = float(np.linalg.norm(s.phi / s.width))
             if new < size:
                 break
             step = step / 2
@@ -112,7 +112,7 @@ def worst_label(s: Constrained, residual: Array) -> str:
 
 
 def _open_message(s: Constrained, fixed: Collection[str]) -> str:
-    k = int(np.abs(s.phi).argmax())
+    k = int(np.abs(s.phi / s.width).argmax())
     advice = f"free one of the fixed coordinates ({', '.join(sorted(fixed))}), " if fixed else ""
     return (
         f"the closures cannot be met: the nearest position found leaves {s.labels[k]} open by {abs(s.phi[k]):.3g}; "
@@ -148,7 +148,7 @@ def project(
     factor = s.factor(rows)
     nothing, size = np.zeros(s.n), np.inf
     for _ in range(8):
-        before, size = size, _largest(s.phi[rows])
+        before, size = size, _largest(s.phi[rows] / s.width[rows])
         if size <= closed or before / 2 < size:
             break
         # g dq + G^T mu = 0, G dq = -phi

@@ -23,7 +23,7 @@ from substructures.mechanics.accelerations import RANK
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
 WORN = 0.3
-#: residuals that are as small as rounding lets them be, where lengths are large [m, 1]
+#: residuals over their width that are as small as rounding lets them be
 ROUNDING = 1e-10
 UNDETERMINED = "the independent coordinates do not determine the others: " + SINGULAR
 
@@ -174,7 +174,7 @@ class Partitioned(Reduction):
         for _ in range(20):
             s.move(t, q, qd)
             residual, before = s.phi[self.rows], size
-            size = float(np.abs(residual).max(initial=0))
+            size = float(np.abs(residual / s.width[self.rows]).max(initial=0))
             factor = self._factor()
             if (size <= CLOSED / 10 and size <= self._part(factor) ** 2 * CLOSED / 10) or before / 2 < size <= ROUNDING:
                 break

@@ -29,8 +29,9 @@ from substructures.array import Array
 from substructures.quantities.limits import reached
 from substructures.tree.model import Model
 
-#: largest residuals of positions [m, 1] and velocities [per s] along a right motion
+#: largest residuals of positions and velocities [per s] along a right motion, over the width of their rows
 RESIDUAL = 1e-9
+OPENINGS = ("opening", "opening_rate")
 #: one-step methods, which can begin anew on the closures after every step
 METHODS = ("DOP853", "RK45", "RK23")
 ADVICE = "look for very stiff springs, for masses or lengths near zero and for jumps in loads"
@@ -63,12 +64,12 @@ def simulate_closed(
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
-    of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, and
-    T + V - work is constant, or, where an input that varies is part of V, a second run finds the same; work is that of
-    forces without potential, of springs that change with time, and of prescribed coordinates. Loops that cannot be
-    closed, a singular position at the start or on the way and a span that cannot be finished are ``failed``, with
-    advice and the motion up to there. Raises InvalidInput (pointers start with names of arguments of ``simulate``) and
-    MissingValue.
+    of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, beside
+    how far the closures are open in other positions, and T + V - work is constant, or, where an input that varies is
+    part of V, a second run finds the same; work is that of forces without potential, of springs that change with time,
+    and of prescribed coordinates. Loops that cannot be closed, a singular position at the start or on the way and a
+    span that cannot be finished are ``failed``, with advice and the motion up to there. Raises InvalidInput (pointers
+    start with names of arguments of ``simulate``) and MissingValue.
     """
     require_fixed(problem.model, problem.fixed)
     s, start = _constrained(problem, folder), problem.span[0]
@@ -141,13 +142,14 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _at_states(_judged_quantities, s, t, x) | {"work": x[:, -1]}
+    residuals = _residual_checks(t, [judged.pop(name) for name in OPENINGS])
     names = s.conditions.varied_potential()
     if names:
         balance = unbalanced(names)
     else:
         doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
         balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
-    checks = (*_residual_checks(t, judged), balance)
+    checks = (*residuals, balance)
     span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
@@ -202,17 +204,18 @@ def _judged_quantities(s: Constrained) -> dict[str, Any]:
         "potential_energy": potential,
         "position_residual": np.abs(s.phi).max(initial=0),
         "velocity_residual": np.abs(s.velocity_residual).max(initial=0),
+        "opening": s.opening,
+        "opening_rate": np.abs(s.velocity_residual / s.width).max(initial=0),
     }
 
 
-def _residual_checks(t: Array, columns: Mapping[str, Array]) -> Iterator[Check]:
-    for name, reason, unit in (
-        ("position", "the closures (and prescribed motions) are met", "m, 1"),
-        ("velocity", "G q' + phi_t = 0", "m/s, 1/s"),
-    ):
-        # max_k |phi_k|, max_k |(G q' + phi_t)_k|
-        residual = columns[f"{name}_residual"]
-        yield Check.of((f"{name} residual", "zero", reason, unit), residual, t, 1.0, RESIDUAL)
+def _residual_checks(t: Array, columns: Sequence[Array]) -> Iterator[Check]:
+    """``columns``: the OPENINGS."""
+    about = ("position residual", "the closures (and prescribed motions) are met", "1")
+    rate = ("velocity residual", "G q' + phi_t = 0", "1/s")
+    # max_k |phi_k| / width_k, max_k |(G q' + phi_t)_k| / width_k
+    for (name, reason, unit), residual in zip((about, rate), columns, strict=True):
+        yield Check.of((name, "zero", reason, unit), residual, t, 1.0, RESIDUAL)
 
 
 def _nothing(model: Model, state: Consistent, t: float, message: str) -> Trajectory:
