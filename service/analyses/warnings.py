@@ -21,8 +21,8 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     """What is hardly meant about the parameters and states of a request, or about the motion that followed from it."""
     given, inputs = (getattr(request, name, None) or {} for name in ("parameters", "inputs"))
     sources = Sources(source.model, plausibility=source.plausibility)
-    if motion is not None:
-        return value_warnings(sources, given, inputs, motion.q, motion.t)
-    q: Any = None if type(request).__name__ in NEAR else getattr(request, "q", None)
+    # a motion has told of the limits itself, which it may also leave between its results
+    told = type(request).__name__ in NEAR or motion is not None
+    q: Any = None if told else getattr(request, "q", None)
     states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
-    return value_warnings(sources, given, inputs, states)
+    return [*value_warnings(sources, given, inputs, states), *(motion.warnings if motion else ())]

@@ -21,11 +21,10 @@ def value_warnings(
     parameters: Mapping[str, Any],
     inputs: Collection[str],
     q: Array,
-    t: Array | None = None,
     others: Collection[str] = (),
 ) -> list[Notice]:
     """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
-    limits left by ``q`` (N, n), which is a motion if there are times ``t`` (N,); gravity that nobody gave.
+    limits left by ``q`` (N, n); gravity that nobody gave.
     ``others``: parameters that other formulas than those of the model depend on.
 
     Pointers lead into the request, and for what is so without it into the document of the tree.
@@ -44,7 +43,7 @@ def value_warnings(
     notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None:
-        notices += judge.left(model.coordinates, q, parameters, t)
+        notices += judge.left(model.coordinates, q, parameters)
     return notices
 
 

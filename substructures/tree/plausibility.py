@@ -127,10 +127,8 @@ class Plausibility:
                     found[f"{instance.name}.{joint.coordinate}"] = low, high, UNITS[joint.s]
         return found
 
-    def left(
-        self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any], t: Array | None = None
-    ) -> list[Notice]:
-        """Coordinates beyond their limits in states ``q`` (N, n); ``t`` (N,): their times, if they are a motion."""
+    def left(self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any]) -> list[Notice]:
+        """Coordinates beyond their limits in states ``q`` (N, n)."""
         limits = self.limits(given) if given else self.limits_at_defaults
         ends = _ends(limits, coordinates) if given else self._ends_at_defaults(coordinates)
         if ((q >= ends[0]) & (q <= ends[1])).all():
@@ -143,11 +141,8 @@ class Plausibility:
             bad = np.flatnonzero((q[:, a] < low) | (q[:, a] > high))
             if len(bad):
                 first = int(bad[0])
-                where = f"at t = {t[first]:.6g} s" if t is not None else f"in state {first}"
                 range_ = " to ".join(f"{np.broadcast_to(x, len(q))[first]:.6g}" for x in (low, high))
-                message = (
-                    f"'{name}' is {q[first, a]:.6g} {unit} {where}{_more(len(bad))}; its joint has limits {range_}"
-                )
+                message = f"'{name}' is {q[first, a]:.6g} {unit} in state {first}{_more(len(bad))}; its joint has limits {range_}"
                 notices.append({"pointer": "/q", "code": "limits-left", "message": message})
         return notices
 
