@@ -35,7 +35,7 @@ def _has_even_dissipation(known: Known, given: frozenset[str], zero: frozenset[s
     if found is None or found[0] == "balance":
         return False
     anywhere = {str(q.value): f.graph.symbol(f"d.{q.value}") for q in f.q}
-    return vanishes(directional([f.power], anywhere)[0])
+    return vanishes(directional([f.power], anywhere)[0]) is True
 
 
 def judged_energy(f: ModelFormulas, vanishes: Vanishing, given: frozenset[str]) -> tuple[EnergyRule, str] | None:
