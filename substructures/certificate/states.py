@@ -11,7 +11,7 @@ from flint import fmpq
 State = dict[str, Any]
 #: that every element is compared at
 STATES = 2
-#: what is positive; everything else has both signs
+#: what is positive in the first state; everything else has both signs
 POSITIVE = frozenset(("parameter", "inertia"))
 
 
@@ -34,7 +34,9 @@ def _signed(source: random.Random, kinds: Mapping[str, str], defaults: Mapping[s
         for k, state in enumerate(states):
             size = fmpq(2**29 + source.getrandbits(30), 2**30)
             if kinds[name] in POSITIVE:
-                state[name] = defaults.get(name, size)
+                # a length may be negative: in every other state some are
+                is_negative = k % 2 and kinds[name] == "parameter" and sign < 0
+                state[name] = defaults.get(name, -size if is_negative else size)
             else:
                 # every sign in one of two states
                 state[name] = sign * (-1) ** k * size / smaller

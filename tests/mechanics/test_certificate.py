@@ -253,6 +253,20 @@ def test_formulas_that_exist_on_one_side_only() -> None:
     assert "no finite value" in str(found_in_part(part, wrong))
 
 
+def test_roots_of_squares_of_parameters() -> None:
+    """sqrt(l^2) is not l where a length is negative."""
+    joints = [{"type": "revolute", "d": f"sqrt({x}^2)"} for x in "abcdef"]
+    bodies = [{"name": f"b{i}", "parent": "base", "joint": joint} for i, joint in enumerate(joints)]
+    document = {"name": "s", "parameters": {x: {} for x in "abcdef"}, "bodies": bodies}
+    program = derive(Definition.read(document)).program
+    part = derive(Definition.read(document))
+    squares = {i: operation[1] for i, operation in enumerate(program.operations) if operation[0] == "sqrt"}
+    names = {i: program.operations[program.operations[k][1]] for i, k in squares.items()}
+    assert len(names) == 6
+    operations = tuple(names.get(i, operation) for i, operation in enumerate(program.operations))
+    assert found_in_part(part, replace(program, operations=operations)) is not None
+
+
 @pytest.mark.parametrize("factor", ["1e-330", "1e250", "1e-150"])
 def test_values_beyond_doubles_are_compared(factor: str) -> None:
     """Where doubles underflow or overflow."""
