@@ -54,5 +54,5 @@ def sample(seed: int, size: int = 40, divide: bool = True) -> Sample:
 def collected(graph: Graph, **outputs: Formulas | Expr) -> Program:
     """A program of these outputs; all symbols are parameters."""
     formulas = {n: o if isinstance(o, Formulas) else Formulas((), {(): o}) for n, o in outputs.items()}
-    names = {str(e.value) for e in graph.table.values() if e.op == "sym"}
+    names = {str(e.value) for e in graph.nodes if e.op == "sym"}
     return program(graph, formulas, {n: Symbol(n, "parameter", "m") for n in names})

@@ -9,8 +9,9 @@ from substructures.compile.lowering import Lowered, Place, StageFunction
 from substructures.compile.order import REGIONS
 from substructures.expr.program import Operation
 
+BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 #: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)
-BINARY = {"add": "fadd contract", "sub": "fsub contract", "mul": "fmul contract", "div": "fdiv"}
+CONTRACTED = frozenset(("add", "sub", "mul"))
 INTRINSICS = {"sqrt": "sqrt", "abs": "fabs"}
 
 
@@ -76,7 +77,8 @@ class _Emitter:
         op, result = operation[0], f"%v{i}"
         if op in BINARY:
             a, b = self._value(operation[1]), self._value(operation[2])
-            self.lines.append(f"{result} = {BINARY[op]} {self.kind} {a}, {b}")
+            flag = " contract" if op in CONTRACTED and i not in self.lowered.sharp else ""
+            self.lines.append(f"{result} = {BINARY[op]}{flag} {self.kind} {a}, {b}")
         else:
             self.special[op](result, self._value(operation[1]), operation)
         self.name[i] = result

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from substructures.compile.order import REGIONS, depth_first, stage_of
+from substructures.compile.order import REGIONS, depth_first, sharp, stage_of
 from substructures.expr.exact import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
@@ -71,11 +71,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class Lowered:
-    """Stages, and the functions of all. The stages' results are at the places 1, 2, ... of the region "o"."""
+    """Stages, and the functions of all. The stages' results are at the places 1, 2, ... of the region "o".
+
+    ``sharp``: operations of which nothing may be contracted.
+    """
 
     stages: tuple[Stage, ...]
     parts: list[StageFunction]
     literals: dict[int, float]
+    sharp: set[int]
 
 
 def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
@@ -96,7 +100,7 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
         builder.build(mine, kept, {i: ("o", number + j) for j, i in enumerate(found)}, part)
         stages.append(builder.stage)
         place, number = builder.place, number + len(found)
-    return Lowered(tuple(stages), parts, literals)
+    return Lowered(tuple(stages), parts, literals, sharp(ops, needed))
 
 
 def batch_name(operation: Operation) -> str | None:

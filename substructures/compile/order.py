@@ -11,6 +11,22 @@ STAGE = {"parameter": 0, "inertia": 0, "coordinate": 1, "time": 1, "velocity": 2
 #: names of the stages' scratch arrays
 REGIONS = ("p", "q", "v", "a")
 
+#: functions whose value, or whether they have one, can hang on the last bit of their argument
+SHARP = frozenset(("sqrt", "log", "asin", "acos", "atan2", "sign"))
+
+
+def sharp(ops: Sequence[Operation], needed: Iterable[int]) -> set[int]:
+    """What arguments of the SHARP functions are computed from, themselves included: to be rounded operation by
+    operation, as the interpreter does. sqrt(a b - c d) is 0 where a b = c d, and NaN where one product is contracted.
+    """
+    found = {x for i in needed if ops[i][0] in SHARP for x in operands(ops[i])}
+    stack = list(found)
+    while stack:
+        new = [x for x in operands(ops[stack.pop()]) if x not in found]
+        found.update(new)
+        stack += new
+    return found
+
 
 def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
     """What the results need, every value as late as possible before its first use: few values wait at a time."""

@@ -46,10 +46,19 @@ def sincos_body(w: AssemblyWriter, x: str) -> tuple[str, str]:
     for part in (P1, P2, P3):
         r = w.fused("fsub", r, w.fused("fmul", k, part))
     z = w.fused("fmul", r, r)
-    sine = w.fused("fadd", r, w.fused("fmul", w.fused("fmul", r, z), _polynomial(w, z, SINE)))
+    sine = _with_sign_of(w, r, w.fused("fadd", r, w.fused("fmul", w.fused("fmul", r, z), _polynomial(w, z, SINE))))
     tail = w.fused("fsub", w.fused("fmul", z, _polynomial(w, z, COSINE)), literal(0.5, w.width))
     cosine = w.fused("fadd", w.fused("fmul", z, tail), literal(1.0, w.width))
     return _quadrant(w, shifted, sine, cosine)
+
+
+def _with_sign_of(w: AssemblyWriter, r: str, sine: str) -> str:
+    """sin r has the sign of r, also where r = -0: there r + r^3 S is -0 + 0."""
+    integers = f"<{w.width} x i64>"
+    sign = f"<{', '.join([f'i64 {-(2**63)}'] * w.width)}>"
+    negative = w.do(f"and {integers} {w.do(f'bitcast {w.kind} {r} to {integers}')}, {sign}")
+    signed = w.do(f"or {integers} {w.do(f'bitcast {w.kind} {sine} to {integers}')}, {negative}")
+    return w.do(f"bitcast {integers} {signed} to {w.kind}")
 
 
 def _polynomial(w: AssemblyWriter, z: str, coefficients: tuple[float, ...]) -> str:

@@ -57,6 +57,7 @@ class RingEvaluator:
         ring.unit = len(self.plain)
         ring.relate(ring.unit, ring.context.constant(-1))
         ring.roots = tuple(n for i, n in self.place.items() if i in squares)
+        ring.numeric_roots = frozenset(n for i, n in self.place.items() if isinstance(squares.get(i), int))
         for i, n in self.place.items():
             square = squares.get(i)
             if isinstance(square, int):

@@ -6,7 +6,8 @@ trigonometric functions are turned into sums), over a denominator where there is
 * Polynomials (also with negative powers, and divided by polynomials) in symbols, square roots of positive rationals,
   and cos, sin, tan of rational combinations of angles and of multiples of pi/12: the form is unique and the zero test
   exact. An angle may be any such formula without denominator, not only a symbol.
-* Denominators that contain angles: the zero test is exact, the form need not be unique.
+* Denominators that contain angles, or roots in sums: the zero test is exact, the form need not be unique. Nothing is
+  multiplied by that can vanish where the formula has a value.
 * Other functions (exp, atan2, abs, other roots, cos(pi/7), ...) are taken as independent quantities, equal when their
   arguments are: a zero that is found is one; one that rests on an identity of these functions is not found.
 

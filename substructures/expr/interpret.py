@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from substructures.array import Array
 from substructures.errors import MissingValue
+from substructures.expr.exact import nearest_float
 from substructures.expr.program import Output, Program
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
@@ -35,11 +37,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 
 def constant(operation: tuple[Any, ...]) -> float:
     """Value of an ``int`` or ``rat`` operation, correctly rounded; infinite beyond the range of doubles."""
-    numerator, denominator = int(operation[1]), int(operation[2]) if operation[0] == "rat" else 1
-    try:
-        return numerator / denominator
-    except OverflowError:
-        return float("inf") if numerator > 0 else float("-inf")
+    return nearest_float(Fraction(int(operation[1]), int(operation[2])) if operation[0] == "rat" else int(operation[1]))
 
 
 def interpret(program: Program, values: Mapping[str, Any], names: Iterable[str] | None = None) -> dict[str, Array]:

@@ -44,7 +44,7 @@ class Ring:
     """Q[x_0, ..., x_(m-1), z_0^+-1, ...] modulo relations, and its quotients.
 
     ``relations`` maps a generator number to x**2 - p, where p only has later generators; ``unit`` is the number of i,
-    ``roots`` are the others with relations.
+    ``roots`` are the others with relations, ``numeric_roots`` those of them whose squares are numbers.
     """
 
     def __init__(self, size: int, angles: int, limit: int) -> None:
@@ -53,6 +53,7 @@ class Ring:
         self.flat = (0,) * angles
         self.relations: dict[int, Any] = {}
         self.roots: tuple[int, ...] = ()
+        self.numeric_roots: frozenset[int] = frozenset()
         self.unit = -1
         self.one = self.constant(Fraction(1))
         self.zero = self.constant(Fraction(0))
@@ -173,13 +174,23 @@ class Ring:
         if not len(n.poly):
             return self.zero
         for i in self.roots:
-            if d.poly.degrees()[i] > 0:
+            if d.poly.degrees()[i] > 0 and self._has_safe_conjugate(d, i):
                 # (p + q r)(p - q r) = p^2 - q^2 r^2
                 conjugate = Laurent(d.poly - 2 * self.context.gen(i) * d.poly.derivative(i), d.shift, d.bits)
                 norm = self.times(d, conjugate)
                 if len(norm.poly):
                     n, d = self.times(n, conjugate), norm
         return self._lowest(n, d)
+
+    def _has_safe_conjugate(self, d: Laurent, i: int) -> bool:
+        """Whether p - q r vanishes nowhere but where d = p + q r does: where p = 0, or both are numbers.
+
+        Elsewhere multiplying by it would make 0/0 of a value: of 1/(b - 1 + sqrt(a + 2)) at a = 2, b = 3, say.
+        """
+        degrees = d.poly.degrees()
+        if all(n <= 0 or j in self.numeric_roots for j, n in enumerate(degrees)) and not any(d.shift):
+            return True
+        return not len(d.poly - self.context.gen(i) * d.poly.derivative(i))
 
     def _stripped(self, d: Laurent) -> Laurent:
         """The same without common powers of z."""

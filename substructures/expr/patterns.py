@@ -39,6 +39,20 @@ def has_number(x: Node) -> bool:
     return x.is_number or (x.op in ("mul", "add", "sub") and (x.args[0].is_number or x.args[1].is_number))
 
 
+def is_combination(x: Node) -> bool:
+    """A number, or a sum of multiples of symbols and numbers."""
+    stack = [x]
+    while stack:
+        node = stack.pop()
+        if node.op in ("add", "sub", "neg"):
+            stack += node.args
+        elif node.op == "mul" and node.args[0].is_number:
+            stack.append(node.args[1])
+        elif node.args and not (node.op == "acos" and node.args[0].is_number):
+            return False
+    return True
+
+
 def coefficient(x: N) -> tuple[Any, N]:
     """(c, y) with x = c y."""
     sign = 1

@@ -238,7 +238,7 @@ def _reachable_nodes(graph: Graph, roots: Iterable[Expr]) -> list[Expr]:
     needed = bytearray(len(graph))
     for node in roots:
         needed[node.index] = 1
-    nodes = list(graph.table.values())
+    nodes = graph.nodes
     for node in reversed(nodes):
         if needed[node.index]:
             for operand in node.args:

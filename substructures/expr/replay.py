@@ -21,7 +21,7 @@ def replay(
     """
     names = list(program.outputs if names is None else names)
     values: list[Any] = [None] * len(program)
-    symbols = [bindings.get(s.name) or graph.symbol(s.name) for s in program.symbols]
+    symbols = [s.name for s in program.symbols]
     operations = program.operations
     for i in program.reachable(names):
         operation = operations[i]
@@ -33,7 +33,8 @@ def replay(
         elif op == "sub":
             values[i] = values[operation[1]] - values[operation[2]]
         elif op == "sym":
-            values[i] = symbols[operation[1]]
+            name = symbols[operation[1]]
+            values[i] = bindings.get(name) or graph.symbol(name)
         elif op == "int":
             values[i] = graph.number(int(operation[1]))
         elif op == "rat":

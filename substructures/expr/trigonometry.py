@@ -84,7 +84,7 @@ def cos_sin(x: Expr) -> tuple[Expr, Expr]:
     """(cos x, sin x), exact for multiples of pi/12; multiples of pi/2 in a sum are taken out."""
     graph = x.graph
     rest, terms, quarters = _reduced(x)
-    turns = Fraction(0) if quarters else linear_form(x)[1]
+    turns = linear_form(rest)[1]
     if not terms:
         exact = _exact(graph, turns)
         if exact is not None:
@@ -96,14 +96,14 @@ def cos_sin(x: Expr) -> tuple[Expr, Expr]:
 
 def _node(graph: Graph, op: str, x: Expr, fp: int) -> Expr:
     found = graph.table.get(fp)
-    if found is not None:
+    if found is not None and (not found.args or graph.serves(found, op, x)):
         return found
     found = graph.table.get(PRIME - fp)
-    if found is not None:
+    if found is not None and (not found.args or graph.serves(found, op, x)):
         return -found
     if x.op == "neg":
-        return Expr(graph, op, x.args, None, fp) if op == "cos" else -Expr(graph, op, x.args, None, PRIME - fp)
-    return Expr(graph, op, (x,), None, fp)
+        return graph.node("cos", x.args, fp) if op == "cos" else -graph.node("sin", x.args, PRIME - fp)
+    return graph.node(op, (x,), fp)
 
 
 def cos(x: Expr) -> Expr:

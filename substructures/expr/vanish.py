@@ -1,14 +1,16 @@
-"""Whether a formula is the zero function, decided at a random point in ball arithmetic of 90 digits.
+"""Whether a formula is the zero function, decided at random points in ball arithmetic: yes, no, or unknown.
 
 Fingerprints do not know that sqrt(11)^2 = 11 or atan2(0, 1) = 0; the value at a point does. A ball without zero proves
-that the formula is not zero; one with zero means that it is, but for a random point within 1e-80 of a root.
+that the formula is not zero. Balls with zero are evidence that it is, where they are small against the terms that make
+them up, at points of both signs and of all magnitudes, and stay so with many more digits; less than that is unknown,
+unless the canonical form (:mod:`substructures.expr.expand`) proves it.
 
 >>> graph = Graph()
 >>> x = graph.symbol("x")
 >>> vanish = Vanishing(graph)
->>> root = graph.function("sqrt", x + 1)
->>> vanish(graph.function("sqrt", (x + 1) ** 2) - x - 1), vanish(root - x)
-(True, False)
+>>> root, square = graph.function("sqrt", x + 1), graph.function("sqrt", (x + 1) ** 2)
+>>> vanish(root - x), vanish(square - x - 1), vanish(square - graph.function("abs", x + 1))
+(False, False, True)
 """
 
 from __future__ import annotations
@@ -21,10 +23,21 @@ from typing import Any
 
 import flint
 
+from substructures.errors import TooLarge
+from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.walk import reachable
 
-PRECISION = 300  # bits
-_SIZE = 10**9
+#: points, and at how many of them a formula must have a value to be called zero
+POINTS, ENOUGH = 12, 6
+#: powers of ten that the magnitudes of symbols span, both ways
+DECADES = 6
+#: bits of the first look; the second one has a multiple of the bits of all numbers in the formula more
+PRECISION, MORE, MOST = 300, 2000, 100_000
+#: a radius is small against the terms below 2^-(precision - GUARD)
+GUARD = 120
+#: terms of the canonical form that is tried where points leave it open
+TERMS = 200
 
 _OPERATIONS: dict[str, Callable[..., Any]] = {
     "add": operator.add,
@@ -39,39 +52,81 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 class Vanishing:
-    """The test for the formulas of one graph; values of nodes are kept."""
+    """The test for the formulas of one graph; values of nodes at its points are kept."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph, self.random = graph, SystemRandom()
-        self.values: dict[Expr, Any] = {}
+        self.symbols: list[dict[Expr, Fraction]] = [{} for _ in range(POINTS)]
+        self.values: dict[tuple[int, int], dict[Expr, tuple[Any, Any]]] = {}
 
-    def __call__(self, expr: Expr) -> bool:
-        """True for the zero function; False where the formula has no value at the point."""
+    def __call__(self, expr: Expr) -> bool | None:
+        """True for the zero function, False for another one, None where neither is known."""
         if expr.is_zero:
             return True
-        with flint.ctx.workprec(PRECISION):
-            value = self._value(expr)
-        return bool(value.is_finite() and value.contains(0))
+        nodes = reachable([expr])
+        names = [node for node in nodes if node.op == "sym"]
+        seen: list[dict[Expr, Fraction]] = []
+        for point in range(POINTS):
+            verdict = self._at(expr, nodes, point)
+            if verdict is False:
+                return False
+            if verdict:
+                seen.append(self.symbols[point])
+        both = all(len({point[name] > 0 for point in seen}) == 2 for name in names)
+        if both and len(seen) >= ENOUGH:
+            return True
+        return True if _is_proven(expr) else None
 
-    def _value(self, expr: Expr) -> Any:
-        stack = [expr]
-        while stack:
-            node = stack[-1]
-            missing = [a for a in node.args if a not in self.values]
-            if missing:
-                stack.extend(missing)
-                continue
-            stack.pop()
-            if node not in self.values:
-                self.values[node] = self._operation(node)
-        return self.values[expr]
+    def _at(self, expr: Expr, nodes: list[Expr], point: int) -> bool | None:
+        """Whether the value at a point is zero, as far as digits tell."""
+        bits = sum(_bits(node) for node in nodes if node.is_number)
+        for precision in (PRECISION, min(MORE + 8 * bits, MOST)):
+            with flint.ctx.workprec(precision):
+                value, size = self._value(expr, nodes, point, precision)
+                if not (value.is_finite() and size.is_finite()):
+                    return None
+                if not value.contains(0):
+                    return False
+                small = bool(value.rad() < size * flint.arb(2) ** (GUARD - precision))
+        return True if small else None
 
-    def _operation(self, node: Expr) -> Any:
-        if node.is_number:
-            value = Fraction(node.value)
-            return flint.arb(flint.fmpq(value.numerator, value.denominator))
-        if node.op == "sym":
-            return flint.arb(flint.fmpq(self.random.randrange(1, _SIZE), _SIZE))
-        args = [self.values[a] for a in node.args]
+    def _value(self, expr: Expr, nodes: list[Expr], point: int, precision: int) -> tuple[Any, Any]:
+        """The value, and the sum of the absolute values of its terms."""
+        known = self.values.setdefault((point, precision), {})
+        for node in nodes:
+            if node not in known:
+                known[node] = self._operation(node, known, self.symbols[point])
+        return known[expr]
+
+    def _operation(
+        self, node: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]
+    ) -> tuple[Any, Any]:
+        if node.is_number or node.op == "sym":
+            x = Fraction(node.value) if node.is_number else symbols.setdefault(node, self._drawn())
+            value = flint.arb(flint.fmpq(x.numerator, x.denominator))
+            return value, abs(value)
+        args = [known[a][0] for a in node.args]
         function = _OPERATIONS.get(node.op)
-        return function(*args) if function else getattr(args[0], node.op)()
+        value = function(*args) if function else getattr(args[0], node.op)()
+        if node.op in ("add", "sub"):
+            return value, known[node.args[0]][1] + known[node.args[1]][1]
+        if node.op == "mul":
+            return value, known[node.args[0]][1] * known[node.args[1]][1]
+        return value, known[node.args[0]][1] if node.op == "neg" else abs(value)
+
+    def _drawn(self) -> Fraction:
+        """A random number of either sign, its magnitude between 10^-6 and 10^6."""
+        power = self.random.randrange(-DECADES, DECADES)
+        size = Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
+        return size if self.random.randrange(2) else -size
+
+
+def _bits(number: Expr) -> int:
+    return int(number.value.numerator.bit_length() + number.value.denominator.bit_length())
+
+
+def _is_proven(expr: Expr) -> bool:
+    try:
+        return is_zero(expr, TERMS)
+    except (TooLarge, ZeroDivisionError):
+        return False

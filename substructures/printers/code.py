@@ -24,6 +24,10 @@ _WORDS = (
 _RESERVED = frozenset(word for line in _WORDS for word in line.split())
 
 
+#: conditions under which functions are real, in terms of x
+REAL = {"sqrt": "x >= 0", "log": "x >= 0", "asin": "abs(x) <= 1", "acos": "abs(x) <= 1"}
+
+
 class Code(Language):
     """Base of the programming languages; ``mark`` begins a comment line."""
 
@@ -50,6 +54,17 @@ class Code(Language):
     def function_name(self, name: str) -> str:
         """The wanted name of the generated function if it can be one, else ``model``."""
         return identifier(name, _RESERVED | {v.lower() for v in self.variables.values()}, "model")
+
+    def partial(self) -> list[str]:
+        """The functions that the program calls outside of constants, and that are not real everywhere."""
+        ops = self.program.operations
+        called = {op[0] for op in ops if op[0] in REAL and ops[op[1]][0] not in ("int", "rat")}
+        return [name for name in REAL if name in called]
+
+    def real_call(self, op: str, args: list[Piece]) -> Piece:
+        """A function, with ``real_`` before its name where it is partial and the argument no constant."""
+        plain = Language.call(self, op, args)
+        return Piece(f"real_{plain.text}") if op in REAL and not args[0].text[0].isdigit() else plain
 
     def comments(self, name: str, indent: str = "") -> list[str]:
         """Inputs and outputs, in words."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from substructures.printers.language import Language, Piece
 from substructures.printers.matlab import Matlab
 
 
@@ -24,6 +25,10 @@ class Julia(Matlab):
         """The named tuple of all arrays."""
         results = ", ".join(f"{v} = {v}" for v in self.variables.values())
         return [f"    return (; {results})", "end"]
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function."""
+        return Language.call(self, op, args)
 
     def dimensions(self, shape: tuple[int, ...]) -> str:
         """Arguments of zeros(); a vector has one axis."""

@@ -1,9 +1,12 @@
-"""MATLAB (and Octave): ``[metric, ...] = model(x)``."""
+"""MATLAB (and Octave): ``[metric, ...] = model(x)``.
+
+Roots and logarithms of negative numbers, and arcs of numbers beyond 1, are NaN as everywhere, not complex.
+"""
 
 from __future__ import annotations
 
 from substructures.expr.program import Output
-from substructures.printers.code import Code, indented
+from substructures.printers.code import REAL, Code, indented
 from substructures.printers.language import Listing, Piece
 from substructures.printers.symmetry import assignments
 
@@ -28,8 +31,16 @@ class Matlab(Code):
         return [f"function [{results}] = {self.function_name(name)}(x)", *self.comments(name, "    ")]
 
     def tail(self) -> list[str]:
-        """Last lines."""
-        return ["end"]
+        """Last lines: the end, and the functions that are NaN where MATLAB's own are complex."""
+        lines = ["end"]
+        for f in self.partial():
+            # 0/true is 0 and 0/false is NaN
+            lines += ["", f"function y = real_{f}(x)", f"    y = {f}(x + 0/({REAL[f]}));", "end"]
+        return lines
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function; by its real branch where the argument is no constant."""
+        return self.real_call(op, args)
 
     def dimensions(self, shape: tuple[int, ...]) -> str:
         """Arguments of zeros()."""

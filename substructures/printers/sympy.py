@@ -1,4 +1,7 @@
-"""Python code that builds SymPy expressions from real symbols; numbers stay exact."""
+"""Python code that builds SymPy expressions from real symbols; numbers stay exact.
+
+Roots and logarithms of what may be negative, and arcs of what may be beyond 1, are nan there, not complex.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from fractions import Fraction
 from typing import ClassVar
 
 from substructures.expr.program import Output
-from substructures.printers.code import Code
+from substructures.printers.code import REAL, Code
 from substructures.printers.language import NEGATION, Language, Listing, Piece
 from substructures.printers.symmetry import assignments
 
@@ -36,6 +39,10 @@ class SymPy(Code):
         # two plain integers would make a float
         return Language.div(self, Piece(f"Integer({a.text})") if a.text.isdigit() else a, b)
 
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function; by its real branch where the argument is no constant."""
+        return self.real_call(op, args)
+
     def render(self, listing: Listing, name: str) -> str:
         """A module that builds immutable arrays of expressions."""
         lines = [
@@ -44,6 +51,10 @@ class SymPy(Code):
             f"from sympy import {_CLASSES}, {_FUNCTIONS}",
             "",
         ]
+        if self.partial():
+            lines[2] += ", Piecewise, nan"
+        for f in self.partial():
+            lines += [f"def real_{f}(x):", f"    return Piecewise(({f}(x), {REAL[f]}), (nan, True))", ""]
         lines += [*self.comments(name), "", "x = ["]
         lines += [f"    Symbol({s.name!a}, real=True)," for s in self.program.symbols]
         lines += ["]", *(f"t{n} = {text}" for n, text in listing.temporaries)]

@@ -115,7 +115,7 @@ def states() -> Callable[..., dict[str, Any]]:
 
 def _collected(graph: Any, kinds: Mapping[str, str], **outputs: Any) -> Program:
     formulas = {n: o if isinstance(o, Formulas) else Formulas((), {(): o}) for n, o in outputs.items()}
-    names = {str(e.value) for e in graph.table.values() if e.op == "sym"}
+    names = {str(e.value) for e in graph.nodes if e.op == "sym"}
     return program(graph, formulas, {n: Symbol(n, kinds.get(n, "coordinate"), "") for n in names})
 
 

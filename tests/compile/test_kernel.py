@@ -245,3 +245,19 @@ def test_dropped_kernels_free_their_memory(mixture: Program) -> None:
     some()
     before = some()
     assert some() - before < 1500  # 6 MB
+
+
+@pytest.mark.parametrize("name", ["sqrt", "log", "asin", "acos", "sign"])
+def test_arguments_with_sharp_edges_are_rounded_as_the_interpreter_does(
+    name: str, collected: Callable[..., Program]
+) -> None:
+    """f(k + a b - c d) where a b = c d: contraction of one product gives an argument on the wrong side of the edge."""
+    g = Graph()
+    a, b, c, d = (g.symbol(n) for n in "abcd")
+    edge = {"asin": 1, "acos": -1}.get(name, 0)
+    program = collected(g, {}, f=g.function(name, (a * b - c * d) + edge), twice=(a * b - c * d) * (a + d))
+    rng = np.random.default_rng(1)
+    x, y = rng.uniform(-3, 3, 2000), rng.uniform(-3, 3, 2000)
+    values = {"a": x, "b": y, "c": y, "d": x}
+    found, expected = compile_program(program, ["f", "twice"]).evaluate(values), interpret(program, values)
+    np.testing.assert_array_equal(found["f"], expected["f"])

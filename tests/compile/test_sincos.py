@@ -77,3 +77,9 @@ def test_constants_are_exact() -> None:
     with mp.workprec(200):
         rest = mp.pi / 2 - mp.mpf(sincos.P1) - mp.mpf(sincos.P2) - mp.mpf(sincos.P3)
         assert abs(rest) < mp.mpf(2) ** -120
+
+
+def test_sine_of_minus_zero(kernel: Any) -> None:
+    found = kernel.evaluate({"x": np.array([-0.0, 0.0, -0.0, -5e-324])})
+    assert list(np.signbit(found["sin"])) == [True, False, True, True]
+    assert (found["cos"] == 1).all()

@@ -122,4 +122,5 @@ def test_different_functions_are_different_nodes() -> None:
 def test_sums_do_not_depend_on_order(numbers: list[int]) -> None:
     g = Graph()
     terms = [n * g.symbol(f"x{i % 3}") for i, n in enumerate(numbers)]
-    assert g.sum(terms) is g.sum(reversed(terms))
+    # equal functions, though not always one node: a term that cancels later leaves its symbol and its rounding errors
+    assert (g.sum(terms) - g.sum(reversed(terms))).is_zero

@@ -1,0 +1,137 @@
+"""Values of numbers and expressions straight from their text: the yardstick of everything that the graph makes of them.
+
+Nothing is built, folded or simplified; the steps of :mod:`substructures.expr.syntax` are carried out as they are
+written, in floating point (:func:`value`) or in ball arithmetic (:func:`ball`), whose answers contain the exact value.
+This module knows nothing of :mod:`substructures.expr.graph`.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import flint
+import numpy as np
+
+from substructures.expr.syntax import ExpressionError, Step, decimal_number, read
+
+#: a number as documents give it: exact, or an expression
+Given = int | Decimal | Fraction | str
+
+_ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+}
+_FLOAT_FUNCTIONS: dict[str, Callable[[Any], Any]] = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt}
+
+
+def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
+    """The value in floating point; ``names``: floats, or arrays of one shape, for the names of the expression.
+
+    Outside of its domain an expression is NaN or infinite, as in IEEE arithmetic.
+    Raises ExpressionError for a text that cannot be read and for unknown names, ValueError for a number of more than
+    400 digits.
+
+    >>> float(value("2*(l + 1/2)", {"l": 0.25}))
+    1.5
+    """
+    with np.errstate(all="ignore"):
+        return _run(given, names or {}, _float, np.asarray, np.pi, _FLOAT_FUNCTIONS, _float_power)
+
+
+def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 128, complex_: bool = False) -> Any:
+    """The value as an ``arb`` of python-flint (``acb`` if ``complex_``) that contains the exact one.
+
+    ``names``: what the names stand for: floats, integers and fractions (taken as exact), or balls. ``precision``: bits
+    of the arithmetic; at 53 the radius bounds what rounding may do to the expression in floating point.
+    Outside of its domain an expression is not finite. Raises as :func:`value`.
+
+    >>> ball("sqrt(2)^2 - 2", precision=200).contains(0)
+    True
+    """
+    kind = flint.acb if complex_ else flint.arb
+
+    def read_name(given: Any) -> Any:
+        """A value of a name as a ball."""
+        return _ball(kind, Fraction(given)) if isinstance(given, (int, float, Fraction)) else kind(given)
+
+    with flint.ctx.workprec(precision):
+        functions = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
+        return _run(given, names or {}, lambda x: _ball(kind, x), read_name, kind.pi(), functions, _ball_power)
+
+
+def _run(
+    given: Given,
+    names: Mapping[str, Any],
+    number: Callable[[Fraction], Any],
+    named: Callable[[Any], Any],
+    pi: Any,
+    functions: Mapping[str, Callable[[Any], Any]],
+    power: Callable[[Any, int], Any],
+) -> Any:
+    """The steps of a text on a stack, over any numbers; or the number itself."""
+    if not isinstance(given, str):
+        return number(decimal_number(str(given)) if isinstance(given, Decimal) else Fraction(given))
+    stack: list[Any] = []
+    for step in _steps(given):
+        if step.op == "number":
+            stack.append(number(Fraction(step.value or 0)))
+        elif step.op == "pi":
+            stack.append(pi)
+        elif step.op == "name":
+            stack.append(named(_lookup(step, names)))
+        elif step.op in _ARITHMETIC:
+            last = stack.pop()
+            stack.append(_ARITHMETIC[step.op](stack.pop(), last))
+        else:
+            stack.append(_unary(step, stack.pop(), functions, power))
+    return stack.pop()
+
+
+_steps = lru_cache(maxsize=4096)(read)
+
+
+def _unary(step: Step, x: Any, functions: Mapping[str, Callable[[Any], Any]], power: Callable[[Any, int], Any]) -> Any:
+    """A step with one operand."""
+    if step.op == "call":
+        return functions[str(step.value)](x)
+    return power(x, step.value) if isinstance(step.value, int) else -x
+
+
+def _lookup(step: Step, names: Mapping[str, Any]) -> Any:
+    name = str(step.value)
+    if name not in names:
+        raise ExpressionError(f"unknown name '{name[:80]}'", step.column, name)
+    return names[name]
+
+
+def _float(x: Fraction) -> np.float64:
+    """Correctly rounded; infinite beyond the range of doubles."""
+    try:
+        return np.float64(x.numerator / x.denominator)
+    except OverflowError:
+        return np.float64(np.inf if x > 0 else -np.inf)
+
+
+def _float_power(x: Any, n: int) -> Any:
+    return np.power(x, float(n))
+
+
+def _ball(kind: Callable[[Any], Any], x: Fraction) -> Any:
+    return kind(flint.fmpq(x.numerator, x.denominator))
+
+
+def _ball_power(x: Any, n: int) -> Any:
+    """By squaring: python-flint's own power of a ball around 0 is not a number."""
+    result, square, left = x * 0 + 1, x, abs(n)
+    while left:
+        if left & 1:
+            result = result * square
+        square, left = square * square, left >> 1
+    return 1 / result if n < 0 else result

@@ -1,0 +1,56 @@
+"""Roots, logarithms and arcs outside of their real domains are NaN in every language, never complex."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import sympy
+
+from substructures.expr.graph import Graph
+from substructures.expr.program import Formulas, Program, Symbol, program
+from substructures.printers import render
+
+OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
+FUNCTIONS = ("sqrt", "log", "asin", "acos")
+
+
+@pytest.fixture
+def partial() -> Program:
+    graph = Graph()
+    x, y = graph.symbol("x"), graph.symbol("y")
+    formulas = [graph.function(f, x) for f in FUNCTIONS]
+    formulas += [graph.sqrt(graph.number(2)), graph.sqrt(x * x + y * y)]
+    outputs = {"f": Formulas((6,), {(i,): e for i, e in enumerate(formulas)})}
+    return program(graph, outputs, {n: Symbol(n, "coordinate", "") for n in ("x", "y")})
+
+
+def test_sympy(partial: Program) -> None:
+    space: dict[str, sympy.ImmutableDenseNDimArray] = {}
+    exec(render(partial, "sympy"), space)  # noqa: S102 -- our own text
+    found = space["outputs"]["f"]
+    values = {sympy.Symbol("x", real=True): sympy.Rational(-3, 2), sympy.Symbol("y", real=True): 2}
+    assert [x is sympy.nan for x in (e.subs(values) for e in found)] == [True] * 4 + [False] * 2
+    # what cannot be negative stays as it is written
+    assert found[5] == sympy.sqrt(sympy.Symbol("x", real=True) ** 2 + sympy.Symbol("y", real=True) ** 2)
+    half = {sympy.Symbol("x", real=True): sympy.Rational(1, 2)}
+    assert [found[i].subs(half) for i in range(4)] == [
+        f(sympy.Rational(1, 2)) for f in (sympy.sqrt, sympy.log, sympy.asin, sympy.acos)
+    ]
+
+
+@pytest.mark.skipif(OCTAVE is None, reason="Octave is not installed")
+def test_octave(partial: Program, tmp_path: Path) -> None:
+    (tmp_path / "model.m").write_text(render(partial, "matlab"))
+    script = "f = model([-1.5; 2]); disp(isreal(f)); disp(isnan(f)'); f = model([0.5; 2]); printf('%.17g ', f);"
+    run = subprocess.run(
+        [str(OCTAVE), "--no-gui", "--norc", "--eval", script], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    real, nan, values = run.stdout.split("\n")[:3]
+    assert real.strip() == "1"
+    assert nan.split() == ["1", "1", "1", "1", "0", "0"]
+    assert [float(x) for x in values.split()] == pytest.approx(
+        [0.5**0.5, -0.6931471805599453, 0.5235987755982989, 1.0471975511965979, 2**0.5, 4.25**0.5], rel=1e-14
+    )
