@@ -142,7 +142,8 @@ class Plausibility:
             if len(bad):
                 first = int(bad[0])
                 range_ = " to ".join(f"{np.broadcast_to(x, len(q))[first]:.6g}" for x in (low, high))
-                message = f"'{name}' is {q[first, a]:.6g} {unit} in state {first}{_more(len(bad))}; its joint has limits {range_}"
+                value = f"{q[first, a]:.6g} {unit} in state {first}{_more(len(bad))}"
+                message = f"'{name}' is {value}; its joint has limits {range_}"
                 notices.append({"pointer": "/q", "code": "limits-left", "message": message})
         return notices
 
