@@ -100,7 +100,9 @@ def _rows(bodies: Bodies, moving: dict[int, Motion], closure: Plain, numbers: Nu
     b = [_direction(bodies, moving, B, column(B.A, i)) for i in range(3)]
     D = _point(bodies, moving, B).minus(_point(bodies, moving, A))
     length = numbers.read(closure["length"]) if "length" in closure else None
-    return [_row(name, a, b, D, A.A.transpose(), length) for name in ROWS[closure["type"]]]
+    rows = [_row(name, a, b, D, A.A.transpose(), length) for name in ROWS[closure["type"]]]
+    # directions from the axes of A to those of the frame "from"
+    return [(*row[:3], axis * row[3], row[4]) for row in rows]
 
 
 def _row(name: str, a: list[_Vector], b: list[_Vector], D: _Vector, to_A: Matrix, length: Ball | None) -> _Row:
