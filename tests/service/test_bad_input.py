@@ -143,7 +143,7 @@ def test_wrong_texts(filled: TestClient, rows: Any, what: str, path: str) -> Non
 
 
 def test_warnings_for_what_depends_on_parameters(client: TestClient) -> None:
-    definition = edited("/bodies/0/inertia", {"xx": "l", "yy": "l", "zz": "9*l"})
+    definition = edited("/bodies/0/inertia", {"xx": "m*l^2", "yy": "m*l^2", "zz": "9*m*l^2"})
     answer = client.post("/v1/substructures", content=json.dumps(definition), headers=JSON)
     assert answer.status_code == 201, answer.text
     assert "rod" in json.dumps(answer.json()["certificate"]["warnings"])

@@ -53,7 +53,7 @@ def test_a_motion_beyond_its_limits_is_warned_of(tmp_path: Path, capsys: pytest.
     (tmp_path / "t.json").write_text(json.dumps(tree))
     (tmp_path / "drop.json").write_text('{"q": [0], "span": [0, 1]}')
     assert main(["simulate", str(tmp_path / "t.json"), str(tmp_path / "drop.json")]) == 0
-    assert "warning: 'a.x' leaves its limits [-1, 1] m: it goes down to -4.905 m" in capsys.readouterr().out
+    assert "'a.x' leaves its limits [-1, 1] m: it goes down to -4.905 m" in capsys.readouterr().err
 
 
 def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
