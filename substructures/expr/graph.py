@@ -28,7 +28,7 @@ from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr import bounds
-from substructures.expr.bounds import ZERO, Values, is_as_accurate, larger
+from substructures.expr.bounds import GUARDS, SLACK, UNKNOWN, ZERO, Values, is_as_accurate, larger
 from substructures.expr.exact import MAX_BITS, MAX_EXPONENT, nearest_float, split_square
 from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
 from substructures.expr.patterns import coefficient, constant, has_number, is_combination, square_of_root
@@ -106,7 +106,7 @@ class Expr:
             not found.args
             or (
                 (asks := self.asks | x.asks) | found.asks == asks
-                and is_as_accurate(found.size, bounds.product(self.size, x.size))
+                and ((self.size + x.size - ZERO + SLACK) | GUARDS) - found.size & GUARDS == GUARDS
                 and not (self.is_number and x.is_number)
             )
         ):
@@ -206,6 +206,8 @@ class Graph:
 
         Raises TooLarge for more than ``MAX_BITS`` bits in numerator or denominator.
         """
+        if type(value) is int:
+            return self.numbers.get(value) or self._number(value)
         if isinstance(value, Decimal):
             value = Fraction(value)
         if isinstance(value, Fraction) and value.denominator == 1:
@@ -257,7 +259,8 @@ class Graph:
         a, b = args[0], args[-1]
         # what _asks and _size say, for the operations that are asked for most
         if op == "mul":
-            found = Expr(self, op, args, None, fp, a.asks | b.asks, bounds.product(a.size, b.size))
+            size = a.size + b.size - ZERO
+            found = Expr(self, op, args, None, fp, a.asks | b.asks, UNKNOWN if size & GUARDS else size)
         elif op in ("add", "sub"):
             found = Expr(self, op, args, None, fp, a.asks | b.asks, larger(a.size, b.size))
         elif op == "neg":
@@ -329,15 +332,10 @@ class Graph:
     def _bit(self, kind: str, fp: int) -> int:
         return self.bits.setdefault((kind, fp), 1 << len(self.bits))
 
-    def _negated(self, fp: int, op: str, *args: Expr) -> Expr | None:
-        """-x for a node x that is op(args) but for its sign, and serves for it."""
-        found = self.table.get(PRIME - fp)
-        return -found if found is not None and (not found.args or self.serves(found, op, *args)) else None
-
     def _sum(self, a: Expr, b: Expr, fp: int) -> Expr:
-        found = self._negated(fp, "add", a, b)
-        if found is not None:
-            return found
+        found = self.table.get(PRIME - fp)
+        if found is not None and (not found.args or self.serves(found, "add", a, b)):
+            return -found
         if a.is_number or b.is_number:
             # x + 0 is x, also where another node serves best for its fingerprint
             if a.fp == 0 or b.fp == 0:
@@ -358,8 +356,10 @@ class Graph:
     def _difference(self, a: Expr, b: Expr, fp: int) -> Expr:
         if b.negative or a.negative or has_number(a) or has_number(b):
             return self._sum(a, -b, fp)
-        found = self._negated(fp, "sub", a, b)
-        return self.node("sub", (a, b), fp) if found is None else found
+        found = self.table.get(PRIME - fp)
+        if found is not None and (not found.args or self.serves(found, "sub", a, b)):
+            return -found
+        return self.node("sub", (a, b), fp)
 
     def _collected(self, a: Expr, b: Expr) -> Expr | None:
         """c x + d x = (c + d) x and (x + c) + (y + d) = (x + y) + (c + d) for exact numbers c, d."""
@@ -374,9 +374,9 @@ class Graph:
         return (x + y) + self.number(c + d) if c and d else None
 
     def _product(self, a: Expr, b: Expr, fp: int) -> Expr:
-        found = self._negated(fp, "mul", a, b)
-        if found is not None:
-            return found
+        found = self.table.get(PRIME - fp)
+        if found is not None and (not found.args or self.serves(found, "mul", a, b)):
+            return -found
         if a.is_number or b.is_number:
             if a is self.one or b is self.one:
                 return b if a is self.one else a
