@@ -108,9 +108,6 @@ class Joint:
     tau: Ball
     w: Matrix
     v: Matrix
-    stiffness: Ball
-    rest: Ball
-    damping: Ball
     armature: Ball
 
     @property
@@ -189,16 +186,27 @@ class Bodies:
         z = A * unit(2)
         # of a turn about the axis z through O: w = z, and O x z at the world's origin
         w, v = (zeros(3, 1), z) if prismatic else (z, cross(frame.p, z))
-        law = (numbers.read(_by_step(joint, name, step)) for name in ("stiffness", "rest", "damping", "armature"))
-        self.joints.append(Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, *law))
+        armature = numbers.read(of_step(joint.get("armature", 0), step))
+        self.joints.append(Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, armature))
         k = len(self.joints) - 1
         self.own[k] = massless()
         return Frame(k, A * turned.transpose(), self.joints[k].body)
 
 
-def _by_step(joint: Plain, name: str, step: int) -> Any:
-    given = joint.get(name, 0)
+def of_step(given: Any, step: int) -> Any:
+    """Of a joint with several coordinates: what is given for one of them, or for all."""
     return given[step] if isinstance(given, (list, tuple)) else given
+
+
+def laws_of(definition: Plain) -> list[tuple[Plain, int]]:
+    """The joint of every coordinate, and the number of the coordinate in it."""
+    return [(body["joint"], step) for body in in_order(definition) for step in range(len(coordinates_of(body)))]
+
+
+def limits_of(joint: Plain, step: int) -> Any:
+    """Lowest and highest value of a coordinate of a joint; None without limits."""
+    given = joint.get("limits")
+    return given[step] if given and isinstance(given[0], (list, tuple)) else given or None
 
 
 def _before_joint(parent: Frame, joint: Plain, numbers: Numbers) -> Frame:

@@ -100,25 +100,29 @@ def _rows(bodies: Bodies, moving: dict[int, Motion], closure: Plain, numbers: Nu
     b = [_direction(bodies, moving, B, column(B.A, i)) for i in range(3)]
     D = _point(bodies, moving, B).minus(_point(bodies, moving, A))
     length = numbers.read(closure["length"]) if "length" in closure else None
-    rows = [_row(name, a, b, D, A.A.transpose(), length) for name in ROWS[closure["type"]]]
-    # directions from the axes of A to those of the frame "from"
-    return [(*row[:3], axis * row[3], row[4]) for row in rows]
+    return [_row(name, a, b, D, (A.A.transpose(), axis), length) for name in ROWS[closure["type"]]]
 
 
-def _row(name: str, a: list[_Vector], b: list[_Vector], D: _Vector, to_A: Matrix, length: Ball | None) -> _Row:
-    """A row: residual, Jacobian, G' q', direction of its multiplier in the axes of A, alignment."""
+def _row(
+    name: str, a: list[_Vector], b: list[_Vector], D: _Vector, turned: tuple[Matrix, Matrix], length: Ball | None
+) -> _Row:
+    """A row: residual, Jacobian, G' q', direction of its multiplier in the axes of ``from``, alignment.
+
+    ``turned``: from the world to A, whose third axis is the joint axis, and from there to the axes of ``from``.
+    """
+    to_A, back = turned
     if length is not None:
         # (D . D - L^2) / (2 L)
         value, slopes, second = D.dot(D)
         half = 1 / (2 * length)
         residual = (value - length * length) * half
-        return residual, {c: x * half for c, x in slopes.items()}, second * half, to_A * D.value / length, arb(0)
+        return residual, {c: x * half for c, x in slopes.items()}, second * half, back * to_A * D.value / length, arb(0)
     if name in PLACE:
         i = PLACE.index(name)
-        return *a[i].dot(D), unit(i), arb(0)
+        return *a[i].dot(D), back * unit(i), arb(0)
     sign, j, i, aligned = TURNS[name]
     value, slopes, second = b[j].dot(a[i])
-    direction = cross(to_A * b[j].value, unit(i)) * sign
+    direction = back * cross(to_A * b[j].value, unit(i)) * sign
     alignment = arb(0) if aligned is None else dot(b[aligned].value, a[aligned].value)
     return sign * value, {c: sign * x for c, x in slopes.items()}, sign * second, direction, alignment
 

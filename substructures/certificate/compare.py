@@ -16,6 +16,7 @@ from flint import arb, ctx
 
 from substructures.certificate.linear import Ball
 from substructures.certificate.outputs import Outputs, Values
+from substructures.certificate.slopes import stored_gradient
 from substructures.certificate.states import State, draws
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed
@@ -98,7 +99,7 @@ class _Comparison:
                 raise VerificationFailed(f"{name[:80]} is no output that the documents know of")
             for name in wanted if elements is None else elements:
                 values = wanted[name]
-                stored = _stored(name, self.program, values, found)
+                stored = _stored(name, self.program, values, found, state)
                 some = {**values.entries, **stored} if elements is None else elements[name]
                 self._elements(name, some, stored, values, (wide, outside), precision == PRECISIONS[-1])
         return wide
@@ -115,7 +116,8 @@ class _Comparison:
         """Compare elements of one output; notes those that are too wide, and those that are not finite."""
         zero, worst = arb(0), self.errors.get(name, 0.0)
         for index in some:
-            a, b = stored.get(index, zero), values.entries.get(index, zero)
+            a = stored.get(index, zero)
+            b = values.like(index, a) if index in values.others else values.entries.get(index, zero)
             difference, size = float((a - b).abs_upper()), abs(float(b))
             # most are precise; what is not finite, zero, or beyond the range of doubles is looked at below
             if difference <= size * PRECISE and SMALL < size < 1 / SMALL:
@@ -133,10 +135,11 @@ class _Comparison:
             outside.setdefault(name, set()).add(index)
         elif not a.is_finite():
             if last:
-                raise VerificationFailed(f"{_place(name, index)} has no finite value where the documents give one")
+                place = _place(name, index, values)
+                raise VerificationFailed(f"{place} has no finite value where the documents give one")
             wide.setdefault(name, set()).add(index)
         elif not a.overlaps(b):
-            raise VerificationFailed(_told(name, index, a, b))
+            raise VerificationFailed(_told(_place(name, index, values), a, b))
         elif not _both_zero(a, b, values, last):
             error = (a - b).abs_upper() / b.abs_lower()
             if error <= TOLERANCE:
@@ -150,14 +153,18 @@ class _Comparison:
         return {name: None if never.get(name) else error for name, error in self.errors.items()}
 
 
-def _stored(name: str, program: Stored, values: Values, found: list[Ball]) -> dict[Index, Ball]:
-    """The stored elements of an output that is of the shape and symmetry that it has to be."""
+def _stored(name: str, program: Stored, values: Values, found: list[Ball], state: State) -> dict[Index, Ball]:
+    """The stored elements of an output that is of the shape and symmetry that it has to be; or its derivatives."""
     output: Output | None = program.outputs.get(name)
     if output is None:
         raise VerificationFailed(f"{name} is missing")
     if (tuple(output.shape), output.symmetry) != (values.shape, values.symmetry):
         wanted, kept = (f"{'x'.join(map(str, x.shape)) or 'scalar'} {x.symmetry}" for x in (values, output))
         raise VerificationFailed(f"{name} is {kept}, and has to be {wanted}")
+    if values.along:
+        entry = next(iter(output.entries), None)
+        stored = stored_gradient(program, entry, found, {n: arb(x) for n, x in state.items()}, values.along)
+        return {index: x for index, x in stored.items() if index in values.entries}
     return {tuple(index): found[entry] for index, entry in zip(output.index, output.entries, strict=True)}
 
 
@@ -168,10 +175,13 @@ def _both_zero(a: Ball, b: Ball, values: Values, last: bool) -> bool:
     return last or bool((a - b).abs_upper() <= values.size() * TOLERANCE)
 
 
-def _told(name: str, index: Index, a: Ball, b: Ball) -> str:
+def _told(place: str, a: Ball, b: Ball) -> str:
     found, wanted = (x.str(12, radius=False) for x in (a, b))
-    return f"{_place(name, index)} is {found} at a random state, and has to be {wanted} by the documents"
+    return f"{place} is {found} at a random state, and has to be {wanted} by the documents"
 
 
-def _place(name: str, index: Index) -> str:
+def _place(name: str, index: Index, values: Values | None = None) -> str:
+    if values is not None and values.along:
+        by = (*values.along, "the time, inputs and velocities")[index[0]]
+        return f"the change of {name} with {by}"
     return f"{name}[{', '.join(map(str, index))}]" if index else name

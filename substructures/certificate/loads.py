@@ -5,31 +5,60 @@ A new type of load is a function in :data:`LOADS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from flint import arb, fmpq
 
-from substructures.certificate.bodies import NONE, Bodies, Frame
+from substructures.certificate.bodies import (
+    NONE,
+    Bodies,
+    Frame,
+    laws_of,
+    limits_of,
+    of_step,
+)
 from substructures.certificate.linear import Ball, Matrix, cross, dot, zeros
 from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.texts import Steps, difference, names_of, negative, product, slope
+from substructures.expr.direct import steps_of
 
 
 class Forces:
     """Of one definition in a world of bodies.
 
-    ``applied``: Q_a of joint laws, actuators, joint loads and springs; ``wrenches``: Q_a of forces and torques on
-    bodies; ``potential``: of all springs; ``places``: point and vector of every force and torque, as they are stored.
+    ``applied``: Q_a of joint laws, actuators, joint loads, springs and potentials; ``wrenches``: Q_a of forces and
+    torques on bodies; ``places``: point and vector of every force and torque, as they are stored.
+    ``potential``: V of springs, stops and potentials in closed form, ``slopes`` its -dV/dq^a; ``dead``, ``dead_slopes``
+    the same of forces that are constant in the world.
+    Of two kinds of forces potentials may have been found: ``given`` as formulas, by joint; ``bent``, of springs whose
+    stiffness or length depends on the state (``varying``: and on more than that).
     ``joints``: of the definition; ``prefix``: of its names.
     """
 
-    def __init__(self, bodies: Bodies, numbers: Numbers, joints: range, prefix: str = "") -> None:
+    def __init__(self, bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> None:
         self.bodies, self.numbers, self.joints, self.prefix = bodies, numbers, joints, prefix
+        self.definition = definition
         self.applied: dict[int, Ball] = {}
         self.wrenches: dict[int, Ball] = {}
-        self.potential = arb(0)
+        self.potential = self.dead = arb(0)
+        self.slopes: dict[int, Ball] = {}
+        self.dead_slopes: dict[int, Ball] = {}
+        self.given: dict[int, list[Steps]] = {}
+        self.bent: list[dict[int, Ball]] = []
+        self.varying = False
         self.places: list[tuple[Matrix, Matrix]] = []
         self.index = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
+        self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in joints}
+
+    def depends(self, *given: Any) -> bool:
+        """Whether numbers depend on a coordinate or a velocity of the definition."""
+        return any(
+            not slope(x, self.numbers.names, name + mark).contains(0)
+            for x in given
+            for name in self.coordinates
+            for mark in ("", "'")
+        )
 
     def rate(self, a: int) -> Ball:
         """q'^a."""
@@ -45,9 +74,9 @@ class Forces:
 
 def forces(bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> Forces:
     """All loads of a definition; ``joints``: its own. Raises LookupError for a type of load that is not known here."""
-    found = Forces(bodies, numbers, joints, prefix)
-    for a in joints:
-        _joint_law(found, a)
+    found = Forces(bodies, definition, numbers, joints, prefix)
+    for a, (joint, step) in zip(joints, laws_of(definition), strict=True):
+        _joint_law(found, a, joint, step)
     for load in definition.get("loads", ()):
         LOADS[load["type"]](found, load)
     return found
@@ -58,17 +87,50 @@ def _add(sums: dict[int, Ball], terms: Mapping[int, Any]) -> None:
         sums[a] = sums.get(a, arb(0)) + term
 
 
-def _joint_law(found: Forces, a: int) -> None:
-    """Q = tau - k (q - rest) - c q',   V = k (q - rest)^2 / 2."""
-    joint, names = found.bodies.joints[a], found.numbers.names
-    name = joint.coordinate.rpartition(".")[2]
-    stretch = names[name] - joint.rest
-    _add(found.applied, {a: names[f"tau.{name}"] - joint.stiffness * stretch - joint.damping * found.rate(a)})
-    found.potential += joint.stiffness * stretch * stretch * arb(fmpq(1, 2))
+def _joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
+    """Q = tau - k (q - rest) - c q',   V = k (q - rest)^2 / 2 where k and rest are no functions of the state."""
+    numbers = found.numbers
+    name = found.bodies.joints[a].coordinate.rpartition(".")[2]
+    given = [of_step(joint.get(x, 0), step) for x in ("stiffness", "rest", "damping")]
+    k, rest, c = map(numbers.read, given)
+    stretch = numbers.names[name] - rest
+    _add(found.applied, {a: numbers.names[f"tau.{name}"] - k * stretch - c * found.rate(a)})
+    if found.depends(*given[:2]):
+        law = product(steps_of(given[0]), difference(steps_of(name), steps_of(given[1])))
+        found.given.setdefault(a, []).append(negative(law))
+    else:
+        found.potential += k * stretch * stretch * arb(fmpq(1, 2))
+        _add(found.slopes, {a: -k * stretch})
+    _stops(found, a, numbers.names[name], of_step(joint.get("limits_act"), step), limits_of(joint, step))
+
+
+def _stops(found: Forces, a: int, q: Ball, stop: Plain | None, limits: Sequence[Any] | None) -> None:
+    """(k + c p') p against q at the depth p beyond a limit, nothing within; V = k p^2 / 2."""
+    if stop is None or limits is None:
+        return
+    low, high = map(found.numbers.read, limits)
+    k, c = (found.numbers.read(stop.get(x, 0)) for x in ("stiffness", "damping"))
+    for side, beyond in ((1, q - high), (-1, low - q)):
+        p = beyond.max(arb(0))
+        # p' = q' beyond the upper limit, -q' beyond the lower one
+        _add(found.applied, {a: -side * (k + c * side * found.rate(a)) * p})
+        _add(found.slopes, {a: -side * k * p})
+        found.potential += k * p * p * arb(fmpq(1, 2))
 
 
 def _joint_load(found: Forces, load: Plain) -> None:
-    _add(found.applied, {found.index[found.prefix + load["coordinate"]]: found.numbers.read(load["force"])})
+    a = found.index[found.prefix + load["coordinate"]]
+    _add(found.applied, {a: found.numbers.read(load["force"])})
+    found.given.setdefault(a, []).append(steps_of(load["force"]))
+
+
+def _potential(found: Forces, load: Plain) -> None:
+    """Q_a = -dV/dq^a."""
+    found.potential += found.numbers.read(load["potential"])
+    for name, a in found.coordinates.items():
+        Q = -slope(load["potential"], found.numbers.names, name)
+        _add(found.applied, {a: Q})
+        _add(found.slopes, {a: Q})
 
 
 def _force(found: Forces, load: Plain) -> None:
@@ -76,7 +138,13 @@ def _force(found: Forces, load: Plain) -> None:
     frame, x, u = found.point(load)
     given = found.numbers.vector(load["vector"])
     F = given if load.get("frame") == "world" else frame.A * given
-    _add(found.wrenches, {a: dot(F, u_a) for a, u_a in u.items()})
+    Q = {a: dot(F, u_a) for a, u_a in u.items()}
+    _add(found.wrenches, Q)
+    constants = found.definition.get("parameters", {}).keys()
+    if u and load.get("frame") == "world" and all(names_of(steps_of(F_i)) <= constants for F_i in load["vector"]):
+        # V = -F . x
+        found.dead -= dot(F, x)
+        _add(found.dead_slopes, Q)
     _keep(found, frame, x, load, given)
 
 
@@ -106,14 +174,22 @@ def _spring(found: Forces, load: Plain) -> None:
     k, c, l0 = (found.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
     x = end - start
     length = dot(x, x).sqrt()
-    e, slopes = x / length, dict.fromkeys(found.joints, arb(0))
-    _add(slopes, {a: dot(e, u) for a, u in u_end.items() if a in slopes})
-    _add(slopes, {a: -dot(e, u) for a, u in u_start.items() if a in slopes})
+    e, reach = x / length, dict.fromkeys(found.joints, arb(0))
+    _add(reach, {a: dot(e, u) for a, u in u_end.items() if a in reach})
+    _add(reach, {a: -dot(e, u) for a, u in u_start.items() if a in reach})
     # l' = dl/dq^a q'^a
-    speed = sum((slope * found.rate(a) for a, slope in slopes.items()), arb(0))
+    speed = sum((w * found.rate(a) for a, w in reach.items()), arb(0))
     tension = k * (length - l0) + c * speed
-    _add(found.applied, {a: -tension * slope for a, slope in slopes.items()})
-    found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
+    _add(found.applied, {a: -tension * w for a, w in reach.items()})
+    pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
+    if found.depends(load.get("stiffness", 0), load.get("length", 0)):
+        found.bent.append(pulls)
+        names = (names_of(steps_of(load.get(name, 0))) for name in ("stiffness", "length"))
+        constants = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
+        found.varying |= not frozenset().union(*names) <= constants
+    else:
+        found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
+        _add(found.slopes, pulls)
 
 
 #: what the loads of each type add to the forces
@@ -122,4 +198,5 @@ LOADS: dict[str, Callable[[Forces, Plain], None]] = {
     "force": _force,
     "torque": _torque,
     "spring": _spring,
+    "potential": _potential,
 }

@@ -14,14 +14,27 @@ from substructures.certificate.linear import Ball, Matrix
 class Values:
     """The elements of one array that are not zero by structure; those that a symmetry gives are left out.
 
-    ``scale``: what zeros are small against, where that is more than the largest element.
+    ``scale``: what zeros are small against, where that is more than the largest element; ``others``: what elements may
+    be as well. ``along``: of a scalar that is known up to a constant; then the elements are its derivatives by these
+    symbols, and behind them its change when velocities, inputs and the time are halved.
     """
 
     shape: tuple[int, ...]
     symmetry: str = "none"
     entries: dict[tuple[int, ...], Ball] = field(default_factory=dict)
     scale: Ball = field(default_factory=lambda: arb(0))
+    others: dict[tuple[int, ...], list[Ball]] = field(default_factory=dict)
+    along: tuple[str, ...] = ()
     _size: Ball = None
+
+    def like(self, index: tuple[int, ...], stored: Ball) -> Ball:
+        """What an element has to be: of several values the first that a stored one may be; not finite where one of them
+        is not known.
+        """
+        likely = self.entries.get(index, arb(0))
+        some = [likely, *self.others.get(index, ())]
+        unknown = (x for x in some if not x.is_finite())
+        return next((x for x in some if x.is_finite() and x.overlaps(stored)), next(unknown, likely))
 
     def size(self) -> Ball:
         """The largest element, or the scale."""

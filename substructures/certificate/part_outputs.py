@@ -22,6 +22,7 @@ from substructures.certificate.linear import Ball, Matrix, identity, side_by_sid
 from substructures.certificate.loads import forces
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.potentials import gradient_instead, halved, is_found
 from substructures.expr.operations import Output
 
 
@@ -58,7 +59,11 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     load = forces(bodies, definition, numbers, range(len(bodies.joints)))
     n, wrenches = len(bodies.joints), len(load.places)
     result.array("applied", (n,)).update({(a,): Q for a, Q in load.applied.items()})
-    result.scalar("potential", load.potential)
+    if is_found([load]):
+        half = forces(bodies, definition, halved(load), load.joints)
+        gradient_instead(result, "potential", [load], load.slopes, load.potential - half.potential)
+    else:
+        result.scalar("potential", load.potential)
     result.array("load.at", (wrenches, 3))
     result.array("load.vector", (wrenches, 3))
     for i, (at, vector) in enumerate(load.places):

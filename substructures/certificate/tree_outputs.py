@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from flint import arb
@@ -16,15 +16,18 @@ from substructures.certificate.bodies import (
     Frame,
     coordinates_of,
     in_order,
+    laws_of,
+    limits_of,
     massless,
 )
 from substructures.certificate.closures import ROWS, closure_outputs
 from substructures.certificate.dynamics import carried_by_joints, velocity_forces
-from substructures.certificate.linear import Ball, dot, identity, roll_pitch_yaw, zeros
-from substructures.certificate.loads import forces
+from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
+from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
+from substructures.certificate.potentials import gradient_instead, halved, is_found
 
 
 def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
@@ -46,21 +49,18 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
     """All outputs of the model; ``values``: of all symbols."""
     bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
     numbers, bodies, result = Numbers(Bindings(values, bound)), Bodies(), Outputs()
-    Q: dict[int, Ball] = {}
-    V = arb(0)
     loads = []
     for instance in hosts_first(tree):
         name, first = instance["name"], len(bodies.joints)
         inside = Numbers(_names(name, definitions[name], numbers.names, values))
         bodies.add(definitions[name], inside, _seat(bodies, instance, numbers), f"{name}.")
         loads.append((name, inside, range(first, len(bodies.joints))))
-    for name, inside, joints in loads:
-        some = forces(bodies, definitions[name], inside, joints, f"{name}.")
-        V = V + some.potential
-        for terms in (some.applied, some.wrenches):
-            Q |= {a: Q.get(a, arb(0)) + x for a, x in terms.items()}
+    acting = [forces(bodies, definitions[name], inside, joints, f"{name}.") for name, inside, joints in loads]
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
-    _equations(result, bodies, numbers.vector(tree.get("gravity", NONE)), Q, V, rates, second)
+    gravity = numbers.vector(tree.get("gravity", NONE))
+    _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
+    _potential_energy(result, bodies, gravity, acting)
+    _limits(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
         closure_outputs(result, bodies, tree["closures"], numbers, rates)
@@ -68,13 +68,15 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
 
 
 def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
-    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures."""
-    coordinates, kinds, frames = [], "", []
+    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits."""
+    coordinates, kinds, frames, limited = [], "", [], []
     for instance in hosts_first(tree):
         name, definition = instance["name"], definitions[instance["name"]]
         bodies = in_order(definition)
         for body in bodies:
-            coordinates += [f"{name}.{c}" for c in coordinates_of(body)]
+            names = [f"{name}.{c}" for c in coordinates_of(body)]
+            coordinates += names
+            limited += [q for step, q in enumerate(names) if limits_of(body["joint"], step)]
             kinds += "".join("P" if prismatic else "R" for prismatic, _ in CHAINS[body["joint"]["type"]])
         ports = definition.get("ports", ())
         frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
@@ -88,7 +90,7 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         }
         for c in tree.get("closures", ())
     ]
-    return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures}
+    return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
 
 
 def hosts_first(tree: Plain) -> list[Plain]:
@@ -130,11 +132,10 @@ def _equations(
     bodies: Bodies,
     gravity: Ball,
     Q: Mapping[int, Ball],
-    springs: Ball,
     rates: list[Ball],
     second: list[Ball],
 ) -> None:
-    """Metric, Christoffel symbols, momenta, forces, energies."""
+    """Metric, Christoffel symbols, momenta, forces."""
     n, carried = len(bodies.joints), carried_by_joints(bodies, bodies.own)
     equations(result, bodies, carried)
     bias = velocity_forces(bodies, bodies.own, rates)
@@ -150,14 +151,46 @@ def _equations(
     named = {"gravity": weight, "forces": total, "bias": bias, "inverse_dynamics": needed}
     for name, some in named.items():
         result.array(name, (n,)).update({(a,): x for a, x in enumerate(some)})
-    # V = -gamma . s of the whole, and the springs
-    whole = sum(bodies.own.values(), massless())
-    result.scalar("potential_energy", springs - dot(gravity, whole.s))
     for name in ("linear_momentum", "angular_momentum"):
         result.array(name, (n, 3))
     for a, each in enumerate(carried):
         result.matrix("linear_momentum", (n, 3), (a,), each.f)
         result.matrix("angular_momentum", (n, 3), (a,), each.n)
+
+
+def _sums(some: Iterable[Mapping[int, Ball]]) -> dict[int, Ball]:
+    """Forces added by joint."""
+    result: dict[int, Ball] = {}
+    for terms in some:
+        result |= {a: result.get(a, arb(0)) + x for a, x in terms.items()}
+    return result
+
+
+def _potential_energy(result: Outputs, bodies: Bodies, gravity: Matrix, acting: list[Forces]) -> None:
+    """V = -gamma . s of the whole, -F . x of dead forces, springs, stops, potentials; or its gradient."""
+    if not is_found(acting):
+        whole = sum(bodies.own.values(), massless())
+        result.scalar("potential_energy", sum((f.potential + f.dead for f in acting), -dot(gravity, whole.s)))
+        return
+    weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
+    known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])
+    half = [forces(bodies, f.definition, halved(f), f.joints, f.prefix) for f in acting]
+    change = sum((f.potential - h.potential for f, h in zip(acting, half, strict=True)), arb(0))
+    gradient_instead(result, "potential_energy", acting, known, change)
+
+
+def _limits(
+    result: Outputs,
+    bodies: Bodies,
+    definitions: Mapping[str, Plain],
+    loads: list[tuple[str, Numbers, range]],
+) -> None:
+    """Lowest and highest value of coordinates that have limits; of trees in which one has some."""
+    n = len(bodies.joints)
+    for name, inside, joints in loads:
+        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
+            for i, limit in enumerate(limits_of(joint, step) or ()):
+                result.array("limits", (n, 2))[a, i] = inside.read(limit)
 
 
 def _kinematics(result: Outputs, bodies: Bodies) -> None:

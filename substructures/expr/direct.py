@@ -8,7 +8,7 @@ This module knows nothing of :mod:`substructures.expr.graph`.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -28,7 +28,8 @@ _ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
     "mul": operator.mul,
     "div": operator.truediv,
 }
-_BALL_FUNCTIONS = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
+#: of balls, and of their power series
+BALL_FUNCTIONS = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
 _FLOAT_FUNCTIONS: dict[str, Callable[[Any], Any]] = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt}
 
 
@@ -63,7 +64,7 @@ def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 
         return _ball(kind, Fraction(given)) if isinstance(given, (int, float, Fraction)) else kind(given)
 
     with flint.ctx.workprec(precision):
-        return _run(given, names or {}, lambda x: _ball(kind, x), read_name, kind.pi, _BALL_FUNCTIONS, _ball_power)
+        return _run(given, names or {}, lambda x: _ball(kind, x), read_name, kind.pi, BALL_FUNCTIONS, ball_power)
 
 
 def _run(
@@ -75,11 +76,30 @@ def _run(
     functions: Mapping[str, Callable[[Any], Any]],
     power: Callable[[Any, int], Any],
 ) -> Any:
-    """The steps of a text on a stack, over any numbers; or the number itself."""
-    if not isinstance(given, str):
-        return number(decimal_number(str(given)) if isinstance(given, Decimal) else Fraction(given))
+    """A number, or the steps of a text."""
+    return carried_out(steps_of(given), names, number, named, pi, functions, power)
+
+
+@lru_cache(maxsize=4096)
+def steps_of(given: Given) -> tuple[Step, ...]:
+    """The steps of a text; of a number the one that is the number itself. Raises as :func:`value`."""
+    if isinstance(given, str):
+        return read(given)
+    return (Step("number", decimal_number(str(given)) if isinstance(given, Decimal) else Fraction(given), 1),)
+
+
+def carried_out(
+    steps: Sequence[Step],
+    names: Mapping[str, Any],
+    number: Callable[[Fraction], Any],
+    named: Callable[[Any], Any],
+    pi: Callable[[], Any],
+    functions: Mapping[str, Callable[[Any], Any]],
+    power: Callable[[Any, int], Any],
+) -> Any:
+    """The steps on a stack, over any numbers that know ``+ - * /``; the other arguments say what else they are."""
     stack: list[Any] = []
-    for step in _steps(given):
+    for step in steps:
         if step.op == "number":
             stack.append(number(Fraction(step.value or 0)))
         elif step.op == "pi":
@@ -92,9 +112,6 @@ def _run(
         else:
             stack.append(_unary(step, stack.pop(), functions, power))
     return stack.pop()
-
-
-_steps = lru_cache(maxsize=4096)(read)
 
 
 def _unary(step: Step, x: Any, functions: Mapping[str, Callable[[Any], Any]], power: Callable[[Any, int], Any]) -> Any:
@@ -127,7 +144,7 @@ def _ball(kind: Callable[[Any], Any], x: Fraction) -> Any:
     return kind(flint.fmpq(x.numerator, x.denominator))
 
 
-def _ball_power(x: Any, n: int) -> Any:
+def ball_power(x: Any, n: int) -> Any:
     """By squaring: python-flint's own power of a ball around 0 is not a number."""
     result, square, left = x * 0 + 1, x, abs(n)
     while left:

@@ -18,7 +18,7 @@ from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.topology import BASE, Topology, christoffel_entries, topology
-from substructures.part.units import check_units, described, uncounted, without_effect
+from substructures.part.units import UnitCheck, check_units, described, uncounted, without_effect
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -199,7 +199,8 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     """
     start = perf_counter()
     m = mechanism(definition)
-    check_units(definition, m.topology).require()
+    units = check_units(definition, m.topology)
+    units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
     entries = christoffel_entries([(j.parent, j.s) for j in m.topology.joints])
     if entries > MAX_ENTRIES:
@@ -213,12 +214,12 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     if len(result) > max_nodes:
         raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
-    return Part(definition, result, _certificate(m, result, seconds))
+    return Part(definition, result, _certificate(m, result, units, seconds))
 
 
-def _certificate(m: Mechanism, result: Program, seconds: float) -> dict[str, Any]:
+def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float) -> dict[str, Any]:
     """What was checked, with all warnings about the definition and what of it was converted to SI."""
-    certificate, units = certify_part(m, result, seconds), check_units(m.definition, m.topology)
+    certificate = certify_part(m, result, seconds)
     unused = without_effect(m.definition, {symbol.name for symbol in result.symbols})
     # contradictions in what was stored when units were texts; new definitions were refused
     old = [asdict(fault) for fault in units.faults]
@@ -233,7 +234,7 @@ def recheck(part: Part) -> dict[str, Any]:
     """
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
-    certificate = _certificate(m, part.program, 0.0)
+    certificate = _certificate(m, part.program, check_units(m.definition, m.topology), 0.0)
     return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
 
 

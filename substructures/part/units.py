@@ -26,6 +26,7 @@ from substructures.part.definition import (
     Load,
     Parameter,
     Placement,
+    PotentialLoad,
     SpringLoad,
     TorqueLoad,
 )
@@ -56,6 +57,12 @@ JOINT: dict[str, tuple[Dimension, Dimension]] = {
     "rest": COORDINATE,
     "limits": COORDINATE,
 }
+#: of end stops: stiffness, and damping of a rate for a depth
+STOP: dict[str, tuple[Dimension, Dimension]] = {
+    "stiffness": JOINT["stiffness"],
+    "damping": (_dimension("N m s/rad^2"), _dimension("N s/m^2")),
+}
+ENERGY = _dimension("J")
 ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH, "tau": LENGTH}
 SPRING = {"stiffness": _dimension("N/m"), "damping": _dimension("N s/m"), "length": LENGTH}
 
@@ -175,7 +182,7 @@ class _Places:
             yield from vector(f"/ports/{i}/rotation/rpy", port.rotation.rpy, ANGLE)
 
     def loads(self) -> Iterator[Place]:
-        """Forces, torques, springs and joint loads."""
+        """Forces, torques, springs, joint loads and potentials."""
         kinds = {entry.coordinate: entry.s for entry in self.topology.joints}
         for i, load in enumerate(self.definition.loads):
             yield from _load(f"/loads/{i}", load, kinds)
@@ -202,6 +209,13 @@ def _joint(pointer: str, joint: Joint, kinds: Sequence[int]) -> Iterator[Place]:
     yield from vector(f"{pointer}/axis", joint.axis or (), None)
     for name, dimensions in JOINT.items():
         yield from _by_coordinate(f"{pointer}/{name}", getattr(joint, name), dimensions, kinds, name == "limits")
+    for step, s in enumerate(kinds):
+        stops, place = joint.limits_act, f"{pointer}/limits_act"
+        if isinstance(stops, tuple):
+            stops, place = (stops[step], f"{place}/{step}") if step < len(stops) else (None, place)
+        if stops is not None:
+            for name, dimensions in STOP.items():
+                yield f"{place}/{name}", getattr(stops, name), dimensions[s]
 
 
 def _by_coordinate(
@@ -230,6 +244,8 @@ def _load(pointer: str, load: Load, kinds: Mapping[str, int]) -> Iterator[Place]
             yield from vector(f"{pointer}/{key}/at", end.at, LENGTH)
         for name, dimension in SPRING.items():
             yield f"{pointer}/{name}", getattr(load, name), dimension
+    elif isinstance(load, PotentialLoad):
+        yield f"{pointer}/potential", load.potential, ENERGY
     elif isinstance(load, JointLoad) and load.coordinate in kinds:
         yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
 

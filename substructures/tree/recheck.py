@@ -14,7 +14,7 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
 #: what is stored beside the program, but for the certificate
-SUMMARY = ("coordinates", "joints", "frames", "closures", "parameters", "operations")
+SUMMARY = ("coordinates", "joints", "frames", "closures", "limited", "parameters", "operations")
 
 
 def recheck_tree(

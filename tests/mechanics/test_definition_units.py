@@ -35,6 +35,7 @@ METRES: dict[str, Any] = {
                 "rest": "pi/4",
                 "armature": Decimal("0.0005"),
                 "limits": ["-pi/2", "pi/2"],
+                "limits_act": {"stiffness": 500, "damping": 3},
             },
             "mass": Decimal("0.45359237"),
             "com": ["l/2", 0, 0],
@@ -43,7 +44,14 @@ METRES: dict[str, Any] = {
         {
             "name": "slide",
             "parent": "link",
-            "joint": {"type": "prismatic", "coordinate": "x", "tau": Decimal("0.25"), "damping": 120},
+            "joint": {
+                "type": "prismatic",
+                "coordinate": "x",
+                "tau": Decimal("0.25"),
+                "damping": 120,
+                "limits": [-1, 1],
+                "limits_act": [{"stiffness": 2000, "damping": 7}],
+            },
             "mass": 2,
         },
     ],
@@ -62,6 +70,8 @@ METRES: dict[str, Any] = {
             "length": Decimal("0.4"),
         },
         {"type": "joint", "coordinate": "x", "force": "-3*x"},
+        {"type": "potential", "potential": "k*q^2"},
+        {"type": "potential", "potential": Decimal("2.5")},
     ],
 }
 
@@ -79,10 +89,14 @@ IN_OTHER_UNITS: tuple[tuple[Path, Any], ...] = (
     (("bodies", 0, "joint", "rest"), _of(45, "deg")),
     (("bodies", 0, "joint", "armature"), _of(5, "kg cm^2")),
     (("bodies", 0, "joint", "limits"), [_of(-90, "deg"), _of("90", "deg")]),
+    (("bodies", 0, "joint", "limits_act", "stiffness"), _of(Decimal("0.5"), "kN m/rad")),
+    (("bodies", 0, "joint", "limits_act", "damping"), _of(300, "N cm s/rad^2")),
     (("bodies", 0, "mass"), _of(1, "lb")),
     (("bodies", 0, "inertia", "yy"), _of(20_000, "kg mm^2")),
     (("bodies", 1, "joint", "tau"), _of("1/4", "m")),
     (("bodies", 1, "joint", "damping"), _of(Decimal("0.12"), "kN s/m")),
+    (("bodies", 1, "joint", "limits_act", 0, "stiffness"), _of(2, "N/mm")),
+    (("bodies", 1, "joint", "limits_act", 0, "damping"), _of(Decimal("0.007"), "kN s/m^2")),
     (("bodies", 1, "mass"), _of(Decimal("0.002"), "t")),
     (("ports", 0, "position"), [0, 0, _of(1, "cm")]),
     (("ports", 0, "rotation", "rpy"), [0, _of(10, "deg"), 0]),
@@ -93,6 +107,7 @@ IN_OTHER_UNITS: tuple[tuple[Path, Any], ...] = (
     (("loads", 2, "stiffness"), _of(3, "N/mm")),
     (("loads", 2, "damping"), _of(4, "kg/s")),
     (("loads", 2, "length"), _of(400, "mm")),
+    (("loads", 5, "potential"), _of(Decimal("0.0025"), "kJ")),
 )
 
 
@@ -136,6 +151,26 @@ CONTRADICTIONS: list[tuple[Path, Any, str]] = [
     (("bodies", 1, "joint", "armature"), _of(1, "kg m^2"), "/bodies/1/joint/armature"),
     (("bodies", 1, "joint", "rest"), _of(1, "deg"), "/bodies/1/joint/rest"),
     (("bodies", 1, "joint", "limits"), [_of(1, "deg"), 2], "/bodies/1/joint/limits/0"),
+    (
+        ("bodies", 0, "joint", "limits_act", "stiffness"),
+        _of(1, "N/m"),
+        "/bodies/0/joint/limits_act/stiffness",
+    ),
+    (
+        ("bodies", 0, "joint", "limits_act", "damping"),
+        _of(1, "N s/m"),
+        "/bodies/0/joint/limits_act/damping",
+    ),
+    (
+        ("bodies", 1, "joint", "limits_act", 0, "stiffness"),
+        "k",
+        "/bodies/1/joint/limits_act/0/stiffness",
+    ),
+    (
+        ("bodies", 1, "joint", "limits_act", 0, "damping"),
+        _of(1, "N s/m"),
+        "/bodies/1/joint/limits_act/0/damping",
+    ),
     (("ports", 0, "position", 0), _of(1, "s"), "/ports/0/position/0"),
     (("loads", 0, "at", 0), _of(1, "N"), "/loads/0/at/0"),
     (("loads", 0, "vector", 0), _of(1, "N m"), "/loads/0/vector/0"),
@@ -143,6 +178,8 @@ CONTRADICTIONS: list[tuple[Path, Any, str]] = [
     (("loads", 2, "stiffness"), "k", "/loads/2/stiffness"),
     (("loads", 2, "length"), _of(1, "kg"), "/loads/2/length"),
     (("loads", 3, "force"), _of(1, "N m"), "/loads/3/force"),
+    (("loads", 4, "potential"), "k*l", "/loads/4/potential"),
+    (("loads", 5, "potential"), _of(1, "N"), "/loads/5/potential"),
     (("parameters", "l"), {"value": _of(1, "kg"), "unit": "m"}, "/parameters/l/value"),
 ]
 

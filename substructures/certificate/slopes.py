@@ -1,0 +1,97 @@
+"""Derivatives of one element of a stored program by its symbols, in ball arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from flint import arb
+
+from substructures.certificate.linear import Ball
+from substructures.certificate.stored import Stored, operations_in_balls
+from substructures.expr.operations import Operation
+
+#: symbols of which a potential that was found is no function
+OUTSIDE = frozenset(("velocity", "acceleration", "input", "time"))
+
+
+def slopes(program: Stored, entry: int, found: Sequence[Ball]) -> dict[str, Ball]:
+    """The derivatives by all symbols on which an operation depends; ``found``: the values of the operations.
+
+    Backwards through the operations: of y = f(x) the sensitivity of y times df/dx is added to that of x (reverse mode;
+    A. Griewank and A. Walther, Evaluating Derivatives, 2008, section 3.2).
+    """
+    result: dict[str, Ball] = {}
+    pending = {entry: arb(1)}
+    for i in range(entry, -1, -1):
+        weight, operation = pending.pop(i, None), program.operations[i]
+        if weight is None:
+            continue
+        if operation[0] == "sym":
+            name = program.symbols[operation[1]].name
+            result[name] = result.get(name, arb(0)) + weight
+        for k, factor in _partials(operation, found, i):
+            pending[k] = pending.get(k, arb(0)) + weight * factor
+    return result
+
+
+def _partials(operation: Operation, found: Sequence[Ball], i: int) -> list[tuple[int, Ball]]:
+    """(operand, partial derivative) of an operation whose value is found[i]."""
+    op = operation[0]
+    if op in ("sym", "int", "rat"):
+        return []
+    a, x, y = operation[1], found[operation[1]], found[i]
+    if op in ("add", "sub"):
+        return [(a, arb(1)), (operation[2], arb(1 if op == "add" else -1))]
+    if op == "mul":
+        return [(a, found[operation[2]]), (operation[2], x)]
+    if op == "div":
+        return [(a, 1 / found[operation[2]]), (operation[2], -y / found[operation[2]])]
+    if op == "atan2":
+        b = found[operation[2]]
+        square = x * x + b * b
+        return [(a, b / square), (operation[2], -x / square)]
+    if op == "powi":
+        n = operation[2]
+        return [(a, n * y / x if n < 0 else n * _product(x, n - 1))] if n else []
+    return [(a, _UNARY[op](x, y))]
+
+
+def _product(x: Ball, n: int) -> Ball:
+    result = arb(1)
+    for _ in range(n):
+        result = result * x
+    return result
+
+
+#: dy/dx of y = f(x)
+_UNARY: dict[str, Callable[[Ball, Ball], Ball]] = {
+    "neg": lambda _x, _y: arb(-1),
+    "abs": lambda x, _y: x.sgn(),
+    "sign": lambda _x, _y: arb(0),
+    "sin": lambda x, _y: x.cos(),
+    "cos": lambda x, _y: -x.sin(),
+    "tan": lambda _x, y: 1 + y * y,
+    "asin": lambda x, _y: 1 / (1 - x * x).sqrt(),
+    "acos": lambda x, _y: -1 / (1 - x * x).sqrt(),
+    "atan": lambda x, _y: 1 / (1 + x * x),
+    "exp": lambda _x, y: y,
+    "log": lambda x, _y: 1 / x,
+    "sqrt": lambda _x, y: 1 / (2 * y),
+}
+
+
+def stored_gradient(
+    program: Stored, entry: int | None, found: Sequence[Ball], values: Mapping[str, Ball], along: Sequence[str]
+) -> dict[tuple[int, ...], Ball]:
+    """Of a stored scalar V: the derivatives by the symbols ``along``, and at last V less V with all velocities, inputs
+    and the time halved. ``entry``: None where V is zero by structure.
+    """
+    if entry is None:
+        return {}
+    by_name = slopes(program, entry, found)
+    result: dict[tuple[int, ...], Ball] = {(a,): by_name[name] for a, name in enumerate(along) if name in by_name}
+    outside = {s.name for s in program.symbols if s.kind in OUTSIDE and s.name in by_name}
+    if outside:
+        halved = {name: x / 2 if name in outside else x for name, x in values.items()}
+        result[len(along),] = found[entry] - operations_in_balls(program, halved)[entry]
+    return result

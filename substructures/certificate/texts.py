@@ -1,0 +1,97 @@
+"""Expressions of documents as steps in postfix order: their names, terms, values and slopes, in balls."""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_series, fmpq
+
+from substructures.certificate.linear import Ball
+from substructures.expr.direct import BALL_FUNCTIONS, ball_power, carried_out, steps_of
+from substructures.expr.syntax import Step
+
+Steps = tuple[Step, ...]
+
+
+def product(*factors: Steps) -> Steps:
+    """The product of several expressions."""
+    result = factors[0]
+    for factor in factors[1:]:
+        result = (*result, *factor, Step("mul", None, 1))
+    return result
+
+
+def difference(a: Steps, b: Steps) -> Steps:
+    """a - b."""
+    return (*a, *b, Step("sub", None, 1))
+
+
+def negative(a: Steps) -> Steps:
+    """-a."""
+    return (*a, Step("neg", None, 1))
+
+
+def names_of(steps: Sequence[Step]) -> frozenset[str]:
+    """The names that occur."""
+    return frozenset(str(step.value) for step in steps if step.op == "name")
+
+
+def summands(steps: Steps) -> list[Steps]:
+    """The terms of a sum as it is written."""
+    stack: list[list[Steps]] = []
+    for step in steps:
+        if step.op in ("add", "sub"):
+            last = stack.pop()
+            stack[-1] = [*stack[-1], *(last if step.op == "add" else map(negative, last))]
+        elif step.op == "neg":
+            stack[-1] = [negative(term) for term in stack[-1]]
+        elif step.op in ("number", "name", "pi"):
+            stack.append([(step,)])
+        else:
+            operands = 2 if step.op in ("mul", "div") else 1
+            taken = [whole for terms in stack[-operands:] for whole in _sum(terms)]
+            stack[-operands:] = [[(*taken, step)]]
+    return stack.pop()
+
+
+def _sum(terms: Sequence[Steps]) -> Steps:
+    added = [(*term, Step("add", None, 1)) for term in terms[1:]]
+    return (*terms[0], *(step for term in added for step in term))
+
+
+def slope(given: Any, names: Mapping[str, Ball], along: str) -> Ball:
+    """The derivative of a number, of an expression or of steps by a name; not finite where there is none."""
+    steps = given if isinstance(given, tuple) else steps_of(given)
+    if along not in names_of(steps):
+        return arb(0)
+    # x + h: the coefficient of h
+    return _series(steps, ChainMap({along: arb_series([names[along], 1])}, dict(names)))[1]
+
+
+def value(steps: Steps, names: Mapping[str, Ball]) -> Ball:
+    """The value of steps; not finite where there is none."""
+    return _series(steps, names)[0]
+
+
+def _series(steps: Steps, names: Mapping[str, Any]) -> Any:
+    """The power series of an expression."""
+    try:
+        return carried_out(steps, names, _number, _named, _pi, BALL_FUNCTIONS, ball_power)
+    except (ZeroDivisionError, ValueError):
+        # of python-flint for series whose leading term may be zero
+        return arb_series([arb("nan"), arb("nan")])
+
+
+def _number(x: Fraction) -> Any:
+    return arb_series([arb(fmpq(x.numerator, x.denominator))])
+
+
+def _named(x: Any) -> Any:
+    return x if isinstance(x, arb_series) else arb_series([x])
+
+
+def _pi() -> Any:
+    return arb_series([arb.pi()])
