@@ -100,10 +100,11 @@ def _of_formulas(forces: Forces) -> dict[int, list[Ball]]:
     for group in _groups(forces, given):
         some = [given[a] for a in group if a in given]
         exact = all(x.own is not None and not x.cut for x in some)
-        # d_b F_a = d_a F_b
+        # d_b F_a = d_a F_b where one of them depends on the other's coordinate
         curl = (
             _slope(given, a, _local(forces, b), names) - _slope(given, b, _local(forces, a), names)
-            for a, b in combinations(group, 2)
+            for a in group
+            for b in _named(forces, given, a)
         )
         is_gradient = all(x.contains(0) for x in curl)
         for a in group:
@@ -148,10 +149,9 @@ def _at_rest(forces: Forces, a: int, names: Mapping[str, Ball]) -> _Given:
 
 def _atoms(forces: Forces, term: Steps, names: Mapping[str, Ball]) -> list[Ball] | None:
     """The terms of an expanded term that do not depend on the time; None where it is no trigonometric polynomial."""
-    order = [*forces.coordinates, "t"]
+    order = [*sorted(names_of(term) & forces.coordinates.keys()), "t"]
     try:
-        q = [names[name] for name in order]
-        values = expanded(term, names, order).values(q)
+        values = expanded(term, names, order).values([names[name] for name in order])
     except ZeroDivisionError:
         return []
     except NoExpansionError:
@@ -161,16 +161,16 @@ def _atoms(forces: Forces, term: Steps, names: Mapping[str, Ball]) -> list[Ball]
 
 def _own(forces: Forces, a: int, terms: Sequence[Steps], names: Mapping[str, Ball]) -> Ball | None:
     """What of a force depends on its own coordinate alone; None where it is no trigonometric polynomial."""
-    order = list(forces.coordinates)
-    own, total, count = order.index(_local(forces, a)), arb(0), 0
+    own, total, count = _local(forces, a), arb(0), 0
     for term in terms:
+        order = [own, *sorted(names_of(term) & forces.coordinates.keys() - {own})]
         try:
             values = expanded(term, names, order).values([names[name] for name in order])
         except (NoExpansionError, ZeroDivisionError):
             return None
         count += len(values)
         for (n, k), x in values.items():
-            if not any((n[i] or k[i]) for i in range(len(order)) if i != own):
+            if not any(n[1:]) and not any(k[1:]):
                 total = total + x
     return total if count <= MOST else None
 
@@ -179,12 +179,17 @@ def _slope(given: Mapping[int, _Given], a: int, along: str, names: Mapping[str, 
     return sum((slope(term, names, along) for term in given[a].terms), arb(0)) if a in given else arb(0)
 
 
+def _named(forces: Forces, given: Mapping[int, _Given], a: int) -> set[int]:
+    """The joints whose coordinates the force on a joint names."""
+    named = (names_of(term) for term in given[a].terms) if a in given else ()
+    return {forces.coordinates[name] for names in named for name in names & forces.coordinates.keys()}
+
+
 def _groups(forces: Forces, given: Mapping[int, _Given]) -> list[list[int]]:
     """Joints whose forces depend on each other's coordinates; those on which none acts, too."""
     groups: list[set[int]] = []
-    for a, force in given.items():
-        named: frozenset[str] = frozenset().union(*map(names_of, force.terms))
-        joined = {a} | {b for name, b in forces.coordinates.items() if name in named}
+    for a in given:
+        joined = {a} | _named(forces, given, a)
         apart = [group for group in groups if not group & joined]
         groups = [*apart, joined.union(*(group for group in groups if group & joined))]
     return [sorted(group) for group in groups]
