@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from flint import arb
+from flint import arb, fmpq
 
 from substructures.certificate.expanded import MOST, NoExpansionError, expanded
 from substructures.certificate.linear import Ball
@@ -24,6 +24,7 @@ from substructures.certificate.texts import Steps, names_of, slope, summands, va
 
 #: what is not known: no finite value
 UNKNOWN = arb("nan")
+HALF = arb(fmpq(1, 2))
 #: terms beside those in the time, and sums of alternatives, that are looked at
 FEW, MANY = 8, 256
 
@@ -48,20 +49,19 @@ def is_found(some: Iterable[Forces]) -> bool:
     return any(forces.given or forces.bent for forces in some)
 
 
-def at_rest(forces: Forces, share: int | None = None) -> dict[str, Ball]:
-    """The names of a definition with velocities and inputs, and with ``share`` the time, too, divided by it; or 0."""
-    names = {name: forces.numbers.names[name] for name in forces.coordinates}
-    definition = forces.definition
-    names |= {name: forces.numbers.names[name] for name in definition.get("parameters", ())}
-    moving = [*(f"{name}'" for name in forces.coordinates), *definition.get("inputs", ())]
-    moving += [f"tau.{name}" for name in forces.coordinates]
-    names |= {name: forces.numbers.names[name] / share if share else arb(0) for name in moving}
-    return names | {"t": forces.numbers.names["t"] / (share or 1)}
-
-
 def halved(forces: Forces) -> Numbers:
     """Half the velocities, inputs and time."""
-    return Numbers(at_rest(forces, 2))
+    return Numbers(_scaled(forces, HALF, HALF))
+
+
+def _scaled(forces: Forces, share: Ball, share_of_time: Ball) -> dict[str, Ball]:
+    """The names of a definition; velocities and inputs, and the time, are multiplied by these."""
+    names, definition = forces.numbers.names, forces.definition
+    steady = [*forces.coordinates, *definition.get("parameters", ())]
+    moving = [f"{name}'" for name in forces.coordinates] + [f"tau.{name}" for name in forces.coordinates]
+    moving += definition.get("inputs", ())
+    found = {name: names[name] for name in steady} | {name: names[name] * share for name in moving}
+    return found | {"t": names["t"] * share_of_time}
 
 
 def gradient_instead(result: Outputs, name: str, some: Sequence[Forces], Q: Mapping[int, Ball], change: Ball) -> None:
@@ -94,7 +94,7 @@ def alternatives(forces: Forces) -> dict[int, list[Ball]]:
 
 
 def _of_formulas(forces: Forces) -> dict[int, list[Ball]]:
-    names = at_rest(forces)
+    names = _scaled(forces, arb(0), arb(1))
     given = {a: _at_rest(forces, a, names) for a in forces.given}
     found: dict[int, list[Ball]] = {}
     for group in _groups(forces, given):
