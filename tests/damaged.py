@@ -1,14 +1,23 @@
-"""Stored programs with one fault each, as a wrong derivation or a damaged store would leave them; digests made anew."""
+"""Stored programs with one fault each, as a wrong derivation or a damaged store would leave them (digests made anew);
+what certificates say of them.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
+from substructures import Model, Part, TreeSpec
+from substructures.certificate.compare import VerificationFailed
+from substructures.expr.interpret import interpret
 from substructures.expr.program import Operation, Program
+from substructures.part.part import recheck
+from substructures.tree.certificate import certify_tree
 
 NUDGE = Fraction(1_000_001, 1_000_000)
 KINDS = ("sign", "factor", "exchanged", "nudged", "left out")
@@ -67,3 +76,37 @@ def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Gene
     found = replace(program, operations=(*program.operations, *more), outputs={**program.outputs, name: changed})
     # read as it would be from a store, with a digest of its own
     return Program.from_bytes(found.to_bytes())
+
+
+def errors_of(certificate: Any) -> dict[str, float | None]:
+    found: dict[str, float | None] = certificate["direct_form"]["max_relative_error"]
+    return found
+
+
+def found_in_part(part: Part, wrong: Program) -> str | None:
+    """What the certificate of the part says of a program; None when it lets it pass."""
+    try:
+        recheck(replace(part, program=wrong))
+    except VerificationFailed as error:
+        return str(error)
+    return None
+
+
+def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: Program) -> str | None:
+    try:
+        certify_tree(spec, {name: part.definition for name, part in parts.items()}, model.summary(), wrong)
+    except VerificationFailed as error:
+        return str(error)
+    return None
+
+
+def has_effect(program: Program, wrong: Program) -> bool:
+    """Whether any output changes at all: a number may stand beside a factor that is zero."""
+    rng = np.random.default_rng(9)
+    values = {s.name: rng.uniform(-2, 2, 3) for s in program.symbols}
+    before, after = interpret(program, values), interpret(wrong, values)
+    return any(not np.array_equal(before[name], after[name], equal_nan=True) for name in before)
+
+
+def as_json(data: Any) -> bytes:
+    return json.dumps(data).encode()

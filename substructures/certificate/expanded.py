@@ -14,7 +14,7 @@ from typing import Any
 from flint import acb, arb, fmpq
 
 from substructures.certificate.linear import Ball
-from substructures.certificate.texts import Steps
+from substructures.certificate.texts import Steps, names_of
 from substructures.expr.direct import BALL_FUNCTIONS, carried_out
 
 #: powers n and (rational) frequencies k of the coordinates
@@ -156,7 +156,8 @@ def expanded(steps: Steps, names: Mapping[str, Ball], coordinates: Sequence[str]
     }
     functions: dict[str, Callable[[Any], Any]] = {name: partial(_call, name) for name in BALL_FUNCTIONS}
     pi = partial(named, arb.pi())
-    return carried_out(steps, {**names, **moving}, number, named, pi, functions, Expanded.power)
+    used = {name: names[name] for name in names_of(steps)}
+    return carried_out(steps, {**used, **moving}, number, named, pi, functions, Expanded.power)
 
 
 def _call(name: str, x: Expanded) -> Expanded:

@@ -54,10 +54,10 @@ class Forces:
     def depends(self, *given: Any) -> bool:
         """Whether numbers depend on a coordinate or a velocity of the definition."""
         return any(
-            not slope(x, self.numbers.names, name + mark).contains(0)
+            not slope(x, self.numbers.names, name).contains(0)
             for x in given
-            for name in self.coordinates
-            for mark in ("", "'")
+            for name in names_of(steps_of(x))
+            if name.removesuffix("'") in self.coordinates
         )
 
     def rate(self, a: int) -> Ball:
@@ -127,7 +127,8 @@ def _joint_load(found: Forces, load: Plain) -> None:
 def _potential(found: Forces, load: Plain) -> None:
     """Q_a = -dV/dq^a."""
     found.potential += found.numbers.read(load["potential"])
-    for name, a in found.coordinates.items():
+    for name in sorted(names_of(steps_of(load["potential"])) & found.coordinates.keys()):
+        a = found.coordinates[name]
         Q = -slope(load["potential"], found.numbers.names, name)
         _add(found.applied, {a: Q})
         _add(found.slopes, {a: Q})

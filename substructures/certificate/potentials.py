@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from flint import arb
+from flint import arb, fmpq
 
 from substructures.certificate.expanded import MOST, NoExpansionError, expanded
 from substructures.certificate.linear import Ball
@@ -24,6 +24,7 @@ from substructures.certificate.texts import Steps, names_of, slope, summands, va
 
 #: what is not known: no finite value
 UNKNOWN = arb("nan")
+HALF = arb(fmpq(1, 2))
 #: terms beside those in the time, and sums of alternatives, that are looked at
 FEW, MANY = 8, 256
 
@@ -48,20 +49,19 @@ def is_found(some: Iterable[Forces]) -> bool:
     return any(forces.given or forces.bent for forces in some)
 
 
-def at_rest(forces: Forces, share: int | None = None) -> dict[str, Ball]:
-    """The names of a definition with velocities and inputs, and with ``share`` the time, too, divided by it; or 0."""
-    names = {name: forces.numbers.names[name] for name in forces.coordinates}
-    definition = forces.definition
-    names |= {name: forces.numbers.names[name] for name in definition.get("parameters", ())}
-    moving = [*(f"{name}'" for name in forces.coordinates), *definition.get("inputs", ())]
-    moving += [f"tau.{name}" for name in forces.coordinates]
-    names |= {name: forces.numbers.names[name] / share if share else arb(0) for name in moving}
-    return names | {"t": forces.numbers.names["t"] / (share or 1)}
-
-
 def halved(forces: Forces) -> Numbers:
     """Half the velocities, inputs and time."""
-    return Numbers(at_rest(forces, 2))
+    return Numbers(_scaled(forces, HALF, HALF))
+
+
+def _scaled(forces: Forces, share: Ball, share_of_time: Ball) -> dict[str, Ball]:
+    """The names of a definition; velocities and inputs, and the time, are multiplied by these."""
+    names, definition = forces.numbers.names, forces.definition
+    steady = [*forces.coordinates, *definition.get("parameters", ())]
+    moving = [f"{name}'" for name in forces.coordinates] + [f"tau.{name}" for name in forces.coordinates]
+    moving += definition.get("inputs", ())
+    found = {name: names[name] for name in steady} | {name: names[name] * share for name in moving}
+    return found | {"t": names["t"] * share_of_time}
 
 
 def gradient_instead(result: Outputs, name: str, some: Sequence[Forces], Q: Mapping[int, Ball], change: Ball) -> None:
@@ -94,16 +94,17 @@ def alternatives(forces: Forces) -> dict[int, list[Ball]]:
 
 
 def _of_formulas(forces: Forces) -> dict[int, list[Ball]]:
-    names = at_rest(forces)
+    names = _scaled(forces, arb(0), arb(1))
     given = {a: _at_rest(forces, a, names) for a in forces.given}
     found: dict[int, list[Ball]] = {}
     for group in _groups(forces, given):
         some = [given[a] for a in group if a in given]
         exact = all(x.own is not None and not x.cut for x in some)
-        # d_b F_a = d_a F_b
+        # d_b F_a = d_a F_b where one of them depends on the other's coordinate
         curl = (
             _slope(given, a, _local(forces, b), names) - _slope(given, b, _local(forces, a), names)
-            for a, b in combinations(group, 2)
+            for a in group
+            for b in _named(forces, given, a)
         )
         is_gradient = all(x.contains(0) for x in curl)
         for a in group:
@@ -148,10 +149,9 @@ def _at_rest(forces: Forces, a: int, names: Mapping[str, Ball]) -> _Given:
 
 def _atoms(forces: Forces, term: Steps, names: Mapping[str, Ball]) -> list[Ball] | None:
     """The terms of an expanded term that do not depend on the time; None where it is no trigonometric polynomial."""
-    order = [*forces.coordinates, "t"]
+    order = [*sorted(names_of(term) & forces.coordinates.keys()), "t"]
     try:
-        q = [names[name] for name in order]
-        values = expanded(term, names, order).values(q)
+        values = expanded(term, names, order).values([names[name] for name in order])
     except ZeroDivisionError:
         return []
     except NoExpansionError:
@@ -161,16 +161,16 @@ def _atoms(forces: Forces, term: Steps, names: Mapping[str, Ball]) -> list[Ball]
 
 def _own(forces: Forces, a: int, terms: Sequence[Steps], names: Mapping[str, Ball]) -> Ball | None:
     """What of a force depends on its own coordinate alone; None where it is no trigonometric polynomial."""
-    order = list(forces.coordinates)
-    own, total, count = order.index(_local(forces, a)), arb(0), 0
+    own, total, count = _local(forces, a), arb(0), 0
     for term in terms:
+        order = [own, *sorted(names_of(term) & forces.coordinates.keys() - {own})]
         try:
             values = expanded(term, names, order).values([names[name] for name in order])
         except (NoExpansionError, ZeroDivisionError):
             return None
         count += len(values)
         for (n, k), x in values.items():
-            if not any((n[i] or k[i]) for i in range(len(order)) if i != own):
+            if not any(n[1:]) and not any(k[1:]):
                 total = total + x
     return total if count <= MOST else None
 
@@ -179,12 +179,17 @@ def _slope(given: Mapping[int, _Given], a: int, along: str, names: Mapping[str, 
     return sum((slope(term, names, along) for term in given[a].terms), arb(0)) if a in given else arb(0)
 
 
+def _named(forces: Forces, given: Mapping[int, _Given], a: int) -> set[int]:
+    """The joints whose coordinates the force on a joint names."""
+    named = (names_of(term) for term in given[a].terms) if a in given else ()
+    return {forces.coordinates[name] for names in named for name in names & forces.coordinates.keys()}
+
+
 def _groups(forces: Forces, given: Mapping[int, _Given]) -> list[list[int]]:
     """Joints whose forces depend on each other's coordinates; those on which none acts, too."""
     groups: list[set[int]] = []
-    for a, force in given.items():
-        named: frozenset[str] = frozenset().union(*map(names_of, force.terms))
-        joined = {a} | {b for name, b in forces.coordinates.items() if name in named}
+    for a in given:
+        joined = {a} | _named(forces, given, a)
         apart = [group for group in groups if not group & joined]
         groups = [*apart, joined.union(*(group for group in groups if group & joined))]
     return [sorted(group) for group in groups]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -68,7 +67,8 @@ def slope(given: Any, names: Mapping[str, Ball], along: str) -> Ball:
     if along not in names_of(steps):
         return arb(0)
     # x + h: the coefficient of h
-    return _series(steps, ChainMap({along: arb_series([names[along], 1])}, dict(names)))[1]
+    used = {name: names[name] for name in names_of(steps)}
+    return _series(steps, {**used, along: arb_series([names[along], 1])})[1]
 
 
 def value(steps: Steps, names: Mapping[str, Ball]) -> Ball:

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from damaged import damages, nudged_numbers
-from random_trees import Kind, Plain, random_definition
+from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from random_trees import Kind, random_definition
 
-from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
-from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.part import scope as part_scope
-from substructures.part.part import recheck
 from substructures.tree.certificate import certify_tree
 
 PART: dict[str, Any] = {
@@ -105,11 +102,6 @@ def tree_of_everything() -> tuple[TreeSpec, dict[str, Part], Model]:
     return spec, parts, couple(spec, parts)
 
 
-def errors_of(certificate: Any) -> dict[str, float | None]:
-    found: dict[str, float | None] = certificate["direct_form"]["max_relative_error"]
-    return found
-
-
 def test_every_output_is_compared() -> None:
     part = derive(Definition.read(EVERYTHING))
     assert all(output.entries for output in part.program.outputs.values())
@@ -139,31 +131,6 @@ def test_definiteness_is_said() -> None:
     assert derive(Definition.read(PART)).certificate["positive_definite"] is True
     assert derive(Definition.read(with_parameter("m", 0))).certificate["positive_definite"] is False
     assert derive(Definition.read(with_parameter("m", None))).certificate["positive_definite"] is None
-
-
-def found_in_part(part: Part, wrong: Program) -> str | None:
-    """What the certificate of the part says of a program; None when it lets it pass."""
-    try:
-        recheck(replace(part, program=wrong))
-    except VerificationFailed as error:
-        return str(error)
-    return None
-
-
-def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: Program) -> str | None:
-    try:
-        certify_tree(spec, {name: part.definition for name, part in parts.items()}, model.summary(), wrong)
-    except VerificationFailed as error:
-        return str(error)
-    return None
-
-
-def has_effect(program: Program, wrong: Program) -> bool:
-    """Whether any output changes at all: a number may stand beside a factor that is zero."""
-    rng = np.random.default_rng(9)
-    values = {s.name: rng.uniform(-2, 2, 3) for s in program.symbols}
-    before, after = interpret(program, values), interpret(wrong, values)
-    return any(not np.array_equal(before[name], after[name], equal_nan=True) for name in before)
 
 
 def test_damage_of_any_output_of_a_part_is_found() -> None:
@@ -216,7 +183,7 @@ def test_a_wrong_number_is_found_at_the_scale_of_nanometres() -> None:
         ],
         "ports": [{"name": "tip", "body": "b", "position": [1e-9, 0, 2e-9]}],
     }  # fmt: skip
-    part = derive(Definition.read(read_json(_json(small))))
+    part = derive(Definition.read(read_json(as_json(small))))
     places = []
     for kind, place, wrong in [
         *damages(part.program, np.random.default_rng(4), kinds=1),
@@ -225,10 +192,6 @@ def test_a_wrong_number_is_found_at_the_scale_of_nanometres() -> None:
         assert found_in_part(part, wrong) is not None, (kind, place)
         places.append(place)
     assert len(places) > 40
-
-
-def _json(data: Any) -> bytes:
-    return json.dumps(data).encode()
 
 
 def test_formulas_that_exist_on_one_side_only() -> None:
@@ -307,164 +270,6 @@ def test_what_a_wrong_derivation_hands_on_is_found(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(part_scope, "parse", wrong)
     with pytest.raises(VerificationFailed, match="by the documents"):
         derive(Definition.read(EVERYTHING))
-
-
-#: what they change
-FORCES = frozenset(("applied", "potential", "forces", "potential_energy", "limits"))
-#: laws whose potential is found by integration alone; nothing would be right, too
-ALL_FOUND = ("laws that depend on the state", "force with a potential", "force beside one in the time")
-#: parts with forces beside those above: end stops, laws that depend on the state, potentials given and found
-LAWS: dict[str, Plain] = {
-    "stops": {
-        "joint": {"limits": [-0.1, "l/3"], "limits_act": {"stiffness": "k", "damping": 3}, "stiffness": 2, "rest": 0.3},
-    },
-    "potential": {"loads": [{"type": "potential", "potential": "k*x^2*cos(y - l)*(1 + u*t) + sqrt(1 + y^2)/(2 + x)"}]},
-    "laws that depend on the state": {
-        "joint": {"stiffness": "k*(1 + x^2)", "rest": "l - y/7", "damping": "2 + x'^2*sin(t)"},
-    },
-    "force with a potential": {
-        "loads": [
-            {"type": "joint", "coordinate": "x", "force": "-k*x*y^2 - 4*x^3 - x' + u*y + cos(2*x)"},
-            {"type": "joint", "coordinate": "y", "force": "-k*x^2*y + sin(y)*y - 0.2*y'*x"},
-        ],
-    },
-    "force with its own part": {
-        "joint": {"stiffness": 3},
-        "loads": [
-            {"type": "joint", "coordinate": "x", "force": "k*y - 4*x^3 - x'^3 + x*sin(y)^2"},
-            {"type": "joint", "coordinate": "y", "force": "-k*x - sin(y + l)"},
-        ],
-    },
-    "force beside one in the time": {
-        "loads": [{"type": "joint", "coordinate": "x", "force": "sin(t)*y - k*x^3"}],
-    },
-    "spring that depends on the state": {
-        "loads": [
-            {"type": "spring", "from": {"body": "base", "at": [0, 0, 1]}, "to": {"body": "a"},
-             "stiffness": "k*(1 + x^2)", "damping": "1 + y^2"},
-            {"type": "spring", "from": {"body": "base", "at": [1, 0, 1]}, "to": {"body": "b", "at": [0, "l", 0]},
-             "stiffness": "k*(1 + t)", "damping": "1 + y^2", "length": "0.3 + u"},
-        ],
-    },
-    "dead force": {
-        "loads": [
-            {"type": "force", "body": "b", "at": [0.2, "l", 0.1], "vector": ["k", -2, "3*l"], "frame": "world"},
-            {"type": "force", "body": "base", "at": [0.2, 0, 0.1], "vector": [1, 0, 0], "frame": "world"},
-            {"type": "force", "body": "a", "at": [0.2, 0, 0.1], "vector": [1, "y", 0], "frame": "world"},
-        ],
-    },
-}  # fmt: skip
-
-
-def part_with(more: Plain) -> Part:
-    """A slide x along an inclined axis and a turning joint y, with a law."""
-    mass = {"mass": 2, "com": [0.1, 0.2, 0], "inertia": {"xx": 1, "yy": 1, "zz": 1}}
-    x = {"type": "prismatic", "coordinate": "x", "theta": 0.4} | more.get("joint", {})
-    y = {"type": "revolute", "coordinate": "y", "theta": 1.1, "limits": [-1, "k"]}
-    bodies = [{"name": "a", "parent": "base", "joint": x} | mass, {"name": "b", "parent": "a", "joint": y} | mass]
-    loads = more.get("loads", ())
-    parameters = {"k": {"value": 1.7}, "l": {"value": 0.6}}
-    plain = {"name": "a", "parameters": parameters, "inputs": {"u": {}}, "bodies": bodies, "loads": loads}
-    return derive(Definition.read(read_json(_json(plain))))
-
-
-def two_of(part: Part) -> tuple[TreeSpec, dict[str, Part], Model]:
-    """On each other, with gravity."""
-    mounts = [{"name": "x", "substructure": "a"}, {"name": "y", "substructure": "a", "at": "x.b"}]
-    mounts[1] |= {"parameters": {"k": "2*x.k"}, "placement": {"rpy": [0.3, 0.2, 0.1]}}
-    spec, parts = TreeSpec.read({"name": "t", "gravity": [1, 2, -9], "instances": mounts}), {"x": part, "y": part}
-    return spec, parts, couple(spec, parts)
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
-    """In all ways, in the part and in a tree; and every number of the program of the part."""
-    part = part_with(LAWS[law])
-    spec, parts, model = two_of(part)
-    for certificate, program in ((part.certificate, part.program), (model.certificate, model.program)):
-        errors = errors_of(certificate)
-        assert errors.keys() == program.outputs.keys()
-        assert all(error is not None and error <= TOLERANCE for error in errors.values())
-    rng = np.random.default_rng(5)
-    for kind, place, wrong in damages(part.program, rng, elements=2):
-        name = place.partition("[")[0]
-        if name in FORCES and not (kind == "left out" and name == "potential" and law in ALL_FOUND):
-            assert found_in_part(part, wrong) is not None, (kind, place)
-    for kind, place, wrong in damages(model.program, rng, elements=2):
-        if place.partition("[")[0] in FORCES:
-            assert found_in_tree(spec, parts, model, wrong) is not None, (kind, place)
-    used = set(part.program.reachable(["applied", "potential"]))
-    for kind, place, wrong in nudged_numbers(part.program):
-        if int(place.removeprefix("operation ")) in used and has_effect(part.program, wrong):
-            assert found_in_part(part, wrong) is not None, (kind, place)
-
-
-def test_what_is_told_of_a_wrong_potential() -> None:
-    """What was found by integration is compared by its gradient; a term in the time alone is none of it."""
-    part = part_with(LAWS["force with its own part"])
-    program, (entry,) = part.program, part.program.outputs["potential"].entries
-    wrong = _with_potential(program, [("mul", entry, entry)])
-    assert "the change of potential with x is" in str(found_in_part(part, wrong))
-    time = next(i for i, s in enumerate(program.symbols) if s.name == "x'")
-    n = len(program.operations)
-    wrong = _with_potential(program, [("sym", time), ("add", entry, n)])
-    assert "with the time, inputs and velocities is" in str(found_in_part(part, wrong))
-
-
-def _with_potential(program: Program, more: list[Any]) -> Program:
-    """The potential is the last of some operations that are added."""
-    operations = (*program.operations, *more)
-    potential = replace(program.outputs["potential"], entries=(len(operations) - 1,))
-    return replace(program, operations=operations, outputs={**program.outputs, "potential": potential})
-
-
-def test_no_gradient_is_taken_for_more_than_it_is() -> None:
-    """Circulatory forces y, -x: a stored V = -x y has the gradient of one of them, and is none of both."""
-    loads = [{"type": "joint", "coordinate": c, "force": f} for c, f in (("x", "y"), ("y", "-x"))]
-    part = part_with({"loads": loads})
-    index = {s.name: i for i, s in enumerate(part.program.symbols)}
-    n = len(part.program.operations)
-    more = [("sym", index["x"]), ("sym", index["y"]), ("mul", n, n + 1), ("neg", n + 2)]
-    operations = (*part.program.operations, *more)
-    potential = replace(part.program.outputs["potential"], entries=(n + 3,), index=((),))
-    outputs = {**part.program.outputs, "potential": potential}
-    wrong = replace(part.program, operations=operations, outputs=outputs)
-    assert "the change of potential with x is" in str(found_in_part(part, wrong))
-
-
-def test_limits_are_of_the_document() -> None:
-    spec, parts, model = two_of(part_with(LAWS["stops"]))
-    definitions = {name: part.definition for name, part in parts.items()}
-    assert model.limited == ("x.x", "x.y", "y.x", "y.y")
-    with pytest.raises(VerificationFailed, match="limited"):
-        certify_tree(spec, definitions, {**model.summary(), "limited": ["x.y"]}, model.program)
-    outputs = {name: x for name, x in model.program.outputs.items() if name != "limits"}
-    without = replace(model.program, outputs=outputs)
-    assert "limits is missing" in str(found_in_tree(spec, parts, model, without))
-    # a model of a version that knew nothing of limits
-    older = {name: x for name, x in model.summary().items() if name != "limited"}
-    assert "limits" not in errors_of(certify_tree(spec, definitions, older, without))
-
-
-#: joint loads as people write them, and worse: nothing in them may be refused
-ODD = (
-    ("0*x + k*y", "x*k"), ("x - x", "y/y"), ("2*x + 2*sin(t)", "1/y'"), ("u/x' - x", "x*t - x*t"),
-    ("sqrt(1 + x^2)", "x*y/(1 + y^2)"), ("tan(x)", "cos(x*y)"), ("(x + t)^2*y", "cos(t)*y - k*y^3"),
-    ("x^-2", "sin(y)/cos(y)"), ("cos(k*x)", "sin(x + 1/k)*k"), ("cos(x + k*l)^3*y", "sqrt(l)*y^9/(k + l)"),
-    ("(1 + x + y)^9", "sqrt(x^2)"), ("-(x - (t - y))*3", "-(u - x)*y"),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("forces", ODD)
-def test_no_law_is_refused_by_mistake(forces: tuple[str, str]) -> None:
-    """As forces, as stiffnesses of joints and of springs; in a part and in a tree."""
-    loads = [{"type": "joint", "coordinate": c, "force": f} for c, f in zip("xy", forces, strict=True)]
-    ends = {"from": {"body": "base", "at": [0, 0, 1]}, "to": {"body": "b"}}
-    springs = [{"type": "spring", "stiffness": f, **ends} for f in forces]
-    springs[1]["length"] = "l"
-    joint = {"stiffness": forces[0], "rest": "l"}
-    for more in ({"loads": loads}, {"joint": joint, "loads": loads[1:]}, {"loads": springs}):
-        two_of(part_with(more))
 
 
 @pytest.mark.deep
