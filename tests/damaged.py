@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from substructures import Model, Part, TreeSpec
-from substructures.certificate.compare import VerificationFailed
+from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Operation, Program
 from substructures.part.part import recheck

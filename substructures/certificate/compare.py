@@ -131,7 +131,8 @@ class _Comparison:
     ) -> float:
         """The relative error of an element; noted instead where it is not finite, or too wide."""
         wide, outside = unsure
-        if not b.is_finite():
+        # what was found by integration may have no value where the law that it comes from has one
+        if not b.is_finite() or (index in values.others and not a.is_finite()):
             outside.setdefault(name, set()).add(index)
         elif not a.is_finite():
             if last:

@@ -113,8 +113,9 @@ def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
     operations = numbers = 0
     n = sources.model.dof
     for source, program, names in steps(sources, quantities):
-        # without a program the answer is one row of NaN by coordinate
+        # without a program the answer is one row of NaN by coordinate; a condition number is one number
         shapes = {} if program is None else {name: program.outputs[name].shape for name in names}
+        shapes["condition"] = ()
         chosen = [q for q in dict.fromkeys(quantities) if QUANTITIES[q].source == source]
         numbers += sum(prod(shapes.get(name, (n,))) for q in chosen for name in QUANTITIES[q].outputs)
         operations += 0 if program is None else len(program.reachable(names))

@@ -211,12 +211,14 @@ def _place(found: Array, bad: Indices) -> str:
 def _impossible(moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | None) -> Iterator[tuple[str, str]]:
     """The tensor about the mass centre must have principal moments that obey the triangle inequality."""
     xx, yy, zz, xy, xz, yz = moments
-    Theta = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
-    # J = tr(Theta)/2 1 - Theta has no negative eigenvalue;   about another point J_C = J - m h h^T
-    J = np.trace(Theta, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - Theta
-    if shift is not None:
-        h = np.stack(shift[1], -1)
-        J = J - shift[0][..., None, None] * h[..., :, None] * h[..., None, :]
+    # what overflows is told below
+    with np.errstate(all="ignore"):
+        Theta = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
+        # J = tr(Theta)/2 1 - Theta has no negative eigenvalue;   about another point J_C = J - m h h^T
+        J = np.trace(Theta, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - Theta
+        if shift is not None:
+            h = np.stack(shift[1], -1)
+            J = J - shift[0][..., None, None] * h[..., :, None] * h[..., None, :]
     J = J.reshape(-1, 3, 3)
     finite = np.isfinite(J).all(axis=(1, 2))
     eigenvalues = np.linalg.eigvalsh(np.where(finite[:, None, None], J, 0.0))

@@ -34,6 +34,8 @@ def _magnitude(operation: tuple[Any, ...], value: Callable[[int], Array], size: 
     if op == "powi":
         n = operation[2]
         return np.abs(value(x)) ** n * (size(x) / np.abs(value(x))) ** abs(n)
+    if op == "acos":  # pi
+        return np.pi * size(x)
     assert op in ("neg", "abs"), op
     return size(x)
 
@@ -43,7 +45,7 @@ def _deviation(compiled: Program, values: Mapping[str, Any], found: Mapping[str,
     results: dict[int, Array] = {}
     sizes: dict[int, Array] = {}
     expected = interpret(compiled, values, list(found))
-    single = {"sin": np.sin, "cos": np.cos, "neg": np.negative, "sqrt": np.sqrt, "abs": np.abs}
+    single = {"sin": np.sin, "cos": np.cos, "neg": np.negative, "sqrt": np.sqrt, "abs": np.abs, "acos": np.arccos}
     double = {"add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide}
     with np.errstate(all="ignore"):
         for i in compiled.reachable(list(found)):

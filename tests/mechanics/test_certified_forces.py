@@ -11,8 +11,9 @@ from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, h
 from random_trees import Plain
 
 from substructures import Definition, Model, Part, Program, TreeSpec, couple, derive
-from substructures.certificate.compare import TOLERANCE, VerificationFailed
+from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
+from substructures.errors import VerificationFailed
 from substructures.tree.certificate import certify_tree
 
 #: what they change

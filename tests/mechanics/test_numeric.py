@@ -32,7 +32,7 @@ TREES = {
     "arm on arm": tree(
         ("a", "ur5", "world"),
         ("b", "puma560", "a.flange"),
-        a={"placement": {"rpy": ["0.2", 0, "0.1"], "position": [1, "a.m1", 0]}},
+        a={"placement": {"rpy": ["0.2", 0, "0.1"], "position": [1, "a.d1", 0]}},
         b={"placement": {"rpy": ["0.1", 0, 0]}},
     ),
     "hand and camera on a gantry": tree(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -176,8 +177,8 @@ def test_joint_limits_left_are_told(filled: TestClient) -> None:
         assert [code for _, code in _codes(_evaluated(filled, "made", q=q))] == expected
     assert _codes(_evaluated(filled, "made", q=[-1.1], parameters={"a.reach": 1.2})) == []
     motion = _posted(filled, "trees/made/simulations", {"q": [0], "qd": [9], "span": [0, 1]}, 200)
-    assert _codes(motion) == [("/q", "limits-left")]
-    assert "rad at t = " in motion["warnings"][0]["message"]
+    assert _codes(motion) == [("/q/a.q", "limits-left")]
+    assert "it goes up to" in motion["warnings"][0]["message"]
     linear = _posted(filled, "trees/made/linearisations", {"q": [2]}, 200)
     assert _codes(linear) == [("/q", "limits-left")]
 
@@ -243,7 +244,9 @@ def test_trees_of_old_accept_what_is_declared(filled: TestClient, store: Store) 
     with store.database.write() as connection:
         summary = json.loads(connection.execute(select(trees.c.summary).where(trees.c.name == "made")).scalar_one())
         del summary["inputs"], summary["parameters"]["a.idle"]
-        connection.execute(update(trees).where(trees.c.name == "made").values(summary=json.dumps(summary)))
+        text = json.dumps(summary)
+        older = {"summary": text, "summary_digest": f"sha256:{sha256(text.encode()).hexdigest()}"}
+        connection.execute(update(trees).where(trees.c.name == "made").values(**older))
     store.caches.models._entries.clear()
     found = _evaluated(filled, "made", parameters={"a.idle": 1}, inputs={"a.wind": 1})
     assert _codes(found) == [("/parameters/a.idle", "no-effect"), ("/inputs/a.wind", "no-effect")]
@@ -274,4 +277,4 @@ def test_the_command_line_tells_warnings(
     told = capsys.readouterr().err
     assert "warning: /gravity: gravity is not given" in told
     assert "warning: /parameters/spare: no formula" in told
-    assert "warning: /q: 'a.q' is 1" in told
+    assert "warning: /q/a.q: 'a.q' leaves its limits [-1, 1] rad: it goes up to 9 rad" in told
