@@ -5,7 +5,7 @@ what certificates say of them.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -100,12 +100,18 @@ def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: P
     return None
 
 
-def has_effect(program: Program, wrong: Program) -> bool:
-    """Whether any output changes at all: a number may stand beside a factor that is zero."""
+def has_effect(program: Program, wrong: Program, names: Iterable[str] | None = None) -> bool:
+    """Whether any output (of these names) changes at all: a number may stand beside a factor that is zero."""
     rng = np.random.default_rng(9)
     values = {s.name: rng.uniform(-2, 2, 3) for s in program.symbols}
+    chosen = list(program.outputs if names is None else names)
     before, after = interpret(program, values), interpret(wrong, values)
-    return any(not np.array_equal(before[name], after[name], equal_nan=True) for name in before)
+    return any(not np.array_equal(before[name], after[name], equal_nan=True) for name in chosen)
+
+
+def verified(part: Part) -> list[str]:
+    """The outputs that the certificate of a part vouches for: not those that it calls null."""
+    return [name for name, error in errors_of(part.certificate).items() if error is not None]
 
 
 def as_json(data: Any) -> bytes:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import os
 import random
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -114,7 +115,9 @@ def printed(texts: list[str], p: Program, source: Texts) -> int:
     graph, outputs = Graph(), {}
     for name in p.outputs:
         for entry in entries(p, name, "text"):
-            outputs[name] = Formulas((), {(): parse(graph, entry["formula"], graph.symbol)})
+            # exact numbers may have three times as many digits as the grammar reads
+            if not re.search(r"\d{400}", entry["formula"]):
+                outputs[name] = Formulas((), {(): parse(graph, entry["formula"], graph.symbol)})
     return _same(texts, program(graph, outputs, SYMBOLS), source)
 
 

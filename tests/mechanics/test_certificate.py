@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers, verified
 from random_trees import Kind, random_definition
 
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
@@ -281,15 +281,17 @@ def test_damage_of_twenty_mechanisms_is_found() -> None:
     )
     definitions = [Definition.read(catalogue.load(name)) for name in names]
     for seed in range(6):
-        kind = Kind(bodies=4, loads=3, springs=1)
-        definitions.append(Definition.read(random_definition(np.random.default_rng(seed), kind)))
+        plain = random_definition(np.random.default_rng(seed), Kind(bodies=4, loads=3, springs=1))
+        # beside forces that are formulas V is compared by its gradient: tests/mechanics/test_certified_forces.py
+        plain["loads"] = [load for load in plain["loads"] if load["type"] != "joint"]
+        definitions.append(Definition.read(plain))
     counts: Counter[str] = Counter()
     missed = []
     for number, definition in enumerate(definitions):
         part, rng = derive(definition), np.random.default_rng(number)
         for kind_, place, wrong in [*damages(part.program, rng), *nudged_numbers(part.program)]:
             counts[str(kind_)] += 1
-            if found_in_part(part, wrong) is None and has_effect(part.program, wrong):
+            if found_in_part(part, wrong) is None and has_effect(part.program, wrong, verified(part)):
                 missed.append((definition.name, kind_, place))
         spec = TreeSpec.read(
             {
