@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, svdvals
+from scipy.linalg import lapack, qr, svdvals
 
 from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.closed.prescribed import Prescribed
@@ -37,8 +37,6 @@ from substructures.tree.model import Model
 
 #: in which the lengths of the rows of G are looked at
 POSITIONS = 8
-#: lengths of rows or columns that differ by this part are equal
-TIE = 1e-6
 ALL = slice(None)
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
@@ -230,7 +228,8 @@ class Constrained:
         if not rank:
             return np.zeros(0, dtype=np.int64)
         # G^T P = Q R: rows in the order of what they add to those before
-        return np.sort(pivoted(self.balanced.T, rank)[:rank])
+        pivots = qr(self.balanced.T, mode="r", pivoting=True)[1]
+        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
 
 
 @dataclass(frozen=True)
@@ -254,21 +253,6 @@ def _compiled(
     """Outputs of a model with their POWER, once for the same model."""
     source = with_power(known.source, outputs, inputs)
     return source, compile_program(source, [*outputs, POWER], folder)
-
-
-def pivoted(A: Array, rank: int) -> NDArray[np.int64]:
-    """Columns of A in the order of a QR decomposition with pivoting, the first ``rank`` by what they add to those
-    before; of columns that differ by rounding the first one, so that a choice does not hang on the last bits.
-    """
-    left, order = np.array(A, dtype=np.float64), list(range(A.shape[1]))
-    for k in range(rank):
-        sizes = np.linalg.norm(left[:, order[k:]], axis=0)
-        place = k + int((sizes >= (1 - TIE) * sizes.max()).argmax())
-        order.insert(k, order.pop(place))
-        # what is left beside the column e: A - e e^T A
-        e = left[:, order[k]] / np.linalg.norm(left[:, order[k]])
-        left -= np.outer(e, e @ left)
-    return np.array(order, dtype=np.int64)
 
 
 def rank_of(balanced: Array) -> int:

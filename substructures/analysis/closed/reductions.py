@@ -14,9 +14,9 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, svdvals
+from scipy.linalg import lapack, qr, svdvals
 
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, pivoted
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
 from substructures.analysis.closed.projection import CLOSED, project
 from substructures.array import Array
 from substructures.mechanics.accelerations import RANK
@@ -101,7 +101,8 @@ class Reduction(ABC):
         if self.is_singular():
             raise Singular(SINGULAR)
         if anew or self.s.share(self.rank, self.rows) < WORN * share:
-            self.rows = np.sort(pivoted(self.s.balanced.T, self.rank)[: self.rank])
+            pivots = qr(self.s.balanced.T, mode="r", pivoting=True)[1]
+            self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
 
 
 class Projected(Reduction):
@@ -143,8 +144,10 @@ class Partitioned(Reduction):
         self._partition()
 
     def _partition(self) -> None:
-        order = pivoted(self.s.balanced[self.rows], self.rank)
-        self.dependent, self.independent = np.sort(order[: self.rank]), np.sort(order[self.rank :])
+        G = self.s.balanced[self.rows]
+        pivots = np.arange(self.n) if not self.rank else qr(G, mode="r", pivoting=True)[1]
+        self.dependent: NDArray[np.int64] = np.sort(pivots[: self.rank]).astype(np.int64)
+        self.independent: NDArray[np.int64] = np.sort(pivots[self.rank :]).astype(np.int64)
         self.best = self._condition()
 
     def _condition(self) -> float:
