@@ -104,7 +104,7 @@ class Joint:
     parent: int
     prismatic: bool
     A: Matrix
-    O: Matrix  # noqa: E741
+    O: Matrix  # noqa: E741 -- symbol of the notation
     tau: Ball
     w: Matrix
     v: Matrix

@@ -97,7 +97,7 @@ def _joints(result: Outputs, bodies: Bodies, masses: dict[int, Moments], carried
     for c, joint in enumerate(bodies.joints):
         back = joint.A.transpose()
         A, _ = bodies.carrier(joint.parent)
-        O = zeros(3, 1) if joint.parent == GROUND else bodies.joints[joint.parent].O  # noqa: E741
+        O = zeros(3, 1) if joint.parent == GROUND else bodies.joints[joint.parent].O  # noqa: E741 -- symbol of the notation
         # E_c: frame L(c) -> frame c;   Z_c = O_c - O_L(c) in frame L(c)
         result.matrix("E", (n, 3, 3), (c,), back * A)
         result.matrix("Z", (n, 3), (c,), A.transpose() * (joint.O - O))

@@ -54,6 +54,7 @@ def test_signs_of_roots(text: str, expected: float) -> None:
         ("sin(2*q0)/sin(q0)", "2*cos(q0)", 0.0, 2.0),
         ("sqrt(q0)*sqrt(q0)*q1/q1", "q0", -2.0, -2.0),
         ("(q1*q0+q0)/(q1+1)", "q0+1", 0.5, 1.5),
+        ("q0*(1e-9*sqrt(q0)+q1)-1e-9*q0*sqrt(q0)", "q0*q1", -2.0, -2.0),
     ],
 )
 def test_one_expression_does_not_change_another(first: str, second: str, at: float, expected: float) -> None:
