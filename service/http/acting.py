@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from dataclasses import replace
-from functools import wraps
+from functools import partial, wraps
 from typing import Annotated, Any
 
 from fastapi import Depends, Header, Request, Response
@@ -57,22 +57,23 @@ class Act:
         ``deferred`` prepares the job that does the same. Raises Refused 409, 422 or, without one, 503 (took too long).
         """
         kept = self._claimed.claim()
-        return replayed(kept) if kept is not None else self._in_time(prepare, deferred, keeps=True)
+        return response_of(replayed(kept)) if kept is not None else self._in_time(prepare, deferred)
 
     def submit(self, prepare: Callable[[], Commit]) -> Response:
         """As :meth:`run`, without a limit of time."""
         kept = self._claimed.claim()
-        return replayed(kept) if kept is not None else self._finish(prepare, keeps=True)
+        return response_of(replayed(kept)) if kept is not None else self._finish(prepare)
 
     def compute(self, work: Callable[[], Answer | Stream], deferred: Callable[[], Commit] | None = None) -> Response:
         """Work that stores nothing: the same request under the same key computes the same answer again.
 
         The endpoint has to be ``timed``; the time limit of a stream is that of its beginning.
         """
-        known = self._claimed.claim()
+        known = self._claimed.known(self.store.runtime.computed)
         if known is not None and known.body is not None:  # it became a job
-            return replayed(known)
-        return self._in_time(work, deferred, keeps=known is None)
+            return response_of(replayed(known))
+
+        return self._in_time(work, None if deferred is None else partial(self._claiming, deferred))
 
     async def within_time(self, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
@@ -83,8 +84,13 @@ class Act:
         with self.store.database.read() as connection:
             keys.authorise(connection, self._request.headers.get("authorization"), scope)
 
+    def _claiming(self, deferred: Callable[[], Commit]) -> Commit | Answer:
+        """The job that a computation becomes, or what it became under the same key."""
+        kept = self._claimed.claim()
+        return deferred() if kept is None or kept.body is None else replayed(kept)
+
     def _in_time(
-        self, work: Callable[[], Commit | Answer | Stream], deferred: Callable[[], Commit] | None, keeps: bool
+        self, work: Callable[[], Commit | Answer | Stream], deferred: Callable[[], Commit | Answer] | None
     ) -> Response:
         deadline = self._deadline
 
@@ -99,17 +105,17 @@ class Act:
             """The work under its deadline."""
             if deadline.is_over or (deferred is not None and self._prefers("respond-async")):
                 return late()
-            return deadline.watched(work, late, instead=lambda: self._finish(late, keeps))
+            return deadline.watched(work, late, instead=lambda: self._finish(late))
 
-        return self._finish(watched, keeps)
+        return self._finish(watched)
 
-    def _finish(self, prepare: Callable[[], Commit | Answer | Stream], keeps: bool) -> Response:
+    def _finish(self, prepare: Callable[[], Commit | Answer | Stream]) -> Response:
         """Commit what was prepared, and keep the answer under the key in the same transaction."""
         try:
             for _ in range(ATTEMPTS):
                 found = prepare()
                 try:
-                    return response_of(self._told(self._stored(found, keeps)))
+                    return response_of(self._told(self._stored(found)))
                 except Exception as error:
                     if not isinstance(error, StaleError) and not is_conflict(error):
                         raise
@@ -121,16 +127,12 @@ class Act:
             self._claimed.release()
             raise
 
-    def _stored(self, found: Commit | Answer | Stream, keeps: bool) -> Answer | Stream:
+    def _stored(self, found: Commit | Answer | Stream) -> Answer | Stream:
         if isinstance(found, Answer | Stream):
-            if keeps and self._claimed.key:
-                with self.store.database.write() as connection:
-                    self._claimed.keep(connection, found, None)
             return found
         with self.store.database.write() as connection:
             answer = found(connection)
-            if keeps:
-                self._claimed.keep(connection, answer, answer.body)
+            self._claimed.keep(connection, answer)
         if answer.status == 202:  # a job does not wait until somebody looks for one
             self.store.runtime.wake.set()
         return answer

@@ -7,6 +7,9 @@
         |-- answered already: the same answer again
         |-- other request under this key: 422
         '-- in flight: 409
+
+A computation stores nothing, so it claims nothing: the same request computes the same answer again. What its key
+belongs to is remembered by the process; it is claimed only when the computation becomes a job.
 """
 
 from __future__ import annotations
@@ -18,12 +21,13 @@ from datetime import timedelta
 from functools import cached_property
 
 import orjson
-from fastapi import Request, Response
+from fastapi import Request
 
-from service.answers import Answer, Stream
+from service.answers import Answer
 from service.database.connections import Connection, Database
 from service.queries import idempotency
 from service.refusals import Refused
+from service.runtime import Computed
 from service.settings import Limits
 
 
@@ -43,6 +47,7 @@ class IdempotencyClaim:
         self._request, self._body, self._database, self._limits = request, body, database, limits
         self._principal: str = request.state.principal
         self._owner = secrets.token_hex(8)
+        self._is_claimed = False
 
     @cached_property
     def _fingerprint(self) -> str:
@@ -55,8 +60,8 @@ class IdempotencyClaim:
         return found.hexdigest()
 
     def claim(self) -> idempotency.Entry | None:
-        """Claim the key, or what was answered under it already. Raises Refused 409 or 422."""
-        if not self.key:
+        """Claim the key, once, or what was answered under it already. Raises Refused 409 or 422."""
+        if not self.key or self._is_claimed:
             return None
         lifetime = timedelta(hours=self._limits.idempotency_hours)
         # who takes a claim over too early is fenced off: the first to finish is the only one
@@ -64,31 +69,50 @@ class IdempotencyClaim:
         with self._database.write() as connection:
             idempotency.forget(connection, lifetime, lease)
             entry = idempotency.claim(connection, self._principal, self.key, self._fingerprint, self._owner)
+        self._is_claimed = entry is None
+        return self._answered(entry)
+
+    def known(self, computed: Computed) -> idempotency.Entry | None:
+        """What was answered under the key, which is not claimed. Raises Refused 409 or 422."""
+        if not self.key:
+            return None
+        with self._database.read() as connection:
+            entry = idempotency.find(connection, self._principal, self.key)
+        if entry is None and computed.first(self._principal, self.key, self._fingerprint) != self._fingerprint:
+            raise _reused()
+        return self._answered(entry)
+
+    def _answered(self, entry: idempotency.Entry | None) -> idempotency.Entry | None:
+        """What is there, if it is of this request and has been answered."""
         if entry is None:
             return None
         if entry.fingerprint != self._fingerprint:
-            raise Refused(422, "idempotency-key-reused", "this Idempotency-Key belongs to another request")
+            raise _reused()
         if entry.status is None:
             detail = "the first request with this Idempotency-Key is still being served"
             raise Refused(409, "idempotency-in-flight", detail, headers={"Retry-After": "1"})
         return entry
 
-    def keep(self, connection: Connection, answer: Answer | Stream, body: bytes | None) -> None:
-        """Keep an answer, without its ``body`` where it can be computed again. Raises Refused 409."""
-        if not self.key:
+    def keep(self, connection: Connection, answer: Answer) -> None:
+        """Keep an answer under the key, if it was claimed. Raises Refused 409."""
+        if not self._is_claimed:
             return
-        kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), body)
+        kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), answer.body)
         if not idempotency.finish(connection, self._principal, self.key, self._owner, kept):
             raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
 
     def release(self) -> None:
         """Give the claim up: the request may be sent again."""
-        if self.key:
+        if self._is_claimed:
             with self._database.write() as connection:
                 idempotency.release(connection, self._principal, self.key, self._owner)
 
 
-def replayed(entry: idempotency.Entry) -> Response:
+def _reused() -> Refused:
+    return Refused(422, "idempotency-key-reused", "this Idempotency-Key belongs to another request")
+
+
+def replayed(entry: idempotency.Entry) -> Answer:
     """The answer that was kept."""
     headers = {**orjson.loads(entry.headers or "{}"), "Idempotency-Replayed": "true"}
-    return Response(entry.body, entry.status or 200, headers)
+    return Answer(entry.status or 200, entry.body or b"", headers)

@@ -13,7 +13,7 @@ from service.queries.common import insert_missing, now
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute the answer again."""
+    """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute again (older versions)."""
 
     fingerprint: str
     owner: str
@@ -26,8 +26,11 @@ class Entry:
 def claim(connection: Connection, principal: str, key: str, fingerprint: str, owner: str) -> Entry | None:
     """Claim a key; None when it is ours now, otherwise what is there."""
     row = {"principal": principal, "key": key, "fingerprint": fingerprint, "owner": owner, "created": now()}
-    if insert_missing(connection, idempotency, [row]):
-        return None
+    return None if insert_missing(connection, idempotency, [row]) else find(connection, principal, key)
+
+
+def find(connection: Connection, principal: str, key: str) -> Entry | None:
+    """What is there under a key."""
     columns = select(*(idempotency.c[name] for name in Entry.__slots__))
     found = connection.execute(columns.where(_is(principal, key))).first()
     return None if found is None else Entry(*found)

@@ -7,10 +7,12 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import Engine, event
 
 from service.app import open_store
 from service.operations import trees
 from service.queries import idempotency
+from service.runtime import COMPUTED, Computed
 from service.settings import Settings
 
 from .conftest import HAND, PENDULUM, make_client
@@ -96,6 +98,42 @@ def test_evaluations_are_computed_again(filled: TestClient, rows: Any) -> None:
     assert (first.status_code, second.content) == (200, first.content)
     assert rows() == count
     assert filled.post("/v1/trees/cell/evaluations", json={**body, "q": [0.2]}, headers=KEY).status_code == 422
+
+
+def test_computations_write_nothing(filled: TestClient) -> None:
+    writes: list[str] = []
+
+    def written(*given: Any) -> None:
+        if not given[2].lstrip().upper().startswith(("SELECT", "PRAGMA", "BEGIN")):
+            writes.append(given[2])
+
+    body = {"quantities": ["metric"], "q": [0.1]}
+    filled.post("/v1/trees/cell/evaluations", json=body)
+    event.listen(Engine, "before_cursor_execute", written)
+    try:
+        answers = [filled.post("/v1/trees/cell/evaluations", json=body, headers=KEY) for _ in range(2)]
+    finally:
+        event.remove(Engine, "before_cursor_execute", written)
+    assert [answer.status_code for answer in answers] == [200, 200]
+    assert not writes
+
+
+def test_a_computation_becomes_one_job(filled: TestClient) -> None:
+    body = {"quantities": ["metric"], "q": [0.1]}
+    headers = {**KEY, "Prefer": "respond-async"}
+    first, second = (filled.post("/v1/trees/cell/evaluations", json=body, headers=headers) for _ in range(2))
+    assert (first.status_code, second.status_code) == (202, 202)
+    assert second.content == first.content
+    assert second.headers["idempotency-replayed"] == "true"
+    assert filled.post("/v1/trees/cell/evaluations", json=body, headers=KEY).content == first.content
+    other = filled.post("/v1/trees/cell/evaluations", json={**body, "q": [0.2]}, headers=headers)
+    assert (other.status_code, other.json()["code"]) == (422, "idempotency-key-reused")
+
+
+def test_a_process_remembers_some_computations() -> None:
+    computed = Computed()
+    assert [computed.first("local", f"{i}", "a") for i in range(COMPUTED + 1)] == ["a"] * (COMPUTED + 1)
+    assert (computed.first("local", "1", "b"), computed.first("local", "0", "b")) == ("a", "b")
 
 
 @pytest.mark.parametrize("key", ["", "x" * 256])
