@@ -14,6 +14,7 @@ from service import __version__
 from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
 from service.http.middleware import Conventions
+from service.http.short_way import ShortWay
 from service.metrics import Metrics
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
@@ -101,5 +102,6 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
     for router in routers:
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
+    app.add_middleware(ShortWay)
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
     return app

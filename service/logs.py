@@ -18,6 +18,8 @@ class _WithRequestId(logging.Filter):
 
 def configure(level: int = logging.INFO) -> None:
     """Set the process's logging up."""
+    # what the lines do not show need not be found out for every request
+    logging.logThreads = logging.logProcesses = logging.logMultiprocessing = False
     handler = logging.StreamHandler()
     handler.addFilter(_WithRequestId())
     logging.basicConfig(level=level, format=FORMAT, handlers=[handler], force=True)

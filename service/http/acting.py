@@ -46,11 +46,6 @@ class Act:
         self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
         self._claimed = IdempotencyClaim(request, body, store.database, limits, key)
 
-    @property
-    def is_plain(self) -> bool:
-        """Whether the request asks for nothing of all this: neither for an answer that is kept nor for a job."""
-        return not self._claimed.key and "prefer" not in self._request.headers
-
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
         """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
 

@@ -38,14 +38,15 @@ def needs(scope: str) -> Any:
 
     async def authorise(request: Request) -> None:
         """Note who asks, or refuse."""
-        store = store_of(request)
-        given = request.headers.get("authorization")
-        principal = store.runtime.authorisations.get(given, scope)
-        if principal is None:
-            principal = await run_in_threadpool(_authorised, store, given, scope)
-        request.state.principal = principal
+        request.state.principal = await principal(store_of(request), request.headers.get("authorization"), scope)
 
     return Depends(authorise)
+
+
+async def principal(store: Store, authorization: str | None, scope: str) -> str:
+    """Who asks with this Authorization header. Raises Refused 401 or 403."""
+    known = store.runtime.authorisations.get(authorization, scope)
+    return await run_in_threadpool(_authorised, store, authorization, scope) if known is None else known
 
 
 def _authorised(store: Store, given: str | None, scope: str) -> str:

@@ -1,4 +1,5 @@
-"""Evaluations that are at hand: one state of a pinned tree, by kernels in memory, on the event loop itself.
+"""Evaluations that are at hand: one state of a pinned tree, by kernels in memory, on the event loop itself
+(:mod:`service.http.short_way`).
 
 They take less time than a change of threads. Everything else, also what is asked for the first time, goes the long way,
 which leaves behind here what the next request of the same kind needs. Pinned trees never change.
@@ -13,7 +14,6 @@ from typing import Any
 from service.answers import JSON, Answer, Stream
 from service.operations.exchange import TreeEvaluation
 from service.schemas.numbers import EvaluationRequest
-from service.spool import Spool
 from service.store import Store
 from substructures.documents import read_json
 from substructures.expr.program import Program
@@ -40,11 +40,9 @@ class AtHand:
         return sum(len(program) for program, _ in self.programs.values())
 
 
-def answer(store: Store, ref: str, body: Spool) -> Answer | Stream | None:
+def answer(store: Store, ref: str, body: bytes) -> Answer | Stream | None:
     """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.whole`."""
-    if body.tell() > BODY:
-        return None
-    data = read_json(body.reader().read())
+    data = read_json(body)
     names = data.get("quantities") if isinstance(data, Mapping) else None
     found: AtHand | None = store.caches.evaluations.get(_key(ref, names)) if isinstance(names, list) else None
     if found is None or not found.is_ready(store):

@@ -10,7 +10,7 @@ from service.analyses.formulas import QUANTITIES
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Commit, SpooledAct, SpooledActOf
 from service.http.requests import StoreOf, media_type, needs
-from service.http.responses import conditional, response_of
+from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
@@ -51,10 +51,6 @@ async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
-    if sent == wanted == JSON and act.is_plain and is_pinned(ref):
-        found = at_hand.answer(act.store, ref, act.spool)
-        if found is not None:
-            return response_of(found)
     return await act.within_time(lambda: _evaluate(ref, sent, wanted, act))
 
 

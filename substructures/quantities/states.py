@@ -182,9 +182,10 @@ def known_values(
     values |= dict.fromkeys(inputs, 0.0)
     # default values, correctly rounded
     values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
-    units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
-    values |= given_values(given.get("parameters"), "parameters", "/parameters", count, parameters, units)
+    if given.get("parameters"):
+        units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
+        values |= given_values(given["parameters"], "parameters", "/parameters", count, parameters, units)
     return values
 
 

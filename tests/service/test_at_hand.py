@@ -83,6 +83,20 @@ def test_faults_are_the_same(warm: TestClient, threads: list[object], fault: dic
     assert warm.post(URL, content=b"{", headers={"Content-Type": "application/json"}).status_code == 422
 
 
+def test_it_is_counted_under_its_route(warm: TestClient) -> None:
+    warm.post(URL, json=STATE)
+    counted = 'substructures_requests_total{method="POST",route="/v1/trees/{ref}/evaluations",status="200"}'
+    before = _shown(warm, counted)
+    warm.post(URL, json=STATE)
+    assert _shown(warm, counted) == before + 1
+    assert _shown(warm, "process_cpu_seconds_total") > 0
+
+
+def _shown(client: TestClient, name: str) -> float:
+    lines = client.get("/metrics").text.splitlines()
+    return next(float(line.rsplit(" ", 1)[1]) for line in lines if line.startswith(f"{name} "))
+
+
 def test_the_regressor_is_at_hand_too(warm: TestClient, threads: list[object]) -> None:
     """With the names of its columns, which come from the parts of the tree."""
     state = {"quantities": ["regressor", "inertial_parameters"], "q": [0.1], "qd": [0.2], "qdd": [0.3]}
