@@ -35,6 +35,10 @@ class Refused(Exception):
         self.faults, self.headers, self.members = tuple(faults), dict(headers or {}), members
 
 
+class LongWork(TimeoutError):
+    """What is asked for would take so long that it should not be begun: it becomes a job."""
+
+
 class StaleError(Exception):
     """A resource was changed while a change of it was being prepared: prepare again."""
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from threading import Event, Lock
+from typing import Literal
 
 from service.keys import Authorisations
+from service.threads import SharedThreads
 
-THREADS = 16
+#: what is computed by threads of its own, and how many: the interpreter runs one at a time, so that more of those who
+#: derive would only delay those who evaluate
+Task = Literal["evaluate", "analyse", "derive"]
+THREADS: dict[Task, int] = {"evaluate": 16, "analyse": 4, "derive": 1}
 #: idempotency keys of computations that a process remembers
 COMPUTED = 10_000
 
@@ -29,18 +33,19 @@ class Computed:
 
 
 class Runtime:
-    """``computed``: keys of computations; ``threads``: for requests that may be given up; ``wake``: set when there is
-    something new for the supervisor of this process; ``stopping``: set when the server stops, so that answers without
-    an end are ended.
+    """``computed``: keys of computations; ``threads``: for requests that may be given up, by task; ``wake``: set when
+    there is something new for the supervisor of this process; ``stopping``: set when the server stops, so that answers
+    without an end are ended.
     """
 
     def __init__(self, key_seconds: float) -> None:
         self.authorisations = Authorisations(key_seconds)
         self.computed = Computed()
-        self.threads = ThreadPoolExecutor(THREADS, thread_name_prefix="request")
+        self.threads = {task: SharedThreads(count, task) for task, count in THREADS.items()}
         self.wake = Event()
         self.stopping = Event()
 
     def close(self) -> None:
         """Wait for the requests that are being answered, and drop those that are not begun."""
-        self.threads.shutdown(wait=True, cancel_futures=True)
+        for threads in self.threads.values():
+            threads.close()

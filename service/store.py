@@ -12,6 +12,7 @@ from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
 from service.queries.trees import Tree
+from service.refusals import LongWork
 from service.runtime import Runtime
 from service.settings import Settings
 from substructures.documents import read_json
@@ -114,6 +115,11 @@ class Store:
             program = derived(model, quantity, self.settings.limits.program_nodes)
             self.caches.derived.put(key, program)
         return program
+
+    def admit(self, operations: int) -> None:
+        """Raise LongWork where a derivation or a coupling of so many operations would take others their time."""
+        if operations > self.settings.limits.sync_nodes:
+            raise LongWork(f"about {operations:,} operations")
 
     def remember_model(self, digest: str, model: Model) -> None:
         """Keep a model that was just coupled."""

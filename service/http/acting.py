@@ -24,6 +24,7 @@ from service.http.requests import RawBody, spooled_body, store_of
 from service.http.responses import response_of
 from service.queries.common import is_conflict
 from service.refusals import Refused, StaleError
+from service.runtime import Task
 from service.spool import Spool
 from service.store import Store
 
@@ -70,9 +71,10 @@ class Act:
 
         return self._in_time(work, None if deferred is None else partial(self._claiming, deferred))
 
-    async def within_time(self, endpoint: Callable[[], Response]) -> Response:
+    async def within_time(self, task: Task, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        return await self._deadline.within(self.store.runtime.threads, endpoint)
+        threads = self.store.runtime.threads[task]
+        return await self._deadline.within(partial(threads.submit, self.principal), endpoint)
 
     def require(self, scope: str) -> None:
         """Raise Refused 403 unless whoever asks has this scope too."""
@@ -167,12 +169,17 @@ ActOf = Annotated[Act, Depends(act)]
 SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
-def timed(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response]]:
+def timed(task: Task) -> Callable[[Callable[..., Response]], Callable[..., Awaitable[Response]]]:
     """An endpoint whose work, done by its parameter ``act``, is given up when it takes too long."""
 
-    @wraps(endpoint)
-    async def watched(*, act: Act, **arguments: Any) -> Response:
-        """The endpoint under the deadline of its act."""
-        return await act.within_time(lambda: endpoint(act=act, **arguments))
+    def decorated(endpoint: Callable[..., Response]) -> Callable[..., Awaitable[Response]]:
+        """The endpoint in a thread of its task."""
 
-    return watched
+        @wraps(endpoint)
+        async def watched(*, act: Act, **arguments: Any) -> Response:
+            """The endpoint under the deadline of its act."""
+            return await act.within_time(task, lambda: endpoint(act=act, **arguments))
+
+        return watched
+
+    return decorated

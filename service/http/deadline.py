@@ -10,8 +10,9 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
-from concurrent.futures import Executor
+from concurrent.futures import Future
 from contextvars import copy_context
+from functools import partial
 from threading import Lock
 from time import perf_counter
 from typing import TypeVar
@@ -20,6 +21,7 @@ from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
 
 T = TypeVar("T")
+Submit = Callable[[Callable[[], Response]], Future[Response]]
 _log = logging.getLogger(__name__)
 
 
@@ -71,9 +73,12 @@ class Deadline:
             instead, self._instead = self._instead, None
         return instead
 
-    async def within(self, threads: Executor, endpoint: Callable[[], Response]) -> Response:
-        """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        future = threads.submit(copy_context().run, endpoint)
+    async def within(self, submit: Submit, endpoint: Callable[[], Response]) -> Response:
+        """The answer of an endpoint, or, where its work takes too long, of what is to be done instead.
+
+        ``submit``: gives the work to a thread.
+        """
+        future = submit(partial(copy_context().run, endpoint))
         answer = asyncio.wrap_future(future)
         await asyncio.wait({answer}, timeout=max(0, self._due - perf_counter()))
         if answer.done():

@@ -40,7 +40,7 @@ class Page:
 def prepare(store: Store, definition: Definition) -> PartSubmission:
     """Derive, verify and certify a definition unless its content is known and sound.
 
-    Raises InvalidDocument, TooLarge.
+    Raises InvalidDocument, TooLarge, LongWork.
     """
     is_mended = False
     with store.database.read() as connection:
@@ -49,7 +49,7 @@ def prepare(store: Store, definition: Definition) -> PartSubmission:
                 return PartSubmission(definition.name, definition.digest, None)
         except Refused:  # damaged, or gone in part
             is_mended = True
-    part = derive(definition, store.settings.limits.program_nodes)
+    part = derive(definition, store.settings.limits.program_nodes, store.admit)
     store.remember_part(part)
     return PartSubmission(definition.name, definition.digest, part_content(part), is_mended)
 

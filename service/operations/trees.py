@@ -67,7 +67,7 @@ class TreeChange:
 
 
 def prepare(store: Store, data: Any) -> Revision:
-    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge."""
+    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge, LongWork."""
     return _coupled(store, TreeSpec.read(data))
 
 
@@ -93,7 +93,7 @@ def removal(store: Store, text: str, instance: str, if_match: str | None = None)
 
 
 def prepare_change(store: Store, change: TreeChange) -> Revision:
-    """Couple a changed tree. Raises InvalidDocument, TooLarge."""
+    """Couple a changed tree. Raises InvalidDocument, TooLarge, LongWork."""
     try:
         return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
     except InvalidInput as error:  # as seen from the instance document alone
@@ -133,7 +133,7 @@ def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_ex
         parts = parts_of(store, connection, spec)
     pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
     spec = spec.model_copy(update={"instances": pinned})
-    model = couple(spec, parts, store.settings.limits.program_nodes)
+    model = couple(spec, parts, store.settings.limits.program_nodes, store.admit)
     store.remember_model(spec.digest, model)
     store.kernels.prepare(parts.values())
     return Revision(spec, model, parts, base, is_exact)
@@ -162,7 +162,7 @@ def _derived(store: Store, index: int, instance: Instance) -> Part:
         raise ValueError("only an inline definition can be derived")
     step = f"/instances/{index}/definition"
     try:
-        part = derive(instance.definition, store.settings.limits.program_nodes)
+        part = derive(instance.definition, store.settings.limits.program_nodes, store.admit)
     except InvalidInput as error:
         raise error.below(step) from None
     store.remember_part(part)

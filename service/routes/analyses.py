@@ -26,7 +26,7 @@ FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
 
 
 def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
-    @timed
+    @timed("analyse")
     def _run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
@@ -60,7 +60,7 @@ for _name, _analysis in ANALYSES.items():
     openapi_extra=body_of("VelocityConstraints"),
     responses={**printed(PRINTED), **ACCEPTED},
 )
-@timed
+@timed("analyse")
 def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf, style: StyleOf) -> Response:
     """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
 

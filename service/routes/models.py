@@ -51,7 +51,7 @@ async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
     """
     sent = media_type(request)
     wanted = choose_media_type(request.headers.get("accept", "*/*"), sent)
-    return await act.within_time(lambda: _evaluate(ref, sent, wanted, act))
+    return await act.within_time("evaluate", lambda: _evaluate(ref, sent, wanted, act))
 
 
 def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:

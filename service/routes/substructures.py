@@ -39,7 +39,7 @@ def names_of(connection: Connection, version: Version) -> list[str]:
 @router.post(
     "", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION, responses=ACCEPTED
 )
-@timed
+@timed("derive")
 def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     definition = Definition.read(body)

@@ -65,7 +65,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
     openapi_extra=body_of("TreeSpec"),
     responses=ACCEPTED,
 )
-@timed
+@timed("derive")
 def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     return act.run(revision(lambda: trees.prepare(store, body)), deferred(act, "assemble", body))
@@ -105,7 +105,7 @@ def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
     openapi_extra=body_of("Instance"),
     responses=ACCEPTED,
 )
-@timed
+@timed("derive")
 def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Couple one more instance onto the tree: a new revision."""
     return changed(act, lambda: trees.coupling(store, ref, body, if_match))
@@ -114,7 +114,7 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match:
 @router.delete(
     "/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE, responses=ACCEPTED
 )
-@timed
+@timed("derive")
 def remove_coupling(ref: str, instance: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
     return changed(act, lambda: trees.removal(store, ref, instance, if_match))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -17,7 +17,7 @@ from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
-from substructures.part.topology import BASE, Topology, christoffel_entries, topology
+from substructures.part.topology import BASE, Topology, christoffel_entries, expected_operations, topology
 from substructures.part.units import UnitCheck, check_units, described, uncounted, without_effect
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
@@ -192,9 +192,10 @@ def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
     return groups
 
 
-def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
+def derive(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[int], None] | None = None) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
+    ``admit`` is told how many operations to expect before the work begins, and may raise instead.
     Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
@@ -202,9 +203,12 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES) -> Part:
     units = check_units(definition, m.topology)
     units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
-    entries = christoffel_entries([(j.parent, j.s) for j in m.topology.joints])
+    joints = [(j.parent, j.s) for j in m.topology.joints]
+    entries = christoffel_entries(joints)
     if entries > MAX_ENTRIES:
         raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)
+    if admit is not None:
+        admit(expected_operations(joints))
     loads = read_loads(m)
     try:
         outputs = formulas(m, loads)

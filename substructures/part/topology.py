@@ -76,6 +76,14 @@ def christoffel_entries(joints: Sequence[tuple[int, int]]) -> int:
     return sum(length * turning for length, turning in paths)
 
 
+def expected_operations(joints: Sequence[tuple[int, int]]) -> int:
+    """About how long the program of joints (parent, kind) with symbols for all inertias becomes.
+
+    Fitted to chains of 6 to 40 general joints, to 20 %; parallel axes and numbers make it shorter.
+    """
+    return 5 * christoffel_entries(joints) + 400 * len(joints)
+
+
 def topology(definition: Definition) -> Topology:
     """Names and topology. Raises InvalidDocument: unknown parents, cycles, duplicate, reserved or missing names."""
     faults = _name_faults(definition)

@@ -22,7 +22,7 @@ limits                 n 2          lowest and highest value of the coordinates 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
@@ -36,7 +36,7 @@ from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part, recheck, told_operations
-from substructures.part.topology import christoffel_entries
+from substructures.part.topology import christoffel_entries, expected_operations
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
 from substructures.tree.closures import ClosureRows, closure_formulas
@@ -144,9 +144,15 @@ def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
         raise InvalidDocument.at("", "has-closures", message)
 
 
-def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Model:
+def couple(
+    spec: TreeSpec,
+    parts: Mapping[str, Part],
+    max_nodes: int = MAX_NODES,
+    admit: Callable[[int], None] | None = None,
+) -> Model:
     """Couple stored parts (by instance name) to a model and verify it.
 
+    ``admit`` is told how many operations to expect before the work begins, and may raise instead.
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
     VerificationFailed, which names the part whose stored formulas are wrong.
     """
@@ -155,9 +161,12 @@ def couple(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     assembly = assemble(spec, parts)
     units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()})
     units.require()
-    entries = christoffel_entries(joint_parents(assembly.mounted))
+    joints_of = joint_parents(assembly.mounted)
+    entries = christoffel_entries(joints_of)
     if entries > MAX_ENTRIES:
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
+    if admit is not None:
+        admit(expected_operations(joints_of))
     try:
         coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
         outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))

@@ -26,13 +26,14 @@ def warm(filled: TestClient) -> TestClient:
 def threads(store: Store, monkeypatch: pytest.MonkeyPatch) -> list[object]:
     """The works that threads were given."""
     given: list[object] = []
-    submit = store.runtime.threads.submit
+    pool = store.runtime.threads["evaluate"]
+    submit = pool.submit
 
     def spied(*arguments: Any) -> Any:
         given.append(arguments)
         return submit(*arguments)
 
-    monkeypatch.setattr(store.runtime.threads, "submit", spied)
+    monkeypatch.setattr(pool, "submit", spied)
     return given
 
 

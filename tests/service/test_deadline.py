@@ -25,7 +25,7 @@ def answered(seconds: float, work: Callable[[], int], late: Callable[[], int] = 
 
     async def asked() -> Response:
         with ThreadPoolExecutor(1) as threads:
-            return await deadline.within(threads, endpoint)
+            return await deadline.within(threads.submit, endpoint)
 
     return asyncio.run(asked())
 

@@ -102,7 +102,11 @@ def test_work_that_is_given_up_acts_once(
 def test_requests_that_no_thread_is_free_for(filled: TestClient, store: Store) -> None:
     set_limit(store, 0.2)
     gate = Event()
-    others = [store.runtime.threads.submit(gate.wait, 10) for _ in range(THREADS)]
+    others = [
+        store.runtime.threads[task].submit("other", lambda: gate.wait(10))
+        for task, count in THREADS.items()
+        for _ in range(count)
+    ]
     assert filled.post("/v1/trees/cell/evaluations", json=EVALUATION).status_code == 202
     assert filled.post("/v1/trees/cell@1/kernels", json={"quantities": ["metric"]}).status_code == 503
     gate.set()
