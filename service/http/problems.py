@@ -93,6 +93,9 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
         if isinstance(error, HTTPException) and error.status_code == 405:
             # the framework names the methods of the first route only
             found = [route for route in routes if route.path_regex.fullmatch(request.url.path)]
+            # .../evaluations is no quantity that could be read
+            free = min((len(route.param_convertors) for route in found), default=0)
+            found = [route for route in found if len(route.param_convertors) == free]
             methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
             detail = f"{request.method[:40]} is not possible at this path, but {methods}"
             error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})

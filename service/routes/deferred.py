@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from pydantic import BaseModel
+
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import Act, Commit
@@ -18,6 +20,11 @@ from service.views.resources import dump
 FRESH = {"Cache-Control": "no-store"}
 #: ``responses`` of an endpoint that may answer with a job
 ACCEPTED: dict[int | str, dict[str, Any]] = {202: {"description": "It became a job", "model": JobView}}
+
+
+def made(model: type[BaseModel]) -> dict[int | str, dict[str, Any]]:
+    """``responses`` of an endpoint that makes something, unless it is there already."""
+    return {200: {"description": "It is there already", "model": model}, **ACCEPTED}
 
 
 def answer(connection: Connection, job: Job, status: int = 200) -> Answer:

@@ -24,8 +24,13 @@ from service.views.resources import dump
 
 EVENTS, ITEMS = 500, 100  # of one read
 POLL, HEARTBEAT = 0.25, 15.0  # seconds
+EVENT = {
+    "description": "one event; its data are JSON",
+    "type": "object",
+    "properties": {name: {"type": "string"} for name in ("id", "event", "data")},
+}
 STREAM: dict[int | str, Any] = {
-    200: {"description": "Server-sent events", "content": {"text/event-stream": {"schema": {"type": "string"}}}}
+    200: {"description": "Server-sent events", "content": {"text/event-stream": {"schema": EVENT}}}
 }
 ZIP: dict[int | str, Any] = {200: {"description": "A zip file", "content": {"application/zip": binary()}}}
 

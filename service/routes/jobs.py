@@ -28,12 +28,14 @@ MANY = 2**31  # more items than a job has, and what every database takes for a p
 READ, JOBS = [needs("read")], [needs("jobs")]
 PageSize = Annotated[int, Query(ge=1)]
 Token = Annotated[str | None, Query(max_length=2000)]
-FILES = ("application/json", "application/x-npz", "application/vnd.apache.arrow.stream", BINARY)
+FILES = ("application/x-npz", "application/vnd.apache.arrow.stream", BINARY)
 TEXTS = ("text/csv", "image/svg+xml", "text/plain")
 FILE: dict[int | str, Any] = {
     200: {
         "description": "The file, in the `media_type` that the item says",
-        "content": {media: binary() for media in FILES} | {media: {"schema": {"type": "string"}} for media in TEXTS},
+        "content": {"application/json": {"schema": {}}}
+        | {media: binary() for media in FILES}
+        | {media: {"schema": {"type": "string"}} for media in TEXTS},
     }
 }
 

@@ -6,13 +6,18 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Query
 
-from service.negotiation import choose_form, choose_format
+from service.negotiation import FORMS, MEDIA_TYPES, choose_form, choose_format
 from service.operations.models import Style
 
 
 async def style_of(
-    format: Annotated[str | None, Query(max_length=40, description="wins over Accept")] = None,  # noqa: A002 -- the name in the contract
-    form: Annotated[str, Query(description="compact (shared subexpressions) or expanded")] = "compact",
+    format: Annotated[  # noqa: A002 -- the name in the contract
+        str | None,
+        Query(max_length=40, description="wins over Accept", json_schema_extra={"enum": [*MEDIA_TYPES, None]}),
+    ] = None,
+    form: Annotated[
+        str, Query(description="compact (shared subexpressions) or expanded", json_schema_extra={"enum": [*FORMS]})
+    ] = "compact",
     bind: Annotated[str, Query(max_length=100_000, description="name:value,... or defaults")] = "",
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:

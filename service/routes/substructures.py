@@ -20,7 +20,7 @@ from service.queries.catalogue import SORTS, CatalogueSearch, Version
 from service.references import is_pinned
 from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
-from service.routes.deferred import ACCEPTED, deferred
+from service.routes.deferred import deferred, made
 from service.schemas.resources import VersionPage, VersionView, YankRequest
 from service.views.resources import dump, page_view, version_view
 from substructures.documents import read_model
@@ -37,7 +37,12 @@ def names_of(connection: Connection, version: Version) -> list[str]:
 
 
 @router.post(
-    "", status_code=201, response_model=VersionView, dependencies=WRITE, openapi_extra=DEFINITION, responses=ACCEPTED
+    "",
+    status_code=201,
+    response_model=VersionView,
+    dependencies=WRITE,
+    openapi_extra=DEFINITION,
+    responses=made(VersionView),
 )
 @timed("derive")
 def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:

@@ -19,7 +19,7 @@ from service.paging import limited, read_token, write_token
 from service.queries.trees import page
 from service.references import is_pinned
 from service.routes.bodies import body_of
-from service.routes.deferred import ACCEPTED, deferred
+from service.routes.deferred import deferred, made
 from service.schemas.resources import TreePage, TreeView
 from service.views.resources import dump, tree_item, tree_view
 
@@ -63,7 +63,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
     response_model=TreeView,
     dependencies=WRITE,
     openapi_extra=body_of("TreeSpec"),
-    responses=ACCEPTED,
+    responses=made(TreeView),
 )
 @timed("derive")
 def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
@@ -103,7 +103,7 @@ def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
     response_model=TreeView,
     dependencies=WRITE,
     openapi_extra=body_of("Instance"),
-    responses=ACCEPTED,
+    responses=made(TreeView),
 )
 @timed("derive")
 def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
@@ -112,7 +112,11 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match:
 
 
 @router.delete(
-    "/{ref}/couplings/{instance}", status_code=201, response_model=TreeView, dependencies=WRITE, responses=ACCEPTED
+    "/{ref}/couplings/{instance}",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    responses=made(TreeView),
 )
 @timed("derive")
 def remove_coupling(ref: str, instance: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:

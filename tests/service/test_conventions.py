@@ -285,3 +285,12 @@ def test_preferences_that_were_followed_are_told(
     body = {"quantities": ["metric"], "q": [0]}
     answer = filled.post("/v1/trees/cell/evaluations", json=body, headers={"Prefer": prefer})
     assert (answer.status_code, answer.headers.get("preference-applied")) == (status, applied)
+
+
+@pytest.mark.parametrize(
+    ("path", "allowed"),
+    [("cell/evaluations", "POST"), ("cell/metric", "GET"), ("cell/couplings/arm", "DELETE"), ("cell", "GET")],
+)
+def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
+    answer = filled.request("PATCH", f"/v1/trees/{path}")
+    assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
