@@ -215,7 +215,7 @@ def test_arrays_that_take_too_long_become_jobs(
     read = batches.npz_request
 
     def slow(file: IO[bytes], limits: Limits) -> Any:
-        if current_thread().name.startswith("request"):
+        if current_thread().name.startswith("evaluate"):
             file.read(10)
             begun.set()
             go_on.wait(20)
