@@ -16,9 +16,10 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, qr, svdvals
+from scipy.linalg import lapack, svdvals
 
 from substructures.analysis.arguments import NumberOrExpression
+from substructures.analysis.closed.pivoting import pivoted, rank_of
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
@@ -32,7 +33,7 @@ from substructures.compile import Kernel, compile_program
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
-from substructures.mechanics.accelerations import CLOSED, RANK
+from substructures.mechanics.accelerations import CLOSED
 from substructures.tree.model import Model
 
 #: in which the lengths of the rows of G are looked at
@@ -228,8 +229,7 @@ class Constrained:
         if not rank:
             return np.zeros(0, dtype=np.int64)
         # G^T P = Q R: rows in the order of what they add to those before
-        pivots = qr(self.balanced.T, mode="r", pivoting=True)[1]
-        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
+        return np.sort(pivoted(self.balanced.T, rank)[:rank])
 
 
 @dataclass(frozen=True)
@@ -253,12 +253,6 @@ def _compiled(
     """Outputs of a model with their POWER, once for the same model."""
     source = with_power(known.source, outputs, inputs)
     return source, compile_program(source, [*outputs, POWER], folder)
-
-
-def rank_of(balanced: Array) -> int:
-    """Number of singular values above RANK times the largest, which is not below 1 but near singular positions."""
-    values = svdvals(balanced) if balanced.size else np.zeros(0)
-    return int((values > RANK * max(1.0, values.max(initial=0))).sum())
 
 
 def require_fixed(model: Model, fixed: Sequence[str]) -> None:
