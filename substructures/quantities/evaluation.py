@@ -14,6 +14,7 @@ from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
+from substructures.mechanics.closure_rows import POSITIONS, row_sizes
 from substructures.quantities.conditioning import Doubt, Look, closed_doubts, doubts, is_usable, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.derivatives import FD
@@ -209,9 +210,11 @@ def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
     return look
 
 
-def _blocks(model: Model, values: Mapping[str, Any], count: int) -> Iterator[tuple[slice, dict[str, Any], int]]:
-    """Parts of the states with their values, so many that matrices of all of them fit into memory."""
-    size = max(1, BLOCK // max(1, model.dof) ** 2)
+def _blocks(
+    model: Model, values: Mapping[str, Any], count: int, times: int = 1
+) -> Iterator[tuple[slice, dict[str, Any], int]]:
+    """Parts of the states with their values, so many that matrices of all of them, so many times, fit into memory."""
+    size = max(1, BLOCK // (times * max(1, model.dof) ** 2))
     for start in range(0, count, size):
         part = slice(start, min(start + size, count))
         some = {name: x[part] if np.shape(x) == (count,) else x for name, x in values.items()}
@@ -239,17 +242,38 @@ def _solved(model: Model, values: Mapping[str, Any], evaluator: Evaluator, count
 def _closed(
     model: Model, program: Program, values: Mapping[str, Any], evaluator: Evaluator, states: States
 ) -> dict[str, Array]:
-    """Forward dynamics of a tree with closures."""
+    """Forward dynamics of a tree with closures, in blocks."""
+    result, conditions = np.empty((states.count, model.dof)), np.empty(states.count)
+    for part, some, size in _blocks(model, values, states.count, POSITIONS):
+        result[part], conditions[part] = _closed_block(model, program, some, evaluator, size)
+    return {FD: result, CONDITION: conditions}
+
+
+def _closed_block(
+    model: Model, program: Program, values: Mapping[str, Any], evaluator: Evaluator, count: int
+) -> tuple[Array, Array]:
     # g q'' = Q - Gamma q' q' + G^T lambda and G q'' + G' q' = 0; closure.acceleration is G' q'
-    outputs = evaluator(program, values, [*DYNAMICS, *CLOSED], states.count)
+    outputs = evaluator(program, values, [*DYNAMICS, *CLOSED], count)
+    residual, jacobian, acceleration = CLOSED
+
+    def look(places: Array) -> tuple[Array, Array]:
+        """G and phi at other positions."""
+        times = len(places) // count
+        given = {name: np.tile(x, times) if np.shape(x) == (count,) else x for name, x in values.items()}
+        given |= {name: places[:, a] for a, name in enumerate(model.coordinates)}
+        there = evaluator(program, given, [jacobian, residual], len(places))
+        return there[jacobian], there[residual]
 
     def second(velocities: Array) -> Array:
         """G' q' at other velocities."""
         given = {f"{name}'": velocities[:, a] for a, name in enumerate(model.coordinates)}
-        return evaluator(program, {**values, **given}, [CLOSED[2]], states.count)[CLOSED[2]]
+        return evaluator(program, {**values, **given}, [acceleration], count)[acceleration]
 
-    found, conditions = closed_solve(outputs, states.q, states.qd, second)
-    return {FD: found, CONDITION: conditions}
+    q, qd = (
+        np.stack([np.broadcast_to(values[f"{name}{prime}"], (count,)) for name in model.coordinates], axis=1)
+        for prime in ("", "'")
+    )
+    return closed_solve(outputs, q, qd, row_sizes(model.joints, q, look), second)
 
 
 def _values(

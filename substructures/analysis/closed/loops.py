@@ -12,13 +12,13 @@ from scipy.linalg import lstsq, null_space, svd
 
 from substructures.analysis.arguments import real
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
-from substructures.analysis.closed.pivoting import pivoted, rank_of
+from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
 from substructures.analysis.motion.problem import Start, StateVector
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
+from substructures.mechanics.closure_rows import RANK, rank_of
 from substructures.tree.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]

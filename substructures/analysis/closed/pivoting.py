@@ -1,22 +1,14 @@
-"""Rank of the closures, and choices of independent rows and coordinates that do not hang on rounding."""
+"""Choices of independent rows and coordinates that do not hang on rounding."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import svdvals
 
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
 
 #: lengths of rows or columns that differ by this part are equal
 TIE = 1e-6
-
-
-def rank_of(balanced: Array) -> int:
-    """Number of singular values above RANK times the largest, which is not below 1 but near singular positions."""
-    values = svdvals(balanced) if balanced.size else np.zeros(0)
-    return int((values > RANK * max(1.0, values.max(initial=0))).sum())
 
 
 def pivoted(A: Array, rank: int) -> NDArray[np.int64]:

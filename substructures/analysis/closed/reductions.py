@@ -20,7 +20,7 @@ from substructures.analysis.closed.constrained import SINGULAR, Constrained, Sin
 from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import CLOSED, project
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
+from substructures.mechanics.closure_rows import RANK
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
 WORN = 0.3

@@ -127,7 +127,10 @@ class ClosedStepper:
         self.inner = self._begun(first)
 
     def _advanced(self, before: Array) -> _Step:
-        """One step of the integrator, landed on the closures; ``before``: the balanced G at its start. Raises Singular."""
+        """One step of the integrator, landed on the closures; ``before``: the balanced G at its start.
+
+        Raises Singular.
+        """
         message: str | None = self.inner.step()
         if self.inner.status == "failed":
             return _Step(message)

@@ -184,7 +184,7 @@ class ClosedSteadySearch(SteadySearch):
 
     def _tangent(self, found: dict[str, Array]) -> tuple[Array, list[int]]:
         G = found["closure.jacobian"]
-        y = independent_coordinates(G)
+        y = independent_coordinates(G / self.s.reach[:, None])
         others = np.setdiff1d(np.arange(self.n), y)
         N = np.zeros((self.n, len(y)))
         N[y] = np.eye(len(y))
