@@ -17,6 +17,7 @@ from substructures import InvalidInput, Model
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
+from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
@@ -278,6 +279,23 @@ def test_faults_have_pointers() -> None:
         assert error.value.faults[0].pointer == pointer
     with pytest.raises(InvalidInput, match="coordinate that moves at"):
         steady_motions(catalogue_model("simple-pendulum"), rates={})
+
+
+def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The accelerations of the others are computed from the formulas of the model, whatever the search says."""
+    for model in (conical(), governor()):
+        found = steady_motions(model, rates={"x.turn": 6.0}, held="rates", reach=0.1)
+        assert found.is_right is True
+        assert len(found.checks) == len(found.found) > 0
+        assert all(check.worst < 1e-6 for check in found.checks)
+    monkeypatch.setattr(SteadySearch, "solve", lambda _, start, moving: start[moving])
+    wrong = steady_motions(conical(), rates={"x.turn": 6.0}, count=3)
+    assert wrong.is_right is False
+    # w = p / g_ss: m (-g l sin a + w^2 l^2 sin a cos a) = m l^2 a''
+    for motion in wrong.found:
+        angle, rate = motion.q[1], motion.rates[0]
+        expected = -G / LENGTH * np.sin(angle) + rate**2 * np.sin(angle) * np.cos(angle)
+        np.testing.assert_allclose(motion.qdd, [expected], rtol=1e-9, atol=1e-12)
 
 
 def test_shown_in_two_lines() -> None:

@@ -26,6 +26,8 @@ from substructures.errors import InvalidArgument
 from substructures.quantities.states import numeric, read_states, symbol_values
 from substructures.tree.model import Model
 
+#: two places closer than this are one [rad, m]
+SAME = 1e-6
 #: forces left over, relative to the largest entry of K times 1 rad or 1 m
 RESIDUAL = 1e-10
 NEEDS = ("metric", "forces")
@@ -136,6 +138,24 @@ class RestSearch:
     def _slopes(self, q: Array) -> Array:
         """Derivatives of what must be zero."""
         return self.at(q)[1]
+
+    def places(self, starts: Array, moving: Sequence[int]) -> tuple[list[Array], int]:
+        """Different places that are found from the starts, in the order of their coordinates, and how many others were
+        left out, as the coordinates are singular there.
+        """
+        found: list[Array] = []
+        for start in starts:
+            q = self.solve(start, moving)
+            if q is not None and not any(self.distance(q, other) < SAME for other in found):
+                found.append(q)
+        if found and self.n:
+            found = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])]
+        regular = [q for q in found if not self.is_singular(q)]
+        return regular, len(found) - len(regular)
+
+    def is_singular(self, _: Array) -> bool:
+        """Whether the coordinates fail there, which the linearisation of an equilibrium tells."""
+        return False
 
     def solve(self, start: Array, moving: Sequence[int]) -> Array | None:
         """An equilibrium near a start; None when there is none in reach."""

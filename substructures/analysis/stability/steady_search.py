@@ -24,6 +24,7 @@ from substructures.analysis.stability.equilibrium_search import (
     SearchRange,
 )
 from substructures.array import Array
+from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
@@ -118,6 +119,16 @@ class SteadySearch(RestSearch):
         N, independent = self._tangent(found)
         M, D, K = (N.T @ each @ N for each in (M, D, K))
         return SteadyMatrices(M, D, K, np.array(rates), found["momenta"], N, tuple(independent))
+
+    def accelerations(self, x: Array, at: SteadyMatrices) -> Array:
+        """y'' (r,) in the motion itself, by the equations of motion of the model; nan where they have no solution."""
+        found = interpret(self.model.program, self.values(x), ["forces", "bias"])
+        # M y'' = N^T (Q - Gamma q'q'), as closures do no work along N
+        left = (found["forces"] - found["bias"])[self.still]
+        try:
+            return np.asarray(np.linalg.solve(at.M, at.tangent.T @ left), dtype=np.float64)
+        except np.linalg.LinAlgError:
+            return np.full(len(at.M), np.nan)
 
     def _tangent(self, _: dict[str, Array]) -> tuple[Array, list[int]]:
         """N of dx = N dy, and the coordinates y."""
