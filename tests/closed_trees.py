@@ -149,3 +149,10 @@ def governor_accelerations(angle: float, rate: float, spin: float) -> tuple[floa
     mass, half = 2 * ball * length**2 + sleeve * dz**2, sleeve * dz * ddz
     slope = 2 * ball * g * length * np.sin(angle) + (sleeve * g + k * z) * dz
     return (0.5 * dinertia * spin**2 - half * rate**2 - slope) / mass, -dinertia * rate * spin / inertia
+
+
+def resized(model: Model, size: float, **others: float) -> dict[str, float]:
+    """Parameters of a model with all lengths ``size`` times as long, and all moments of inertia to match."""
+    powers = {"m": 1, "kg*m^2": 2}
+    known = {name: (float(p["value"]), p["unit"]) for name, p in model.parameters.items()}
+    return {name: x * size ** powers[unit] for name, (x, unit) in known.items() if unit in powers} | others

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
-from closed_trees import governor, governor_accelerations, lift
+from closed_trees import governor, governor_accelerations, lift, resized
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
@@ -296,6 +296,22 @@ def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch)
         angle, rate = motion.q[1], motion.rates[0]
         expected = -G / LENGTH * np.sin(angle) + rate**2 * np.sin(angle) * np.cos(angle)
         np.testing.assert_allclose(motion.qdd, [expected], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e3])
+def test_steady_motions_do_not_depend_on_the_unit_of_length(size: float) -> None:
+    """A governor with w^2 l / g and k l / (m g) as before stands at the same angles, at 1/10 mm too."""
+    model, places = governor(), []
+    for x in (1.0, size):
+        parameters = resized(model, x, **{"x.k": 500 / x})
+        request: Plain = {"rates": {"x.turn": 7 / np.sqrt(x)}, "parameters": parameters, "reach": 0.1 * x}
+        found = steady_motions(model, **request, held="rates", count=40)
+        assert found.is_right is True
+        places.append([(motion.q / [1, 1, 1, x], motion.verdict) for motion in found.found])
+    assert len(places[0]) == len(places[1])
+    for (one, first), (two, second) in zip(*places, strict=True):
+        np.testing.assert_allclose(two, one, atol=1e-6)
+        assert first == second
 
 
 def test_shown_in_two_lines() -> None:

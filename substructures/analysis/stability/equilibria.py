@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from substructures.analysis.equations.formulas import require_moving
-from substructures.analysis.stability.equilibrium_search import ClosedSearch, RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.closed_search import ClosedSearch
+from substructures.analysis.stability.equilibrium_search import RestConditions, RestSearch, SearchRange
 from substructures.analysis.stability.found_places import FoundPlaces, still
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
