@@ -198,3 +198,14 @@ def test_a_state_is_judged_alone() -> None:
         one = accelerations(model, q[k], state.consistent.qd, parameters={n: x[k] for n, x in lengths.items()})
         np.testing.assert_array_equal(one[FD], together[FD][k])
     assert [failure.state for failure in together.failures] == [1]
+
+
+def test_blocks_of_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = four_bar(DOWN)
+    states = [loop_state(model, [0.7 + k / 10, 0.2, 1.2], qd=[1, 0, 0], fixed=["x.crank"]).consistent for k in range(5)]
+    q, qd = (np.array([getattr(s, name) for s in states]) for name in ("q", "qd"))
+    torque = {"tau.x.crank": np.arange(5.0)}
+    whole = accelerations(model, q, qd, inputs=torque)[FD]
+    monkeypatch.setattr("substructures.quantities.accelerations.BLOCK", 2 * 8 * model.dof**2)
+    np.testing.assert_array_equal(accelerations(model, q, qd, inputs=torque)[FD], whole)
+    assert np.isfinite(whole).all()
