@@ -80,6 +80,19 @@ def slides() -> Model:
     return tree_model(document, {"slides": {"name": "slides", "bodies": bodies}})
 
 
+def parallelogram() -> Model:
+    """Two cranks of 0.2 m, 0.3 m apart, with a coupler of 0.3 m that is a rod."""
+    inertia = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
+    bodies: list[Plain] = []
+    for name, place in (("a", 0), ("b", 0.3)):
+        joint = {"type": "revolute", "coordinate": name, "placement": {"position": [place, 0, 0]}}
+        bodies.append({"name": name, "parent": "base", "joint": joint, "mass": 1, "inertia": inertia})
+    ports = [{"name": f"end_{name}", "body": name, "position": [0.2, 0, 0]} for name in ("a", "b")]
+    rod = {"name": "rod", "type": "rod", "from": "x.end_a", "to": "x.end_b", "length": 0.3}
+    document = {"instances": [{"name": "x", "substructure": "cranks"}], "closures": [rod]}
+    return tree_model(document, {"cranks": {"name": "cranks", "bodies": bodies, "ports": ports}})
+
+
 def at(model: Model, **values: float) -> np.ndarray:
     """A state by coordinate names without the instance."""
     return np.array([values.get(name.partition(".")[2], 0.0) for name in model.coordinates])
@@ -136,3 +149,10 @@ def governor_accelerations(angle: float, rate: float, spin: float) -> tuple[floa
     mass, half = 2 * ball * length**2 + sleeve * dz**2, sleeve * dz * ddz
     slope = 2 * ball * g * length * np.sin(angle) + (sleeve * g + k * z) * dz
     return (0.5 * dinertia * spin**2 - half * rate**2 - slope) / mass, -dinertia * rate * spin / inertia
+
+
+def resized(model: Model, size: float, **others: float) -> dict[str, float]:
+    """Parameters of a model with all lengths ``size`` times as long, and all moments of inertia to match."""
+    powers = {"m": 1, "kg*m^2": 2}
+    known = {name: (float(p["value"]), p["unit"]) for name, p in model.parameters.items()}
+    return {name: x * size ** powers[unit] for name, (x, unit) in known.items() if unit in powers} | others

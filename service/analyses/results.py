@@ -16,7 +16,7 @@ from substructures.analysis.drawings import draw_root_locus, draw_trajectory
 from substructures.analysis.identification.fit import Identification
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
-from substructures.analysis.stability.equilibria import Equilibria
+from substructures.analysis.stability.found_places import FoundPlaces
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.vibrations import Mode
@@ -34,7 +34,7 @@ DRAWN = (*PLAIN, SVG)
 PROPERTIES: dict[type, dict[str, str]] = {
     Linearisation: {"is_equilibrium": "modes"},
     Identification: {"is_right": "checks"},
-    Equilibria: {"is_right": "message", "checks": "message"},
+    FoundPlaces: {"is_right": "message", "checks": "message"},
     CostGradient: {"is_right": "trajectory", "checks": "trajectory"},
     Optimum: {"is_right": "trajectory", "checks": "trajectory"},
     Mode: {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},

@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from substructures.array import Array
+from substructures.mechanics.closure_rows import RANK, RowSizes, ranks
 
 #: outputs of a model that accelerations with closures need beside those without
 CLOSED = ("closure.residual", "closure.jacobian", "closure.acceleration")
-#: singular values of the Jacobian below this part of the largest one count as zero
-RANK = 1e-8
-#: residuals of positions of a state that counts as closed, over its largest number or 1: below RANK, because rows that
-#: depend on each other in closed positions do so only there
+#: residuals of positions of a state that counts as closed, over their width and its largest number or 1: below RANK,
+#: because rows that depend on each other in closed positions do so only there
 MET = 1e-9
 #: the same for velocities
 MET_RATE = 1e-6
@@ -71,48 +70,54 @@ def condition(g: Array) -> Array:
 
 
 def closed_solve(
-    found: Mapping[str, Array], q: Array, qd: Array, second: Callable[[Array], Array]
+    found: Mapping[str, Array], q: Array, qd: Array, rows: RowSizes, second: Callable[[Array], Array]
 ) -> tuple[Array, Array]:
     """q'' (N, n) with g q'' + Gamma q'q' = Q + G^T lambda and G q'' + G'q' = 0; the rows of G may depend on each other.
 
     The second result (N,): the condition of N^T g N below times the largest over the smallest singular value of G.
 
-    ``found``: metric, bias, forces and CLOSED at states (N, n); ``second``: G'q' for other velocities (N, n). NaN where
-    a state does not meet the closures (also their velocities), where they lose rank, so that the motion is not
-    determined, and where no free motion has inertia.
+    ``found``: metric, bias, forces and CLOSED at states (N, n); ``rows``: the sizes beside which rows are judged;
+    ``second``: G'q' for other velocities (N, n). NaN where a state does not meet the closures (also their velocities),
+    where they lose rank, so that the motion is not determined, and where no free motion has inertia.
 
     With an orthonormal basis N of the velocities that G leaves free: q'' = -G^+ G'q' + N z and N^T (g q'' - f) = 0. Of
     rows that depend on each other, mu^T G = 0, always, also mu^T G'v = 0 for every such velocity v; where the rank is
-    lower than nearby this fails.
+    lower than nearby this fails. All rows are taken over their reach.
     """
-    G, c = found["closure.jacobian"], found["closure.acceleration"]
+    reach = rows.reach
+    G, c = found["closure.jacobian"] / reach[:, :, None], found["closure.acceleration"] / reach
     f = found["forces"] - found["bias"]
     result = np.full(np.broadcast_shapes(q.shape, qd.shape, f.shape), np.nan)
     conditions = np.full(len(result), np.nan)
     # G = U diag(sizes) V^T; the rows of V^T beyond the rank span the velocities that G leaves free
-    left, sizes, rows = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
-    ranks = (sizes > RANK * sizes[:, :1]).sum(axis=1)
+    left, sizes, right = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
+    rank_here = ranks(sizes)
     # mu^T G'v of one free velocity v and all mu with mu^T G = 0
     probe = np.random.default_rng(5).standard_normal(G.shape[2])
-    free = np.arange(G.shape[2]) >= ranks[:, None]
-    along = np.einsum("nka,nk->na", rows, np.where(free, rows @ probe, 0))
-    across = np.arange(G.shape[1]) >= ranks[:, None]
-    curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along)), 0)
+    free = np.arange(G.shape[2]) >= rank_here[:, None]
+    along = np.einsum("nka,nk->na", right, np.where(free, right @ probe, 0))
+    across = np.arange(G.shape[1]) >= rank_here[:, None]
+    curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along) / reach), 0)
     speed = np.abs(qd).max(axis=1, initial=1)
     # G q' and phi, which have to be zero
-    opening = np.abs(np.einsum("nka,na->nk", G, np.broadcast_to(qd, result.shape))).max(axis=1, initial=0)
-    good = np.abs(found["closure.residual"]).max(axis=1, initial=0) <= MET * np.abs(q).max(axis=1, initial=1)
-    good = good & (opening <= MET_RATE * speed) & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
-    for rank in np.unique(ranks):
-        some = np.flatnonzero(good & (ranks == rank))
-        N = rows[some, rank:].swapaxes(1, 2)
-        U, V = left[some, :, :rank], rows[some, :rank]
+    rate = np.einsum("nka,na->nk", found["closure.jacobian"], np.broadcast_to(qd, result.shape)) / rows.width
+    good = np.abs(found["closure.residual"] / rows.width).max(axis=1, initial=0) <= MET * np.abs(q).max(
+        axis=1, initial=1
+    )
+    good = good & (np.abs(rate).max(axis=1, initial=0) <= MET_RATE * speed)
+    good = good & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
+    for rank in np.unique(rank_here):
+        some = np.flatnonzero(good & (rank_here == rank))
+        N = right[some, rank:].swapaxes(1, 2)
+        U, V = left[some, :, :rank], right[some, :rank]
         # G^+ c = V diag(1/sizes) U^T c
         solved = np.einsum("nka,nk->na", V, np.einsum("njk,nj->nk", U, c[some]) / sizes[some, :rank])
         # N^T g N z = N^T (f + g G^+ c),   q'' = N z - G^+ c
-        right = f[some] + np.einsum("nab,nb->na", found["metric"][some], solved)
+        wanted = f[some] + np.einsum("nab,nb->na", found["metric"][some], solved)
         reduced = N.swapaxes(1, 2) @ found["metric"][some] @ N
-        z = cholesky_solve(reduced, np.einsum("nak,na->nk", N, right))
+        z = cholesky_solve(reduced, np.einsum("nak,na->nk", N, wanted))
         result[some] = np.einsum("nak,nk->na", N, z) - solved
-        conditions[some] = condition(reduced) * (sizes[some, 0] / sizes[some, rank - 1] if rank else 1.0)
+        conditions[some] = condition(reduced) * (
+            np.maximum(sizes[some, 0], 1.0) / sizes[some, rank - 1] if rank else 1.0
+        )
     return result, conditions

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -13,11 +13,15 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
-from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
+from substructures.quantities.accelerations import (
+    Evaluator,
+    accelerations,
+    accelerations_on_closures,
+    conditions,
+)
 from substructures.quantities.conditioning import Doubt, Look, closed_doubts, doubts, is_usable, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.derivatives import FD
-from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.result import Evaluation, Failure, ParameterColumns, failures_of, without_axis
 from substructures.quantities.states import (
     ArgumentsByName,
@@ -59,19 +63,12 @@ __all__ = [
     "steps",
 ]
 
-#: numbers of a block where an intermediate result is larger than the result
-BLOCK = 2_000_000
-
-
 _OPEN = (
     "the state does not meet the closures (also their velocities), or they lose rank there, or the metric is singular: "
     "take consistent states from loop states"
 )
 _ENDLESS = "the metric is singular to rounding, or not positive definite, or not finite: it has no condition number"
 _NOT_FINITE = "the result is not finite: numbers overflow, or a formula divides by zero in this state"
-
-#: outputs of a program for (program, values, names, number of states)
-Evaluator = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
 
 
 def interpreted(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
@@ -184,11 +181,11 @@ def _computed(
             continue
         require(program, names, values)
         if source == CONDITION:
-            found[source] = {CONDITION: _conditions(model, values, evaluator, count)}
+            found[source] = {CONDITION: conditions(model, values, evaluator, count)}
         elif source == FD and model.closures:
-            found[source] = _closed(model, program, values, evaluator, states)
+            found[source] = accelerations_on_closures(model, program, values, evaluator, count)
         elif program is model.program and source == FD:
-            found[source] = _solved(model, values, evaluator, count)
+            found[source] = accelerations(model, values, evaluator, count)
         else:
             found[source] = evaluator(program, values, names, count)
             if "inertias" in names:
@@ -207,49 +204,6 @@ def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
         return interpreted(model.program, some, names, len(states))
 
     return look
-
-
-def _blocks(model: Model, values: Mapping[str, Any], count: int) -> Iterator[tuple[slice, dict[str, Any], int]]:
-    """Parts of the states with their values, so many that matrices of all of them fit into memory."""
-    size = max(1, BLOCK // max(1, model.dof) ** 2)
-    for start in range(0, count, size):
-        part = slice(start, min(start + size, count))
-        some = {name: x[part] if np.shape(x) == (count,) else x for name, x in values.items()}
-        yield part, some, part.stop - start
-
-
-def _conditions(model: Model, values: Mapping[str, Any], evaluator: Evaluator, count: int) -> Array:
-    """Condition numbers of the metric (N,)."""
-    result = np.empty(count)
-    for part, some, size in _blocks(model, values, count):
-        result[part] = condition(evaluator(model.program, some, ["metric"], size)["metric"])
-    return result
-
-
-def _solved(model: Model, values: Mapping[str, Any], evaluator: Evaluator, count: int) -> dict[str, Array]:
-    """Forward dynamics of a model too large for formulas of it: g q'' = Q - Gamma q' q' by numbers, in blocks."""
-    result, pivots = np.empty((count, model.dof)), np.empty((count, model.dof))
-    for part, some, size in _blocks(model, values, count):
-        found = evaluator(model.program, some, list(DYNAMICS), size)
-        # g_ab q''^b = Q_a - Gamma_abc q'^b q'^c
-        result[part], pivots[part] = definite_solve(found["metric"], found["forces"] - found["bias"])
-    return {FD: result, "pivots": pivots}
-
-
-def _closed(
-    model: Model, program: Program, values: Mapping[str, Any], evaluator: Evaluator, states: States
-) -> dict[str, Array]:
-    """Forward dynamics of a tree with closures."""
-    # g q'' = Q - Gamma q' q' + G^T lambda and G q'' + G' q' = 0; closure.acceleration is G' q'
-    outputs = evaluator(program, values, [*DYNAMICS, *CLOSED], states.count)
-
-    def second(velocities: Array) -> Array:
-        """G' q' at other velocities."""
-        given = {f"{name}'": velocities[:, a] for a, name in enumerate(model.coordinates)}
-        return evaluator(program, {**values, **given}, [CLOSED[2]], states.count)[CLOSED[2]]
-
-    found, conditions = closed_solve(outputs, states.q, states.qd, second)
-    return {FD: found, CONDITION: conditions}
 
 
 def _values(

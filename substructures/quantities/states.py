@@ -178,6 +178,9 @@ def known_values(
             values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
     t = numeric(0 if given.get("t") is None else given["t"], "/t")
     values["t"] = _per_state(t, count, "/t")
+    if not model.coordinates:
+        # nothing else says how many states there are
+        values["t"] = np.broadcast_to(values["t"], (count,))
     inputs = model.input_names
     values |= dict.fromkeys(inputs, 0.0)
     # default values, correctly rounded

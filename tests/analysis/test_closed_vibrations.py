@@ -135,7 +135,9 @@ def test_root_locus_over_a_damper() -> None:
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(exact), atol=1e-7)
     assert found.stability[0] == "stable"
     assert set(found.stability[1:]) == {"asymptotically stable"}
-    lost = root_locus(damped(), parameter="x.c", values=[1], q=[9, 9, 9], inputs={"tau.x.c0": 1e4})
+    # a crank that turns all round under a torque that no weight balances
+    push: Plain = {"values": [1], "q": [0.7, 0.2, 1.2], "inputs": {"tau.x.crank": 1e4}}
+    lost = root_locus(four_bar(DOWN), parameter="x.m1", **push)
     assert (lost.status, lost.eigenvalues.shape[0]) == ("failed", 0)
 
 

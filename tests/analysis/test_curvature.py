@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import product
 from math import comb
 from typing import Any
@@ -15,11 +16,13 @@ from random_trees import Kind, Plain, model_of, random_definition, with_paramete
 
 from substructures import InvalidInput, Model, TooLarge
 from substructures.analysis.equations.curvature import curvature, curvature_values, independent_elements
+from substructures.compile import compile_program
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
+from substructures.expr.program import Program
 from substructures.expr.replay import replay
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import evaluate, interpreted
 
 
 def symbolic(bodies: list[Plain], parameters: str) -> Model:
@@ -183,3 +186,22 @@ def test_one_position_for_all_parameters() -> None:
     one = curvature_values(model, [0.3, 0.7], parameters={name: 2})
     assert np.array_equal(found.riemann[1], one.riemann)
     assert repr(one).startswith("CurvatureValues(n=2, states=1, failures=0)\nscalar curvature from ")
+
+
+@pytest.mark.parametrize("q", [[], [[]], [[], [], []]])
+def test_nothing_moves(q: Any) -> None:
+    """Without coordinates shapes say how many states there are all the same: of the interpreter and of kernels."""
+    body = {"name": "block", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}
+    model, states = model_of({"name": "x", "bodies": [body]}), np.shape(q)[:-1]
+    for engine in (interpreted, compiled):
+        values = vars(curvature_values(model, q=q, engine=engine))
+        shapes = {name: np.shape(x) for name, x in values.items() if name != "failures"}
+        axes = {"riemann": 4, "ricci": 2, "scalar_curvature": 0, "inverse_metric": 2, "christoffel_second": 3}
+        assert shapes == {name: (*states, *[0] * count) for name, count in axes.items()}
+        found = evaluate(model, ["metric", "potential_energy", "forces"], q=q, evaluator=engine)
+        expected = [(*states, 0, 0), states, (*states, 0)]
+        assert [found[name].shape for name in ("metric", "potential_energy", "forces")] == expected
+
+
+def compiled(program: Program, values: Mapping[str, Any], names: list[str], _: int) -> dict[str, np.ndarray]:
+    return compile_program(program, names).evaluate(values)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from analysis_models import catalogue_model, random_model, seeds
+from closed_trees import four_bar, resized
 from random_trees import Plain, model_of
 
-from substructures import InvalidInput
+from substructures import InvalidInput, Model
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.quantities.evaluation import evaluate
@@ -153,3 +156,15 @@ def test_shown_in_two_lines() -> None:
     assert all(repr(e).count("\n") == 1 for e in found.found)
     locus = root_locus(model_of(oscillator(), (0, 0, 0)), "c", [0, 1], [0])
     assert repr(locus) == "RootLocus(values=2, branches=2)\nstable, then asymptotically stable"
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-4, 1e4])
+@pytest.mark.parametrize("make", [lambda: catalogue_model("acrobot"), lambda: four_bar((0, -9.81, 0))])
+def test_equilibria_do_not_depend_on_the_unit_of_length(make: Callable[[], Model], size: float) -> None:
+    model = make()
+    found, other = (equilibria(model, parameters=resized(model, x), count=32) for x in (1.0, size))
+    assert len(found.found) == len(other.found) == 4
+    assert other.is_right is True
+    for one, two in zip(found.found, other.found, strict=True):
+        np.testing.assert_allclose(two.q, one.q, atol=1e-7)
+        assert one.verdict == two.verdict

@@ -5,25 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from closed_motions import METHODS, right
-from closed_trees import slides, tree_model
-from random_trees import Plain
+from closed_trees import parallelogram, slides
 
-from substructures import Model
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import simulate
-
-
-def parallelogram() -> Model:
-    """Two cranks of 0.2 m, 0.3 m apart, with a coupler of 0.3 m that is a rod."""
-    inertia = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
-    bodies: list[Plain] = []
-    for name, place in (("a", 0), ("b", 0.3)):
-        joint = {"type": "revolute", "coordinate": name, "placement": {"position": [place, 0, 0]}}
-        bodies.append({"name": name, "parent": "base", "joint": joint, "mass": 1, "inertia": inertia})
-    ports = [{"name": f"end_{name}", "body": name, "position": [0.2, 0, 0]} for name in ("a", "b")]
-    rod = {"name": "rod", "type": "rod", "from": "x.end_a", "to": "x.end_b", "length": 0.3}
-    document = {"instances": [{"name": "x", "substructure": "cranks"}], "closures": [rod]}
-    return tree_model(document, {"cranks": {"name": "cranks", "bodies": bodies, "ports": ports}})
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
-from closed_trees import governor, governor_accelerations, lift
+from closed_trees import governor, governor_accelerations, lift, resized
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
+from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
@@ -278,6 +279,39 @@ def test_faults_have_pointers() -> None:
         assert error.value.faults[0].pointer == pointer
     with pytest.raises(InvalidInput, match="coordinate that moves at"):
         steady_motions(catalogue_model("simple-pendulum"), rates={})
+
+
+def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The accelerations of the others are computed from the formulas of the model, whatever the search says."""
+    for model in (conical(), governor()):
+        found = steady_motions(model, rates={"x.turn": 6.0}, held="rates", reach=0.1)
+        assert found.is_right is True
+        assert len(found.checks) == len(found.found) > 0
+        assert all(check.worst < 1e-6 for check in found.checks)
+    monkeypatch.setattr(SteadySearch, "solve", lambda _, start, moving: start[moving])
+    wrong = steady_motions(conical(), rates={"x.turn": 6.0}, count=3)
+    assert wrong.is_right is False
+    # w = p / g_ss: m (-g l sin a + w^2 l^2 sin a cos a) = m l^2 a''
+    for motion in wrong.found:
+        angle, rate = motion.q[1], motion.rates[0]
+        expected = -G / LENGTH * np.sin(angle) + rate**2 * np.sin(angle) * np.cos(angle)
+        np.testing.assert_allclose(motion.qdd, [expected], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e3])
+def test_steady_motions_do_not_depend_on_the_unit_of_length(size: float) -> None:
+    """A governor with w^2 l / g and k l / (m g) as before stands at the same angles, at 1/10 mm too."""
+    model, places = governor(), []
+    for x in (1.0, size):
+        parameters = resized(model, x, **{"x.k": 500 / x})
+        request: Plain = {"rates": {"x.turn": 7 / np.sqrt(x)}, "parameters": parameters, "reach": 0.1 * x}
+        found = steady_motions(model, **request, held="rates", count=40)
+        assert found.is_right is True
+        places.append([(motion.q / [1, 1, 1, x], motion.verdict) for motion in found.found])
+    assert len(places[0]) == len(places[1])
+    for (one, first), (two, second) in zip(*places, strict=True):
+        np.testing.assert_allclose(two, one, atol=1e-6)
+        assert first == second
 
 
 def test_shown_in_two_lines() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart
+from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart, tree_model
 from random_trees import Plain
 
 from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue, derive
@@ -138,3 +138,74 @@ def test_a_dead_centre_at_rest() -> None:
     assert not state.message
     answer = accelerations(model, state.consistent.q, state.consistent.qd)
     np.testing.assert_allclose(answer[FD], state.qdd, atol=1e-8)
+
+
+def two_four_bars(size: float) -> Model:
+    """A four-bar of metres and the same one of another size, side by side: nothing is between them."""
+    instances = []
+    for name, unit in (("large", 1.0), ("small", size)):
+        lengths = {f"l{k}": x * unit for k, x in enumerate((0.4, 0.1, 0.35, 0.25))}
+        instances.append({"name": name, "substructure": "four-bar", "parameters": lengths})
+    pins = [
+        {"name": f"pin_{name}", "type": "pin", "from": f"{name}.coupler_end", "to": f"{name}.rocker_end"}
+        for name in ("large", "small")
+    ]
+    document = {"gravity": list(DOWN), "instances": instances, "closures": pins}
+    return tree_model(document, {"four-bar": catalogue.load("four-bar")})
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e-7, 1e-9, 1e-11])
+def test_rows_are_judged_beside_their_own_sizes(size: float) -> None:
+    """Closures of nanometres beside closures of metres: both mechanisms move as each of them alone."""
+    model = two_four_bars(size)
+    state = loop_state(model, [0.7, 0.2, 1.2] * 2, qd=[1, 0, 0, 2, 0, 0], fixed=["large.crank", "small.crank"])
+    assert not state.message
+    q, qd = state.consistent.q, state.consistent.qd
+    found = accelerations(model, q, qd)
+    assert found.failures == ()
+    alone = []
+    for k, unit in enumerate((1.0, size)):
+        lengths = {f"x.l{i}": x * unit for i, x in enumerate((0.4, 0.1, 0.35, 0.25))}
+        some = slice(3 * k, 3 * k + 3)
+        alone.append(accelerations(four_bar(DOWN), q[some], qd[some], parameters=lengths)[FD])
+    for k in range(2):
+        np.testing.assert_allclose(found[FD][3 * k : 3 * k + 3], alone[k], rtol=1e-6)
+        np.testing.assert_allclose(state.qdd[3 * k : 3 * k + 3], alone[k], rtol=1e-6)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-4, 1.0, 1e4])
+def test_openness_is_judged_beside_lengths(size: float) -> None:
+    """A loop that is open by a part of 1e-6 of its links is open, however short they are; by 1e-12 it is closed."""
+    model = four_bar(DOWN)
+    lengths = {f"x.l{k}": x * size for k, x in enumerate((0.4, 0.1, 0.35, 0.25))}
+    state = loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0], parameters=lengths).consistent
+    q = state.q + np.array([[0, 0, 0], [1e-12, 0, 0], [1e-6, 0, 0], [0, 0, 0]])
+    qd = state.qd + np.array([[0, 0, 0], [0, 0, 0], [0, 0, 0], [0.01, 0, 0]])
+    found = accelerations(model, q, qd, parameters=lengths)
+    assert [failure.state for failure in found.failures] == [2, 3]
+    np.testing.assert_allclose(found[FD][1], found[FD][0], rtol=1e-6)
+
+
+def test_a_state_is_judged_alone() -> None:
+    """Lengths may be other ones in every state of a batch; a verdict is that of the state by itself."""
+    model = four_bar(DOWN)
+    sizes = np.array([1.0, 1e-9, 1e5])
+    lengths = {f"x.l{k}": x * sizes for k, x in enumerate((0.4, 0.1, 0.35, 0.25))}
+    state = loop_state(model, [0.7, 0.2, 1.2], qd=[1, 0, 0], parameters={n: x[0] for n, x in lengths.items()})
+    q = state.consistent.q + np.array([[0, 0, 0], [1e-7, 0, 0], [0, 0, 0]])
+    together = accelerations(model, q, state.consistent.qd, parameters=lengths)
+    for k in range(3):
+        one = accelerations(model, q[k], state.consistent.qd, parameters={n: x[k] for n, x in lengths.items()})
+        np.testing.assert_array_equal(one[FD], together[FD][k])
+    assert [failure.state for failure in together.failures] == [1]
+
+
+def test_blocks_of_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = four_bar(DOWN)
+    states = [loop_state(model, [0.7 + k / 10, 0.2, 1.2], qd=[1, 0, 0], fixed=["x.crank"]).consistent for k in range(5)]
+    q, qd = (np.array([getattr(s, name) for s in states]) for name in ("q", "qd"))
+    torque = {"tau.x.crank": np.arange(5.0)}
+    whole = accelerations(model, q, qd, inputs=torque)[FD]
+    monkeypatch.setattr("substructures.quantities.accelerations.BLOCK", 2 * 8 * model.dof**2)
+    np.testing.assert_array_equal(accelerations(model, q, qd, inputs=torque)[FD], whole)
+    assert np.isfinite(whole).all()

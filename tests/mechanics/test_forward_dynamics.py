@@ -152,7 +152,7 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
     def small(model: Model, name: str) -> Any:
         return forward_dynamics(model, 3) if name == "forward_dynamics" else derived(model, name)
 
-    monkeypatch.setattr("substructures.quantities.evaluation.BLOCK", 2 * model.dof**2)
+    monkeypatch.setattr("substructures.quantities.accelerations.BLOCK", 2 * model.dof**2)
     found = evaluate(model, **request, sources=Sources(model, small))
     np.testing.assert_allclose(found["forward_dynamics"], expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
     assert cost(Sources(model, small), ["forward_dynamics"])[1] == model.dof

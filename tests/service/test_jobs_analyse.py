@@ -97,6 +97,15 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
             {"tree": "cell", "analysis": "linearisations", "request": {"q": [[0, 0]]}},
             "/items/0/request/q",
         ),
+        (
+            "analyse",
+            {
+                "tree": "cell",
+                "analysis": "linearisations",
+                "request": {"q": [[0], [1]], "parameters": {"g": [1, 2, 3]}},
+            },
+            "/items/0/request/parameters/g",
+        ),
         ("optimise", {"tree": "cell", "request": {"horizon": -1}}, "/items/0/request/horizon"),
         ("analyse", {"tree": "cell", "analysis": "magic", "request": {}}, "/items/0/analysis"),
         ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),

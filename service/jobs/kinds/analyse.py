@@ -75,9 +75,9 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
         raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
     for request, place in zip(given, places, strict=True):
         with inside(place):
-            ANALYSES[name].read(request, without_formulas(summary))
+            read = ANALYSES[name].read(request, without_formulas(summary))
             if name not in NEAR:
-                check_analysis(summary, request, name in MOTIONS, not ANALYSES[name].needs_parts)
+                check_analysis(summary, read, name in MOTIONS, not ANALYSES[name].needs_parts)
     return given
 
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from pydantic import BaseModel
+
+from service.analyses.requests import arguments
 from service.schemas.numbers import EvaluationRequest
-from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument, listed
+from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, read_quantities
 from substructures.quantities.states import States, given_values, read_states
 from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
-
-Request = Mapping[str, Any]
 
 
 def without_formulas(summary: Mapping[str, Any]) -> Model:
@@ -33,22 +33,16 @@ def check_states(summary: Mapping[str, Any], request: EvaluationRequest) -> Stat
     return states
 
 
-def check_analysis(summary: Mapping[str, Any], request: Request, is_motion: bool, has_all: bool) -> None:
-    """The states and parameters in a request for an analysis; ``is_motion``: it has one state, where it starts,
-    ``has_all``: all of its parameters are those of the formulas. Raises InvalidDocument.
+def check_analysis(summary: Mapping[str, Any], read: BaseModel, is_motion: bool, has_all: bool) -> None:
+    """The states and parameters in a request for an analysis that was read; ``is_motion``: it has one state, where it
+    starts, ``has_all``: all of its parameters are those of the formulas. Raises InvalidInput.
     """
-    if "q" in request or is_motion:
-        states = {name: request.get(name) for name in ("q", "qd", "qdd")}
-        read_states(without_formulas(summary), states, 1 if is_motion else None)
-    given, known = request.get("parameters"), summary["parameters"]
-    unknown = f"unknown parameter '{{}}'; there are {listed(known)}"
-    faults = [
-        Fault("/parameters" + pointer_step(name), "unknown-parameter", unknown.format(name[:80]))
-        for name in (given if has_all and isinstance(given, Mapping) else ())
-        if name not in known
-    ]
-    if faults:
-        raise InvalidDocument(faults)
+    given, model, count = arguments(read), without_formulas(summary), 1
+    if "q" in given or is_motion:
+        states = {name: given.get(name) for name in ("q", "qd", "qdd")}
+        count = read_states(model, states, 1 if is_motion else None).count
+    if has_all:
+        given_values(given.get("parameters"), "parameters", "/parameters", count, summary["parameters"], model.units)
 
 
 def check_described(summary: Mapping[str, Any], request: EvaluationRequest, count: int) -> None:

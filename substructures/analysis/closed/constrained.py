@@ -16,9 +16,10 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, qr, svdvals
+from scipy.linalg import lapack, svdvals
 
 from substructures.analysis.arguments import NumberOrExpression
+from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
@@ -32,11 +33,10 @@ from substructures.compile import Kernel, compile_program
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
-from substructures.mechanics.accelerations import CLOSED, RANK
+from substructures.mechanics.accelerations import CLOSED
+from substructures.mechanics.closure_rows import rank_of, row_sizes
 from substructures.tree.model import Model
 
-#: in which the lengths of the rows of G are looked at
-POSITIONS = 8
 ALL = slice(None)
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
@@ -107,20 +107,24 @@ class Constrained:
         self.g = self._out["metric"][0]
 
     def _sizes(self, t: float) -> tuple[Array, Array]:
-        """The greatest length of every row of G, and the greatest |phi|, at the start and with all joints turned anyhow
-        and slides drawn in; 1 of what is zero everywhere.
-        """
-        start, rest, rng = self.conditions.q, np.zeros(self.n), np.random.default_rng(5)
-        turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
-        found = np.zeros((2, len(self.labels)))
-        for k in range(POSITIONS if len(self.labels) else 0):
-            part = rng.uniform(-1, 1, self.n)
-            self.move(t, np.where(turns, np.pi * part, part * start) if k else start, rest)
-            found = np.fmax(found, [np.linalg.norm(self.G, axis=1), np.abs(self.phi)])
-        reach, width = np.where((found > 0) & np.isfinite(found), found, 1.0)
+        """The reach and the width of every row, beside the start; 1 of prescribed coordinates."""
+        rest = np.zeros(self.n)
+
+        def look(places: Array) -> tuple[Array, Array]:
+            """G and phi there."""
+            found = []
+            for q in places:
+                self.move(t, q, rest)
+                found.append((self.G.copy(), self.phi.copy()))
+            return np.array([G for G, _ in found]), np.array([phi for _, phi in found])
+
+        if not self.labels:
+            return np.ones(0), np.ones(0)
+        found = row_sizes(self.model.joints, self.conditions.q[None], look)
+        width = found.width[0]
         # of prescribed coordinates the value says nothing
         width[self.closed :] = 1.0
-        return reach, width
+        return found.reach[0], width
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
@@ -228,8 +232,7 @@ class Constrained:
         if not rank:
             return np.zeros(0, dtype=np.int64)
         # G^T P = Q R: rows in the order of what they add to those before
-        pivots = qr(self.balanced.T, mode="r", pivoting=True)[1]
-        return np.sort(np.asarray(pivots[:rank], dtype=np.int64))
+        return np.sort(pivoted(self.balanced.T, rank)[:rank])
 
 
 @dataclass(frozen=True)
@@ -253,12 +256,6 @@ def _compiled(
     """Outputs of a model with their POWER, once for the same model."""
     source = with_power(known.source, outputs, inputs)
     return source, compile_program(source, [*outputs, POWER], folder)
-
-
-def rank_of(balanced: Array) -> int:
-    """Number of singular values above RANK times the largest, which is not below 1 but near singular positions."""
-    values = svdvals(balanced) if balanced.size else np.zeros(0)
-    return int((values > RANK * max(1.0, values.max(initial=0))).sum())
 
 
 def require_fixed(model: Model, fixed: Sequence[str]) -> None:

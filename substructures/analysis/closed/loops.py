@@ -8,16 +8,17 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lstsq, null_space, qr, svd
+from scipy.linalg import lstsq, null_space, svd
 
 from substructures.analysis.arguments import real
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, rank_of, require_fixed
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
+from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
 from substructures.analysis.motion.problem import Start, StateVector
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
+from substructures.mechanics.closure_rows import RANK, rank_of
 from substructures.tree.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
@@ -175,8 +176,7 @@ def independent_coordinates(G: Array) -> NDArray[np.int64]:
     rank = rank_of(G)
     if not rank:
         return np.arange(G.shape[1])
-    pivots = qr(G, mode="r", pivoting=True)[1]
-    return np.sort(np.asarray(pivots[rank:], dtype=np.int64))
+    return np.sort(pivoted(G, rank)[rank:])
 
 
 def _ambiguous(G: Array) -> NDArray[np.bool_]:

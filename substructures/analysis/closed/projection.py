@@ -11,7 +11,7 @@ from scipy.linalg import lstsq
 
 from substructures.analysis.closed.constrained import Constrained, Factor
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
+from substructures.mechanics.closure_rows import RANK
 
 #: residuals over the width of their rows (see Constrained) that count as none
 CLOSED = 1e-12
@@ -98,7 +98,10 @@ def _least(s: Constrained, free: NDArray[np.int64], residual: Array) -> Array:
     # dq = -W (G W)^+ phi, W = diag(g)^(-1/2)
     weight = 1 / np.sqrt(np.where(inertia > 0, inertia, 1.0))
     G, left = s.balanced[:, free], residual / s.reach
-    found = lstsq(G * weight, -left, cond=RANK, lapack_driver="gelsd", check_finite=False)
+    # rows of G W, as long again as those of G: of small and large mechanisms side by side
+    size, before = (np.linalg.norm(x, axis=1) for x in (G * weight, G))
+    scale = np.divide(before, size, out=np.ones_like(size), where=size > 0)
+    found = lstsq(G * weight * scale[:, None], -left * scale, cond=RANK, lapack_driver="gelsd", check_finite=False)
     return np.asarray(weight * found[0], dtype=np.float64)
 
 

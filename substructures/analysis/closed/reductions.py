@@ -14,12 +14,13 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, qr, svdvals
+from scipy.linalg import lapack, svdvals
 
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
+from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import CLOSED, project
 from substructures.array import Array
-from substructures.mechanics.accelerations import RANK
+from substructures.mechanics.closure_rows import RANK
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
 WORN = 0.3
@@ -76,9 +77,9 @@ class Reduction(ABC):
         q, qd, _ = project(self.s, t, q, qd, self.rows, part**2 * CLOSED / 100)
         return q, qd
 
-    def is_singular(self, part: float = 0) -> bool:
-        """Whether s is at a singular position, or beside one: at less than this part of the best share."""
-        least = max(100 * RANK, max(part, self.close) * self.best_share)
+    def is_singular(self) -> bool:
+        """Whether s is at a singular position, or so near that it counts as one."""
+        least = max(100 * RANK, self.close * self.best_share)
         return self.rank > 0 and not self.s.share(self.rank) > least
 
     def _acceleration(self) -> tuple[Array, float]:
@@ -101,8 +102,7 @@ class Reduction(ABC):
         if self.is_singular():
             raise Singular(SINGULAR)
         if anew or self.s.share(self.rank, self.rows) < WORN * share:
-            pivots = qr(self.s.balanced.T, mode="r", pivoting=True)[1]
-            self.rows = np.sort(np.asarray(pivots[: self.rank], dtype=np.int64))
+            self.rows = np.sort(pivoted(self.s.balanced.T, self.rank)[: self.rank])
 
 
 class Projected(Reduction):
@@ -144,10 +144,8 @@ class Partitioned(Reduction):
         self._partition()
 
     def _partition(self) -> None:
-        G = self.s.balanced[self.rows]
-        pivots = np.arange(self.n) if not self.rank else qr(G, mode="r", pivoting=True)[1]
-        self.dependent: NDArray[np.int64] = np.sort(pivots[: self.rank]).astype(np.int64)
-        self.independent: NDArray[np.int64] = np.sort(pivots[self.rank :]).astype(np.int64)
+        order = pivoted(self.s.balanced[self.rows], self.rank)
+        self.dependent, self.independent = np.sort(order[: self.rank]), np.sort(order[self.rank :])
         self.best = self._condition()
 
     def _condition(self) -> float:

@@ -1,8 +1,7 @@
 """Steps of a motion with closures: an integrator of reduced states that lands on the closures after every step.
 
-A singular position between two states is looked for where one may be: along a smooth motion det(G_new G_old^T) over
-independent rows changes its sign where a singular value of G passes through zero, and a motion that leaves a branching
-on another branch has a kink. There the smallest singular value is minimised along the step.
+Whether a step came to a singular position, or leapt from one branch of closed positions to another, is told by how far
+G changes along it (see branches), and looked for where G changes much or velocities have a kink.
 """
 
 from __future__ import annotations
@@ -11,8 +10,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 
+from substructures.analysis.closed.branches import FAR, change, singular_part
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.motion.steppers import Stepper, within
@@ -23,14 +22,8 @@ RETRIES = 10
 #: a step along the closures is longer than this many times speed * time, and than LENGTH [rad, m], only if it has
 #: leapt to another branch
 LEAP, LENGTH = 10, 1e-6
-#: a step is searched for singular positions when velocities change by more than this share of the largest
+#: a step is looked into when velocities change by more than this share of the largest
 KINK = 0.3
-#: where the smallest singular value has less than this part of its best share along the motion, branches are so near
-#: each other that a step with such a change may have leapt from one to another
-BESIDE = 0.02
-#: singular values below this part of their best share along the motion, in between, are a singular position
-NEAR = 1e-4
-SAMPLES = 8
 #: for the end of a step before a singular position
 BISECTIONS = 30
 NOTHING = np.zeros(0)
@@ -83,7 +76,7 @@ class ClosedStepper:
             self.status = "failed"
             return self._message
         self._prepare()
-        before = self.s.G.copy()
+        before = self.s.balanced
         self.t_old = self.t
         try:
             step = self._advanced(before)
@@ -134,7 +127,10 @@ class ClosedStepper:
         self.inner = self._begun(first)
 
     def _advanced(self, before: Array) -> _Step:
-        """One step of the integrator, landed on the closures. ``before``: G at its start. Raises Singular."""
+        """One step of the integrator, landed on the closures; ``before``: the balanced G at its start.
+
+        Raises Singular.
+        """
         message: str | None = self.inner.step()
         if self.inner.status == "failed":
             return _Step(message)
@@ -151,9 +147,11 @@ class ClosedStepper:
         """Shorter steps with other rows and coordinates from the present state, until one succeeds."""
         failure = Singular(SINGULAR)
         for _ in range(RETRIES):
+            # the step that was taken but did not land, or else the one that was tried
+            tried = float(self.inner.t - self.t) or float(self.inner.h_abs)
             self.s.move(self.t, *self._state())
             self.reduction.choose(anew=True)
-            self._begin(self.inner.h_abs / 4)
+            self._begin(tried / 4)
             try:
                 return self._advanced(before)
             except Singular as error:
@@ -165,32 +163,25 @@ class ClosedStepper:
         rows, old = self.reduction.rows, self._state()[1]
         if not len(rows):
             return None
+        first, last = before[rows], self.s.balanced[rows]
+        singular = self.reduction.is_singular()
         fastest = max(float(np.abs(old).max()), float(np.abs(qd).max()))
         kinked = bool(np.abs(qd - old).max() > KINK * fastest)
-        # det(G_new G_old^T) <= 0: a singular value of G may have passed through zero
-        suspicious = kinked or np.linalg.det(self.s.G[rows] @ before[rows].T) <= 0
-        singular, beside = self.reduction.is_singular(), self.reduction.is_singular(BESIDE)
-        time = self._passed() if suspicious else None
-        if time is not None:
-            return time, f"a singular position is passed at t = {time:.9g} s: {SINGULAR}"
-        if kinked and beside:
-            raise Singular(SINGULAR)
+        part = singular_part(self._inside(), first, last) if kinked or change(first, last) > FAR else None
+        if part is not None:
+            time = self.t + part * float(self.inner.t - self.t)
+            return time, f"a singular position is passed near t = {time:.6g} s: {SINGULAR}"
         return (float(self.inner.t), SINGULAR) if singular else None
 
-    def _passed(self) -> float | None:
-        """When the smallest singular value comes near zero within the last step [s]."""
+    def _inside(self) -> Callable[[float], Array | None]:
+        """The independent rows of the balanced G at a part of the last step; None where it is singular."""
         state, start, h = self.rough_output(), self.t, self.inner.t - self.t
-        rows, least = self.reduction.rows, NEAR * self.reduction.best_share
 
-        def share(part: float) -> float:
-            """The share of the least singular value of the independent rows at a part of the step."""
+        def rows_of_G(part: float) -> Array | None:
             state(start + part * h)
-            return self.s.share(len(rows), rows)
+            return None if self.reduction.is_singular() else self.s.balanced[self.reduction.rows]
 
-        k = 1 + int(np.argmin([share(i / SAMPLES) for i in range(1, SAMPLES)]))
-        bounds = (k - 1) / SAMPLES, (k + 1) / SAMPLES
-        found = scipy.optimize.minimize_scalar(share, bounds=bounds, method="bounded", options={"xatol": 1e-9})
-        return float(start + found.x * h) if found.fun < least else None
+        return rows_of_G
 
     def dense_output(self) -> Callable[[float], Array]:
         """States within the last step, on the closures."""

@@ -12,9 +12,9 @@ from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.equations.expressions import Given, read_expressions
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.events import DIRECTIONS, Event
-from substructures.analysis.motion.integration import Watch
 from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
+from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, listed

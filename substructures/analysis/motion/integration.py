@@ -7,16 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.steppers import Stepper, roughly_within, within
-from substructures.analysis.motion.turns import turns
+from substructures.analysis.motion.steppers import Stepper
+from substructures.analysis.motion.zeros import Dense, Watch, zeros_of
 from substructures.array import Array
 
 Function = Callable[[float, Array], Array]
@@ -27,9 +24,6 @@ TimeReport = Callable[[float], bool | None]
 KEPT = 20_000
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
-#: where a watched quantity turns this near to its level, beside how far it is from it before and after, the turn is
-#: looked at closely
-PEAK = 0.1
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -40,17 +34,6 @@ class IntegratorSettings:
     stepper: Stepper
     max_steps: int
     advice: str = STIFF
-
-
-@dataclass(frozen=True)
-class Watch:
-    """Zeros of g(t, x), a quantity less ``level``, that are looked for: ``direction`` +1 rising, -1 falling, 0 both."""
-
-    name: str
-    function: Callable[[float, Array], float]
-    direction: int = 0
-    stops: bool = True
-    level: float = 0.0
 
 
 @dataclass
@@ -199,7 +182,7 @@ class _Run:
         if self.tiny > PATIENCE:
             motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
             return
-        dense = _Dense(solver, self.settings.stepper)
+        dense = Dense(solver, self.settings.stepper)
         last = self._watch(solver, dense)
         self.collect(last, dense)
         if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
@@ -216,13 +199,13 @@ class _Run:
             self.motion.x.append(np.array(dense(t), dtype=np.float64))
             self.next += 1
 
-    def _watch(self, solver: Any, dense: _Dense) -> float:
+    def _watch(self, solver: Any, dense: Dense) -> float:
         """Zeros in the last step, in the order of time, up to the first that stops; how far the motion goes."""
         zeros = []
         for k, watch in enumerate(self.watches):
             before, after = self.levels[k], watch.function(solver.t, solver.y)
             self.levels[k] = after
-            zeros += [(t, k) for t in _zeros(watch, solver, dense, (before, after))]
+            zeros += [(t, k) for t in zeros_of(watch, solver, dense, (before, after))]
         for t, k in sorted(zeros):
             x = np.array(dense(t), dtype=np.float64)
             self.motion.found.append((k, t, x))
@@ -235,72 +218,3 @@ class _Run:
                     del self.motion.step_t[-1], self.motion.step_x[-1]
                 return t
         return float(solver.t)
-
-
-def _zeros(watch: Watch, solver: Any, dense: _Dense, ends: tuple[float, float]) -> list[float]:
-    """The zeros of a watched function in the last step, in order; ``ends``: its values there."""
-
-    def g(t: float) -> float:
-        """The watched function within the step."""
-        return watch.function(t, np.asarray(dense(t), dtype=np.float64))
-
-    def roughly(times: Array) -> list[float]:
-        """The same at several times."""
-        return [watch.function(t, x) for t, x in zip(times.tolist(), dense.rough(times), strict=True)]
-
-    a, b = float(solver.t_old), float(solver.t)
-    points = [(a, ends[0]), *turns(roughly, a, b, ends, watch.level), (b, ends[1])]
-    found = []
-    for (start, before), (end, after) in pairwise(_reaching(g, points)):
-        # g changes its sign from one time to the next; g = 0 at the start was counted before
-        rising = before < 0 <= after
-        falling = before > 0 >= after
-        if (rising and watch.direction >= 0) or (falling and watch.direction <= 0):
-            found.append(_zero(g, start, end))
-    return found
-
-
-def _reaching(g: Callable[[float], float], points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The same (t, g) with exact values near zero, where a turn is looked for again: it was one of rough states."""
-    result = list(points)
-    for k in range(1, len(points) - 1):
-        (start, before), (t, peak), (end, after) = points[k - 1 : k + 2]
-        sign = 1.0 if peak > 0 else -1.0
-        if abs(peak) > PEAK * max(abs(before), abs(after)):
-            continue
-        result[k] = t, g(t)
-        # g comes towards zero from both sides, and leaves it again before it is there
-        if abs(peak) < min(sign * before, sign * after):
-            options = {"xatol": 1e-9 * (end - start)}
-            found = scipy.optimize.minimize_scalar(
-                lambda t, sign=sign: sign * g(t), bounds=(start, end), method="bounded", options=options
-            )
-            result[k] = float(found.x), sign * float(found.fun)
-    return result
-
-
-def _zero(g: Callable[[float], float], a: float, b: float) -> float:
-    # g(t*) = 0 in [a, b], found to the resolution of times
-    if g(a) * g(b) > 0:
-        return b  # the zero is within rounding of an end
-    return float(scipy.optimize.brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
-
-
-class _Dense:
-    """Dense output of the last step, made when it is first needed; exact at its ends."""
-
-    def __init__(self, solver: Any, make: Stepper) -> None:
-        self.solver, self.make = solver, make
-        self.output: Any = None
-
-    @cached_property
-    def rough(self) -> Callable[[Array], Array]:
-        """States (K, N) at times (K,) by the stepper's own polynomial, which costs little and is less accurate."""
-        return roughly_within(self.solver)
-
-    def __call__(self, t: float) -> Array:
-        if t == self.solver.t:
-            return np.asarray(self.solver.y)
-        if self.output is None:
-            self.output = within(self.solver, self.make)
-        return np.asarray(self.output(t))

@@ -4,23 +4,21 @@ Q_a + lambda_k G_ka = 0, phi_k(q) = 0.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from substructures.analysis.equations.formulas import require_moving
-from substructures.analysis.stability.equilibrium_search import ClosedSearch, RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.closed_search import ClosedSearch
+from substructures.analysis.stability.equilibrium_search import RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.found_places import FoundPlaces, still
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
-from substructures.analysis.stability.operating_point import AT_REST
-from substructures.analysis.verdict import About, Check, verdict
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.tree.model import Model
 
-#: two equilibria closer than this are one [rad, m]
-SAME = 1e-6
 #: singular values of K below this share of the largest leave a direction undetermined
 SINGULAR = 1e-9
 
@@ -52,37 +50,17 @@ class Equilibrium:
         if self.at.status == "failed" or not len(self.at.K):
             why = self.at.message or "nothing is left to move"
             return Check.left_out(f"rest at {place}", "zero", why, needed=self.at.status == "failed")
-        # |q''| beside what a unit displacement causes, or 1
-        scale = max(1.0, float(np.abs(np.linalg.solve(self.at.M, self.at.K)).max(initial=0)))
-        worst = float(np.abs(self.at.qdd).max(initial=0))
-        about: About = (f"rest at {place}", "zero", "no accelerations at rest", "rad/s^2, m/s^2")
-        return Check.at(about, worst, 0.0, scale, AT_REST)
+        return still(f"rest at {place}", "no accelerations at rest", self.at.qdd, self.at.M, self.at.K)
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibria:
-    """All that were found, in the order of their coordinates. ``held``: coordinates on which no force and no closure
-    depends, kept at their start. ``message``: advice when nothing was found.
-    """
+class Equilibria(FoundPlaces[Equilibrium]):
+    """All that were found. ``held``: coordinates on which no force and no closure depends, kept at their start."""
 
-    found: tuple[Equilibrium, ...]
     held: tuple[str, ...]
-    message: str = ""
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """One for each equilibrium."""
-        return tuple(equilibrium.check() for equilibrium in self.found)
-
-    @property
-    def is_right(self) -> bool | None:
-        """Whether all that were found are equilibria; None where there are none."""
-        return verdict(self.checks)
 
     def __repr__(self) -> str:
-        verdicts = Counter(e.verdict for e in self.found)
-        finding = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
-        return f"Equilibria(found={len(self.found)}, held={list(self.held)})\n{self.message or finding}"
+        return self._shown(held=self.held)
 
 
 def equilibria(
@@ -112,17 +90,12 @@ def equilibria(
     places = search.starts()
     held = search.held(places)
     moving = [a for a in range(model.dof) if a not in held]
-    found: list[Array] = []
     places[:, held] = places[0, held]
-    for start in places:
-        q = search.solve(start, moving)
-        if q is not None and not any(search.distance(q, other) < SAME for other in found):
-            found.append(q)
+    found, _ = search.places(places, moving)
     names = tuple(model.coordinates[a] for a in held)
-    ordered = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])] if found and model.dof else found
-    results = tuple(_described(model, conditions, q) for q in ordered)
+    results = tuple(_described(model, conditions, q) for q in found)
     message = "" if results else search.advice(places[0], held)
-    return Equilibria(results, names, message)
+    return Equilibria(results, names, message=message)
 
 
 def _described(model: Model, conditions: RestConditions, q: Array) -> Equilibrium:

@@ -1,8 +1,7 @@
 """The search for positions of rest: forces and their Jacobian, compiled, and Newton's method from many starts.
 
-Of a tree -Q_a(q, q' = 0) = 0, with the Jacobian K = -dQ/dq. With closures (ClosedSearch) -Q_a - lambda_k G_ka = 0 and
-phi_k = 0 for q and lambda together, with the Jacobian [K -G^T; G 0] and K = -dQ/dq - lambda_k d2phi_k; where closures
-depend on each other the steps are of least size.
+-Q_a(q, q' = 0) = 0, with the Jacobian K = -dQ/dq. So that mechanisms of any size and mass are searched alike, distances
+count over the reach, and every force over how large it is elsewhere (``unit``).
 """
 
 from __future__ import annotations
@@ -14,25 +13,25 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from substructures.analysis.arguments import positive, real, whole
-from substructures.analysis.closed.constrained import Constrained
-from substructures.analysis.closed.projection import consistent_state
-from substructures.analysis.equations.formulas import multipliers_of
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import numbers
-from substructures.analysis.motion.problem import Start
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.states import numeric, read_states, symbol_values
 from substructures.tree.model import Model
 
-#: forces left over, relative to the largest entry of K times 1 rad or 1 m
+#: two places closer than this are one [rad, m]
+SAME = 1e-6
+#: forces left over, in units of the search, or relative to the largest entry of K times 1 rad or 1 m
 RESIDUAL = 1e-10
 NEEDS = ("metric", "forces")
 MAX_STARTS = 10_000
 MAX_SEED = 2**1000
 #: of the search from one start
 STEPS = 200
+#: places where forces are looked at before, and the part of the largest one below which a force is rounding
+PLACES, NOTHING = 8, 1e-13
 #: of a start on a corner of a force [rad, m]
 BESIDE = 1e-6
 TOLERANCES = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
@@ -87,9 +86,22 @@ class RestSearch:
         outputs |= {"residual": self.F, "stiffness": self.K}
         columns.append((list(model.coordinates), self.q))
         self.run = program_kernel(perturbation(model)).bind(outputs, values, columns=columns)
+        self._sized([kind == "R" for kind in model.joints])
+
+    def _sized(self, turning: Sequence[bool]) -> None:
+        """Where is looked, in which unit of force, and what has come round after a full turn."""
         # places in +-pi for angles, +-reach for distances
-        turning = [kind == "R" for kind in model.joints]
-        self.size = np.where(turning, np.pi, within.reach)
+        self.size = np.where(turning, np.pi, self.within.reach)
+        self.length = np.where(turning, 1.0, self.within.reach)
+        self.turning, self.unit = np.zeros(self.n, dtype=bool), np.ones(self.n)
+        # |Q_a| and |K_ab| times a unit of q^b; a force that is rounding has no size of its own
+        sizes = np.zeros(self.n)
+        for q in np.random.default_rng(5).uniform(-1, 1, (PLACES, self.n)) * self.size:
+            F, K = self.at(q)
+            there = np.abs(np.column_stack((F, K * self.length)))
+            sizes = np.maximum(sizes, np.where(np.isfinite(there), there, 0).max(axis=1, initial=0))
+        largest = float(sizes.max(initial=0)) or 1.0
+        self.unit = np.where(sizes > NOTHING * largest, sizes, largest)
         self.turning = np.array([t and self._is_periodic(a) for a, t in enumerate(turning)], dtype=bool)
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
@@ -123,19 +135,37 @@ class RestSearch:
         return rows
 
     def at(self, q: Array) -> tuple[Array, Array]:
-        """-Q and its Jacobian at rest."""
+        """-Q and its Jacobian at rest, over the units."""
         self.q[0] = q
         self.run()
-        return self.F[0].copy(), self.K[0].copy()
+        return self.F[0] / self.unit, self.K[0] / self.unit[:, None]
 
     def held(self, starts: Array) -> list[int]:
         """Coordinates on which nothing depends."""
         sizes = np.array([np.abs(self._slopes(q)).max(axis=0) for q in starts[:: max(1, len(starts) // 8)]]).max(axis=0)
-        return np.flatnonzero(sizes <= 1e-13 * sizes.max(initial=0)).tolist()
+        return np.flatnonzero(sizes <= NOTHING * sizes.max(initial=0)).tolist()
 
     def _slopes(self, q: Array) -> Array:
         """Derivatives of what must be zero."""
         return self.at(q)[1]
+
+    def places(self, starts: Array, moving: Sequence[int]) -> tuple[list[Array], int]:
+        """Different places that are found from the starts, in the order of their coordinates, and how many others were
+        left out, as the coordinates are singular there.
+        """
+        found: list[Array] = []
+        for start in starts:
+            q = self.solve(start, moving)
+            if q is not None and not any(self.distance(q, other) < SAME for other in found):
+                found.append(q)
+        if found and self.n:
+            found = [found[i] for i in np.lexsort(np.round(found / self.length, 6).T[::-1])]
+        regular = [q for q in found if not self.is_singular(q)]
+        return regular, len(found) - len(regular)
+
+    def is_singular(self, _: Array) -> bool:
+        """Whether the coordinates fail there, which the linearisation of an equilibrium tells."""
+        return False
 
     def solve(self, start: Array, moving: Sequence[int]) -> Array | None:
         """An equilibrium near a start; None when there is none in reach."""
@@ -150,13 +180,19 @@ class RestSearch:
 
         if len(moving):
             if not np.isfinite(self.at(q)[1]).all():
-                q[moving] += BESIDE
+                q[moving] += BESIDE * self.length[moving]
             with np.errstate(all="ignore"):
-                q[moving] = least_squares(lambda x: both(x)[0], q[moving].copy(), lambda x: both(x)[1], **TOLERANCES).x
+                q[moving] = least_squares(
+                    lambda x: both(x)[0],
+                    q[moving].copy(),
+                    lambda x: both(x)[1],
+                    x_scale=self.length[moving],
+                    **TOLERANCES,
+                ).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
         # |Q| <= 1e-10 max(1, |K|)
-        if not np.abs(F).max(initial=0) <= RESIDUAL * max(1.0, float(np.abs(K).max(initial=0))):
+        if not np.abs(F).max(initial=0) <= RESIDUAL * max(1.0, float(np.abs(K * self.length).max(initial=0))):
             return None
         return self._wound(q)
 
@@ -171,12 +207,13 @@ class RestSearch:
         if not (np.isfinite(F).all() and np.isfinite(K).all()):
             return np.zeros(len(moving))
         # K dq = Q, with F = -Q
-        step = np.linalg.lstsq(K[:, moving], -F, rcond=1e-10)[0]
-        return np.asarray(step if np.abs(step).max(initial=0) < 1e-3 else np.zeros(len(moving)))
+        length = self.length[moving]
+        step = np.linalg.lstsq(K[:, moving] * length, -F, rcond=1e-10)[0]
+        return np.asarray(step * length if np.abs(step).max(initial=0) < 1e-3 else np.zeros(len(moving)))
 
     def distance(self, p: Array, q: Array) -> float:
-        """Largest difference of coordinates, of angles by the shorter way."""
-        d = np.abs(p - q)
+        """Largest difference of coordinates, of angles by the shorter way, of distances over the reach."""
+        d = np.abs(p - q) / self.length
         return float(np.where(self.turning, np.minimum(d, np.abs(2 * np.pi - d)), d).max(initial=0))
 
     def advice(self, q: Array, held: Sequence[int]) -> str:
@@ -186,65 +223,3 @@ class RestSearch:
         if names:
             return f"nothing balances the constant force on {names}: change gravity or inputs, or add a spring"
         return "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"
-
-
-class ClosedSearch(RestSearch):
-    """Forces, closures and their Jacobians at rest, compiled."""
-
-    def __init__(self, model: Model, within: SearchRange, conditions: RestConditions) -> None:
-        super().__init__(model, within, conditions)
-        start = Start([0.0] * model.dof, parameters=conditions.parameters, inputs=conditions.inputs)
-        self.s = Constrained(model, start, (conditions.t, conditions.t))
-        self.open = ""
-
-    def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
-        names = multipliers_of(self.model)
-        m, n = len(names), self.model.dof
-        self.multipliers, self.phi, self.G = np.ones((1, m)), np.zeros((1, m)), np.zeros((1, m, n))
-        return {"closure.residual": self.phi, "closure.jacobian": self.G}, [(list(names), self.multipliers)]
-
-    def _judged(self, q: Array) -> Array:
-        return np.concatenate((self.at(q)[0], self.phi[0]))
-
-    def _slopes(self, q: Array) -> Array:
-        return np.concatenate((self.at(q)[1], self.G[0]))
-
-    def solve(self, start: Array, moving: Sequence[int]) -> Array | None:
-        """A closed equilibrium near a start; None when there is none in reach."""
-        rest = np.zeros(len(start))
-        state = consistent_state(self.s, self.conditions.t, start, rest)
-        if not state.found:
-            self.open = state.message
-            return None
-        q, k = state.q.copy(), len(moving)
-        self.multipliers[:] = 0
-        F, K = self.at(q)
-        scale = max(1.0, float(np.abs(K).max(initial=0)))
-
-        def both(x: Array) -> tuple[Array, Array]:
-            """Residuals and their Jacobian at free coordinates and multipliers."""
-            q[moving], self.multipliers[0] = x[:k], x[k:]
-            F, K = self.at(q)
-            G = self.G[0]
-            # F = -Q - lambda G and phi, by q and lambda; phi in the units of forces
-            K = np.where(np.isfinite(K), K, 0)
-            J = np.block([[K[:, moving], -G.T], [scale * G[:, moving], np.zeros((len(G), len(G)))]])
-            return np.concatenate((F, scale * self.phi[0])), J
-
-        # lambda_0 of least squares: G^T lambda = -Q
-        x = np.concatenate((q[moving], np.linalg.lstsq(self.G[0].T, F, rcond=1e-8)[0]))
-        with np.errstate(all="ignore"):
-            x = least_squares(lambda x: both(x)[0], x, lambda x: both(x)[1], max_nfev=STEPS, **TOLERANCES).x
-        residual, J = both(x)
-        if np.isfinite(residual).all() and np.isfinite(J).all():
-            step = np.linalg.lstsq(J, -residual, rcond=1e-10)[0]
-            residual, J = both(x + step if np.abs(step[:k]).max(initial=0) < 1e-3 else x)
-        size = float(np.abs(self.K[np.isfinite(self.K)]).max(initial=0))
-        if not np.abs(residual).max(initial=0) <= RESIDUAL * max(scale, size):
-            return None
-        self.s.move(self.conditions.t, q, rest)
-        return None if self.s.upside_down() else self._wound(q)
-
-    def advice(self, q: Array, held: Sequence[int]) -> str:
-        """Why there is none."""
-        return self.open or super().advice(q, held)

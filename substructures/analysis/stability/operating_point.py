@@ -110,6 +110,10 @@ def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array) -> str:
 
 def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
     """Accelerations that are rounding: below 1e-8 of what a unit displacement causes (or of 1)."""
-    # |q''| <= 1e-8 max(1, |M^-1 K|)
-    scale = max(1.0, float(np.abs(np.linalg.solve(M, K)).max(initial=0)))
-    return bool(np.abs(qdd).max(initial=0) <= AT_REST * scale)
+    return bool(np.abs(qdd).max(initial=0) <= AT_REST * unit_accelerations(K, M))
+
+
+def unit_accelerations(K: Array, M: Array) -> float:
+    """The largest acceleration that a unit displacement causes, or 1."""
+    # max(1, |M^-1 K|)
+    return max(1.0, float(np.abs(np.linalg.solve(M, K)).max(initial=0)))

@@ -15,7 +15,6 @@ E. J. Routh, Stability of a given state of motion, 1877; L. Salvadori, Rend. Acc
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -30,14 +29,14 @@ from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
+from substructures.analysis.stability.found_places import FoundPlaces, still
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.analysis.stability.vibrations import Mode, Stability, modes, normed, stability
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.model import Model
 
-#: two steady motions closer than this are one [rad, m]
-SAME = 1e-6
 Held = Literal["momenta", "rates"]
 
 
@@ -47,8 +46,8 @@ class SteadyMotion:
     their ``momenta`` (m,) [N m s, N s].
 
     ``M``, ``D``, ``K`` (r, r): of M dy'' + D dy' + K dy = 0 for disturbances of the r ``independent`` others, with
-    ``modes``, slowest first, whose shapes are those of all others. ``stability`` is None where there is no
-    linearisation; ``message`` says why.
+    ``modes``, slowest first, whose shapes are those of all others, and ``qdd`` (r,) their accelerations in the motion,
+    which are none but for rounding. ``stability`` is None where there is no linearisation; ``message`` says why.
     """
 
     coordinates: tuple[str, ...]
@@ -60,6 +59,7 @@ class SteadyMotion:
     M: Array
     D: Array
     K: Array
+    qdd: Array
     modes: tuple[Mode, ...] = ()
     stability: Stability | None = None
     message: str = ""
@@ -77,23 +77,28 @@ class SteadyMotion:
         """Of its stability; ``failed`` where there is none."""
         return "failed" if self.stability is None else self.stability.verdict
 
+    def check(self) -> Check:
+        """That it is steady, by the equations of motion of the model, which the search had not."""
+        place = ", ".join(f"{x:.6g}" for x in self.q.tolist())
+        name = f"steady at {place}"
+        if self.stability is None or not self.independent:
+            why = self.message or "nothing is left to move"
+            return Check.left_out(name, "zero", why, needed=self.stability is None)
+        return still(name, "what is still is not accelerated", self.qdd, self.M, self.K)
+
 
 @dataclass(frozen=True, repr=False)
-class SteadyMotions:
-    """All that were found, in the order of their coordinates. ``moving``: coordinates with constant rates, ``held``:
-    what keeps its values in a disturbed motion; ``message``: advice when nothing was found, and how many places were
-    left out because the coordinates are singular there (a spherical joint at a pitch of +-pi/2).
+class SteadyMotions(FoundPlaces[SteadyMotion]):
+    """All that were found. ``moving``: coordinates with constant rates, ``held``: what keeps its values in a disturbed
+    motion. The ``message`` also says how many places were left out because the coordinates are singular there (a
+    spherical joint at a pitch of +-pi/2).
     """
 
-    found: tuple[SteadyMotion, ...]
     moving: tuple[str, ...]
     held: Held
-    message: str = ""
 
     def __repr__(self) -> str:
-        verdicts = Counter(each.verdict for each in self.found)
-        finding = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
-        return f"SteadyMotions(found={len(self.found)}, moving={list(self.moving)})\n{self.message or finding}"
+        return self._shown(moving=self.moving)
 
 
 def steady_motions(
@@ -129,29 +134,13 @@ def steady_motions(
     within = SearchRange(starts, count, reach, seed)
     kind = ClosedSteadySearch if model.closures else SteadySearch
     search = kind(model, moving, within, conditions, wanted, field == "momenta")
-    found, failing = _places(search)
-    ordered = [found[i] for i in np.lexsort(np.round(found, 6).T[::-1])] if found and search.n else found[:1]
-    motions = tuple(_described(search, x, held) for x in ordered)
+    found, failing = search.places(search.starts(), list(range(search.n)))
+    motions = tuple(_described(search, x, held) for x in found)
     names = tuple(model.coordinates[s] for s in moving)
     message = "" if motions else "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
     if failing:
         message += f"{'; ' if message else ''}{failing} places were left out where these coordinates are singular"
-    return SteadyMotions(motions, names, held, message)
-
-
-def _places(search: SteadySearch) -> tuple[list[Array], int]:
-    """Different places that were found, and how many searches ended where the coordinates are singular."""
-    found: list[Array] = []
-    failing = 0
-    for start in search.starts():
-        x = search.solve(start, list(range(search.n)))
-        if x is None or any(search.distance(x, other) < SAME for other in found):
-            continue
-        if search.is_singular(x):
-            failing += 1
-        else:
-            found.append(x)
-    return found, failing
+    return SteadyMotions(motions, names, held, message=message)
 
 
 def _given(
@@ -194,7 +183,8 @@ def _described(search: SteadySearch, x: Array, held: Held) -> SteadyMotion:
     names = tuple(model.coordinates[s] for s in search.moving)
     independent = tuple(model.coordinates[a] for a in at.independent)
     named = (model.coordinates, names, independent)
-    motion = SteadyMotion(*named, search.whole(x), at.rates, at.momenta, at.M, at.D, at.K)
+    qdd = search.accelerations(x, at)
+    motion = SteadyMotion(*named, search.whole(x), at.rates, at.momenta, at.M, at.D, at.K, qdd)
     if not all(np.isfinite(m).all() for m in (at.M, at.D, at.K)):
         message = "a derivative of the forces is not finite here, or the metric is singular: there is no linearisation"
         return replace(motion, message=message)

@@ -15,8 +15,8 @@ from substructures.analysis.equations.formulas import multipliers_of
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.steady import steady_formulas
 from substructures.analysis.motion.problem import Start
+from substructures.analysis.stability.closed_search import is_met, multiplier_units
 from substructures.analysis.stability.equilibrium_search import (
-    RESIDUAL,
     STEPS,
     TOLERANCES,
     RestConditions,
@@ -24,6 +24,7 @@ from substructures.analysis.stability.equilibrium_search import (
     SearchRange,
 )
 from substructures.array import Array
+from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
@@ -68,10 +69,7 @@ class SteadySearch(RestSearch):
         known = symbol_values(model, vars(conditions), states, NEEDS)
         self.known = {name: float(np.ravel(x)[0]) for name, x in known.items()}
         self._compile(steady_formulas(model, moving))
-        turning = [model.joints[a] == "R" for a in self.still]
-        self.size = np.where(turning, np.pi, within.reach)
-        self.turning = np.zeros(self.n, dtype=bool)
-        self.turning = np.array([t and self._is_periodic(a) for a, t in enumerate(turning)], dtype=bool)
+        self._sized([model.joints[a] == "R" for a in self.still])
 
     def _of_all(self, rows: Array) -> Array:
         return rows[:, self.still]
@@ -92,9 +90,9 @@ class SteadySearch(RestSearch):
         )
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        """E_x and its Jacobian by x, at constant rates or momenta, whichever are given."""
+        """E_x and its Jacobian by x, at constant rates or momenta, whichever are given, over the units."""
         found, _ = self._found(x)
-        return found["residual"], self._slope(found)
+        return found["residual"] / self.unit, self._slope(found) / self.unit[:, None]
 
     def _slope(self, found: dict[str, Array]) -> Array:
         """dE_x/dx."""
@@ -118,6 +116,16 @@ class SteadySearch(RestSearch):
         N, independent = self._tangent(found)
         M, D, K = (N.T @ each @ N for each in (M, D, K))
         return SteadyMatrices(M, D, K, np.array(rates), found["momenta"], N, tuple(independent))
+
+    def accelerations(self, x: Array, at: SteadyMatrices) -> Array:
+        """y'' (r,) in the motion itself, by the equations of motion of the model; nan where they have no solution."""
+        found = interpret(self.model.program, self.values(x), ["forces", "bias"])
+        # M y'' = N^T (Q - Gamma q'q'), as closures do no work along N
+        left = (found["forces"] - found["bias"])[self.still]
+        try:
+            return np.asarray(np.linalg.solve(at.M, at.tangent.T @ left), dtype=np.float64)
+        except np.linalg.LinAlgError:
+            return np.full(len(at.M), np.nan)
 
     def _tangent(self, _: dict[str, Array]) -> tuple[Array, list[int]]:
         """N of dx = N dy, and the coordinates y."""
@@ -184,7 +192,7 @@ class ClosedSteadySearch(SteadySearch):
 
     def _tangent(self, found: dict[str, Array]) -> tuple[Array, list[int]]:
         G = found["closure.jacobian"]
-        y = independent_coordinates(G)
+        y = independent_coordinates(G / self.s.reach[:, None])
         others = np.setdiff1d(np.arange(self.n), y)
         N = np.zeros((self.n, len(y)))
         N[y] = np.eye(len(y))
@@ -195,26 +203,35 @@ class ClosedSteadySearch(SteadySearch):
     def solve(self, start: Array, moving: Sequence[int]) -> Array | None:
         """A closed steady motion near a start, all coordinates ``moving``; None when there is none in reach."""
         start = start[moving]
-        found, _ = self._found(start)
-        k, scale = self.n, max(1.0, float(np.nan_to_num(np.abs(found["by_position"])).max(initial=0)))
+        first, _ = self._found(start)
+        k, width = self.n, self.s.width
+        length = np.append(self.length, np.ones(len(width)))
+        force = multiplier_units(first["closure.jacobian"], self.unit)
 
         def both(z: Array) -> tuple[Array, Array]:
-            """Residuals and their Jacobian at z = (x, lambda); phi in the units of forces."""
-            self.multipliers[0] = z[k:]
+            """Residuals and their Jacobian at z = (x, lambda), each over its unit."""
+            self.multipliers[0] = force * z[k:]
             found, _ = SteadySearch._found(self, z[:k])
-            K, G = self._slope(found), found["closure.jacobian"]
-            J = np.block([[np.where(np.isfinite(K), K, 0), -G.T], [scale * G, np.zeros((len(G), len(G)))]])
-            return np.concatenate((found["residual"], scale * found["closure.residual"])), J
+            K, G = self._slope(found) / self.unit[:, None], found["closure.jacobian"]
+            J = np.block(
+                [
+                    [np.where(np.isfinite(K), K, 0), -(G * force[:, None] / self.unit).T],
+                    [G / width[:, None], np.zeros((len(G), len(G)))],
+                ]
+            )
+            return np.concatenate((found["residual"] / self.unit, found["closure.residual"] / width)), J
 
-        z = np.concatenate((start, self.multipliers[0]))
+        z = np.concatenate((start, self.multipliers[0] / force))
         with np.errstate(all="ignore"):
-            z = least_squares(lambda z: both(z)[0], z, lambda z: both(z)[1], max_nfev=STEPS, **TOLERANCES).x
+            z = least_squares(
+                lambda z: both(z)[0], z, lambda z: both(z)[1], max_nfev=STEPS, x_scale=length, **TOLERANCES
+            ).x
         residual, J = both(z)
         if not np.isfinite(residual).all():
             return None
-        step = _least(J, -residual)
-        residual, J = both(z + step if np.abs(step[:k]).max(initial=0) < 1e-3 else z)
-        if not np.abs(residual).max(initial=0) <= RESIDUAL * max(scale, float(np.abs(J).max(initial=0))):
+        step = _least(J * length, -residual)
+        residual, J = both(z + step * length if np.abs(step[:k]).max(initial=0) < 1e-3 else z)
+        if not is_met(residual, J[:k, :k] * length[:k]):
             return None
         x = self.x[0].copy()
         self.s.move(self.conditions.t, self.whole(x), np.zeros(self.model.dof))

@@ -1,0 +1,61 @@
+"""Rows of closures beside their own sizes: rank and openness whatever the units, for many states at a time.
+
+A row of the Jacobian G is long or short by the lengths of its mechanism, metres or micrometres, and one of directions
+has no unit at all. Each is judged beside how long it is in other positions; so a row that vanishes alone counts, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import svdvals
+
+from substructures.array import Array
+
+#: singular values of the balanced G below this part of the largest one, or of 1, count as zero
+RANK = 1e-8
+#: in which rows are looked at
+POSITIONS = 8
+
+
+@dataclass(frozen=True)
+class RowSizes:
+    """``reach`` (N, m): how long the rows of G are in any position; ``width`` (N, m): how far they are open there. 1 of
+    what is zero everywhere.
+    """
+
+    reach: Array
+    width: Array
+
+
+def row_sizes(joints: Sequence[str], q: Array, look: Callable[[Array], tuple[Array, Array]]) -> RowSizes:
+    """The greatest |G_k| and |phi_k| at q (N, n) and with all joints turned anyhow and slides drawn in.
+
+    ``joints``: R or P by coordinate; ``look``: G (P N, m, n) and phi (P N, m) at P positions of all N states, one
+    position after the other.
+    """
+    part = np.random.default_rng(5).uniform(-1, 1, (POSITIONS, 1, len(joints)))
+    turns = np.array([joint == "R" for joint in joints], dtype=bool)
+    places = np.where(turns, np.pi * part, part * q)
+    places[0] = q
+    G, phi = look(places.reshape(-1, len(joints)))
+    # |G_k| = (G_ka G_ka)^(1/2)
+    found = np.stack([np.sqrt(np.einsum("pka,pka->pk", G, G)), np.abs(phi)])
+    found = np.fmax.reduce(found.reshape(2, POSITIONS, len(q), -1), axis=1)
+    return RowSizes(*np.where((found > 0) & np.isfinite(found), found, 1.0))
+
+
+def rank_of(balanced: Array) -> int:
+    """Rank of one G (m, n) with its rows over their reach."""
+    return int(ranks(svdvals(balanced) if balanced.size else np.zeros(0)))
+
+
+def ranks(sizes: Array) -> NDArray[np.int64]:
+    """Number of singular values (..., k), in falling order, above RANK times the largest one, or times 1: the largest
+    one is not below 1 but near singular positions.
+    """
+    least = RANK * np.maximum(1.0, sizes.max(axis=-1, initial=0.0, keepdims=True))
+    return np.asarray((sizes > least).sum(axis=-1), dtype=np.int64)
