@@ -13,7 +13,9 @@ from service.operations.models import Style
 async def style_of(
     format: Annotated[str | None, Query(max_length=40, description="wins over Accept")] = None,  # noqa: A002 -- the name in the contract
     form: Annotated[str, Query(description="compact (shared subexpressions) or expanded")] = "compact",
-    bind: Annotated[str, Query(max_length=100_000, description="name:value,... or defaults")] = "",
+    bind: Annotated[
+        str, Query(max_length=100_000, description="name:value,... or defaults; a value may be 1200 mm")
+    ] = "",
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:
     """The style that a request asks for."""

@@ -94,6 +94,13 @@ class Model:
         return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
 
     @cached_property
+    def state_units(self) -> dict[str, dict[str, str]]:
+        """The SI units of coordinates, velocities and accelerations, by the fields q, qd, qdd and coordinate."""
+        rates = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "qdd": ("rad/s^2", "m/s^2")}
+        pairs = [(name, kind == "P") for name, kind in zip(self.coordinates, self.joints, strict=True)]
+        return {field: {name: units[is_slide] for name, is_slide in pairs} for field, units in rates.items()}
+
+    @cached_property
     def effective(self) -> frozenset[str]:
         """The symbols that the formulas depend on."""
         return frozenset(s.name for s in self.program.symbols)

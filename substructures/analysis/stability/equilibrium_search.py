@@ -23,7 +23,8 @@ from substructures.analysis.given import numbers
 from substructures.analysis.motion.problem import Start
 from substructures.array import Array
 from substructures.errors import InvalidArgument
-from substructures.quantities.states import numeric, read_states, symbol_values
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: forces left over, relative to the largest entry of K times 1 rad or 1 m
