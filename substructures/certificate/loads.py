@@ -32,13 +32,22 @@ class Forces:
     ``potential``: V of springs, stops and potentials in closed form, ``slopes`` its -dV/dq^a; ``dead``, ``dead_slopes``
     the same of forces that are constant in the world.
     Of two kinds of forces potentials may have been found: ``given`` as formulas, by joint; ``bent``, of springs whose
-    stiffness or length depends on the state (``varying``: and on more than that).
-    ``joints``: of the definition; ``prefix``: of its names.
+    stiffness or length depends on coordinates, as far as they are gradients.
+    ``joints``: of the definition; ``prefix``: of its names; ``like``: the forces at a random state, where these are at
+    one at which numbers may not change with coordinates that they depend on.
     """
 
-    def __init__(self, bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> None:
+    def __init__(
+        self,
+        bodies: Bodies,
+        definition: Plain,
+        numbers: Numbers,
+        joints: range,
+        prefix: str = "",
+        like: Forces | None = None,
+    ) -> None:
         self.bodies, self.numbers, self.joints, self.prefix = bodies, numbers, joints, prefix
-        self.definition = definition
+        self.definition, self.somewhere = definition, like.numbers.names if like else numbers.names
         self.applied: dict[int, Ball] = {}
         self.wrenches: dict[int, Ball] = {}
         self.potential = self.dead = arb(0)
@@ -46,7 +55,6 @@ class Forces:
         self.dead_slopes: dict[int, Ball] = {}
         self.given: dict[int, list[Steps]] = {}
         self.bent: list[dict[int, Ball]] = []
-        self.varying = False
         self.places: list[tuple[Matrix, Matrix]] = []
         self.index = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
         self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in joints}
@@ -54,7 +62,7 @@ class Forces:
     def depends(self, *given: Any) -> bool:
         """Whether numbers depend on a coordinate or a velocity of the definition."""
         return any(
-            not slope(x, self.numbers.names, name).contains(0)
+            not slope(x, self.somewhere, name).contains(0)
             for x in given
             for name in names_of(steps_of(x))
             if name.removesuffix("'") in self.coordinates
@@ -72,9 +80,11 @@ class Forces:
         return frame, x, {a: self.bodies.joints[a].v + cross(self.bodies.joints[a].w, x) for a in path}
 
 
-def forces(bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> Forces:
+def forces(
+    bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "", like: Forces | None = None
+) -> Forces:
     """All loads of a definition; ``joints``: its own. Raises LookupError for a type of load that is not known here."""
-    found = Forces(bodies, definition, numbers, joints, prefix)
+    found = Forces(bodies, definition, numbers, joints, prefix, like)
     for a, (joint, step) in zip(joints, laws_of(definition), strict=True):
         _joint_law(found, a, joint, step)
     for load in definition.get("loads", ()):
@@ -184,13 +194,28 @@ def _spring(found: Forces, load: Plain) -> None:
     _add(found.applied, {a: -tension * w for a, w in reach.items()})
     pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
     if found.depends(load.get("stiffness", 0), load.get("length", 0)):
-        found.bent.append(pulls)
-        names = (names_of(steps_of(load.get(name, 0))) for name in ("stiffness", "length"))
-        constants = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
-        found.varying |= not frozenset().union(*names) <= constants
+        if _is_gradient(found, load, (k, length - l0), reach):
+            found.bent.append(pulls)
     else:
         found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
         _add(found.slopes, pulls)
+
+
+def _is_gradient(found: Forces, load: Plain, law: tuple[Ball, Ball], reach: Mapping[int, Ball]) -> bool:
+    """Whether Q_a = f dl/dq^a with f = -k (l - l0) has a potential where k and l0 depend on coordinates q, and on no
+    velocity: df/dq^b dl/dq^a = df/dq^a dl/dq^b, of the derivatives of f at fixed l. ``law``: k and l - l0.
+    """
+    k, stretch = law
+    names, given = found.numbers.names, (load.get("stiffness", 0), load.get("length", 0))
+
+    def by(name: str) -> Ball:
+        """df by a name at fixed l."""
+        return k * slope(given[1], names, name) - stretch * slope(given[0], names, name)
+
+    if not all(by(f"{name}'").contains(0) for name in found.coordinates):
+        return False
+    pairs = [(by(name), reach[a]) for name, a in found.coordinates.items()]
+    return all((f * v - g * w).contains(0) for f, w in pairs for g, v in pairs)
 
 
 #: what the loads of each type add to the forces

@@ -82,18 +82,13 @@ def filtered(expr: Expr, names: AbstractSet[str], limit: int = LIMIT) -> Expr | 
     return expr if len(kept) == len(form.terms) else _over(form, expr.graph, kept)
 
 
-def summands(expr: Expr) -> list[Expr]:
-    """The terms of a sum as it is built: expr = sum of summands."""
-    result, stack = [], [(expr, 1)]
-    while stack:
-        node, sign = stack.pop()
-        if node.op in ("add", "sub"):
-            stack += [(node.args[1], sign if node.op == "add" else -sign), (node.args[0], sign)]
-        elif node.op == "neg":
-            stack.append((node.args[0], -sign))
-        else:
-            result.append(node if sign > 0 else -node)
-    return result
+def needed(expr: Expr, limit: int = LIMIT) -> frozenset[str]:
+    """The symbols in the canonical form; all that occur, where it has more than ``limit`` terms."""
+    try:
+        form = expand(expr, limit)
+    except (TooLarge, ZeroDivisionError):
+        return symbols_of([expr])
+    return symbols_of(_atoms((*form.terms, *form.denominator)))
 
 
 def _atoms(terms: Iterable[Term]) -> list[Expr]:

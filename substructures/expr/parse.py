@@ -31,14 +31,42 @@ def parse(graph: Graph, text: str, lookup: Callable[[str], Expr | None]) -> Expr
     """
     stack: list[Expr] = []
     for step in read(text):
-        if step.op in LEAVES:
-            stack.append(_leaf(graph, step, lookup))
-            continue
-        try:
-            stack.append(_node(step, stack))
-        except (TooLarge, ValueError, ZeroDivisionError) as error:
-            raise ExpressionError(str(error), step.column) from None
+        _carry_out(graph, step, lookup, stack)
     return stack.pop()
+
+
+def parse_terms(graph: Graph, text: str, lookup: Callable[[str], Expr | None]) -> list[Expr]:
+    """The terms of an expression as it is written: what ``+`` and ``-`` join, whose sum it is. Raises as :func:`parse`.
+
+    >>> graph = Graph()
+    >>> len(parse_terms(graph, "x*(1 + x) - (x - 2)", {"x": graph.symbol("x")}.get))
+    3
+    """
+    stack: list[list[Expr]] = []
+    for step in read(text):
+        if step.op in ("add", "sub"):
+            last = stack.pop()
+            stack[-1] = stack[-1] + (last if step.op == "add" else [-term for term in last])
+        elif step.op == "neg":
+            stack[-1] = [-term for term in stack[-1]]
+        else:
+            count = 0 if step.op in LEAVES else 2 if step.op in _ARITHMETIC else 1
+            operands = [graph.sum(terms) for terms in stack[len(stack) - count :]]
+            del stack[len(stack) - count :]
+            _carry_out(graph, step, lookup, operands)
+            stack.append(operands)
+    return stack.pop()
+
+
+def _carry_out(graph: Graph, step: Step, lookup: Callable[[str], Expr | None], stack: list[Expr]) -> None:
+    """A step on the stack."""
+    if step.op in LEAVES:
+        stack.append(_leaf(graph, step, lookup))
+        return
+    try:
+        stack.append(_node(step, stack))
+    except (TooLarge, ValueError, ZeroDivisionError) as error:
+        raise ExpressionError(str(error), step.column) from None
 
 
 def _leaf(graph: Graph, step: Step, lookup: Callable[[str], Expr | None]) -> Expr:

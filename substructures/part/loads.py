@@ -52,11 +52,15 @@ class Spring:
 
 @dataclass(frozen=True)
 class Loads:
-    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index, potentials."""
+    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index, potentials.
+
+    ``joint_terms``: the terms of the joint forces as they are written.
+    """
 
     wrenches: tuple[AppliedWrench, ...]
     springs: tuple[Spring, ...]
     joint_forces: dict[int, Expr]
+    joint_terms: dict[int, list[Expr]]
     potentials: tuple[Expr, ...] = ()
 
 
@@ -86,6 +90,7 @@ def read_loads(m: Mechanism) -> Loads:
     wrenches: list[AppliedWrench] = []
     springs: list[Spring] = []
     forces: dict[int, Expr] = {}
+    terms: dict[int, list[Expr]] = {}
     potentials: list[Expr] = []
     for i, load in enumerate(m.definition.loads):
         pointer = f"/loads/{i}"
@@ -96,9 +101,9 @@ def read_loads(m: Mechanism) -> Loads:
         elif isinstance(load, PotentialLoad):
             potentials.append(_potential(m, load, pointer, lookup))
         else:
-            _joint_force(m, load, pointer, lookup, forces)
+            _joint_force(m, load, pointer, lookup, forces, terms)
     m.scope.finish()
-    return Loads(tuple(wrenches), tuple(springs), forces, tuple(potentials))
+    return Loads(tuple(wrenches), tuple(springs), forces, terms, tuple(potentials))
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
@@ -152,12 +157,20 @@ def _potential(m: Mechanism, load: PotentialLoad, pointer: str, lookup: Lookup) 
     return energy
 
 
-def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
+def _joint_force(
+    m: Mechanism,
+    load: JointLoad,
+    pointer: str,
+    lookup: Lookup,
+    forces: dict[int, Expr],
+    terms: dict[int, list[Expr]],
+) -> None:
     if load.coordinate not in m.topology.coordinates:
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
         return
     a = m.topology.coordinates.index(load.coordinate)
     forces[a] = forces.get(a, m.graph.zero) + m.scope.read(load.force, f"{pointer}/force", lookup)
+    terms.setdefault(a, []).extend(m.scope.terms(load.force, f"{pointer}/force", lookup))
 
 
 @dataclass(frozen=True)
@@ -177,8 +190,8 @@ def applied_forces(
     """
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
-    #: given as formulas: whether they have a potential is to be found out
-    given = list(forces)
+    #: terms of those that are given as formulas: whether they have a potential is to be found out
+    given = [list(loads.joint_terms.get(a, ())) for a in range(len(m.joints))]
     potential = zero
     for a, entry in enumerate(m.topology.joints):
         stretch = m.graph.symbol(entry.coordinate) - m.laws[a].rest
@@ -195,7 +208,7 @@ def applied_forces(
     return forces, potential + found_potential(m, given)
 
 
-def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[Expr]) -> Expr:
+def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[list[Expr]]) -> Expr:
     """Adds Q_a = -k (q - rest) - c q' and the stops; returns V, k (q - rest)^2 / 2 where k and rest are no functions of
     the state. Where they are, the force is ``given`` as a formula.
     """
@@ -205,7 +218,7 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
         forces[a] = forces[a] - law.damping * velocity(m, a)
     energy = m.graph.zero
     if depends_on_state(m.topology, law.stiffness, law.rest):
-        given[a] = given[a] - law.stiffness * stretch
+        given[a].append(-(law.stiffness * stretch))
     else:
         energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)
     return energy if law.stops is None else energy + _stop_force(m, a, law.stops, forces)

@@ -11,7 +11,7 @@ from typing import Any
 from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.operations import Output
 from substructures.expr.program import Program, program
-from substructures.part.certificate import certify_part, told_agreement
+from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
@@ -234,11 +234,13 @@ def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float
 def recheck(part: Part) -> dict[str, Any]:
     """The certificate of a stored part made anew, of the program as it is stored.
 
-    Raises VerificationFailed when the program disagrees with the definition, InvalidDocument as :func:`derive`.
+    Raises VerificationFailed when the program disagrees with the definition, or when less can be said of it than the
+    stored certificate says, InvalidDocument as :func:`derive`.
     """
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
     certificate = _certificate(m, part.program, check_units(m.definition, m.topology), 0.0)
+    require_no_less(part.certificate, certificate)
     return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
 
 
