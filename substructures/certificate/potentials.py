@@ -139,7 +139,7 @@ def _at_rest(forces: Forces, a: int, names: Mapping[str, Ball]) -> _Given:
     """What is left of the force on a joint."""
     kept: list[Steps] = []
     whole, exact = arb(0), True
-    for term in (t for steps in forces.given[a] for t in summands(steps)):
+    for term in (t for steps in forces.given[a] for t in summands(steps, "t")):
         if "t" in names_of(term) and not slope(term, names, "t").contains(0):
             continue
         here = value(term, names)

@@ -218,7 +218,10 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
         forces[a] = forces[a] - law.damping * velocity(m, a)
     energy = m.graph.zero
     if depends_on_state(m.topology, law.stiffness, law.rest):
-        given[a].append(-(law.stiffness * stretch))
+        k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
+        lookup = load_names(m.scope, m.definition, m.topology)
+        terms = m.scope.terms(f"-({k})*({m.topology.coordinates[a]} - ({rest}))", "", lookup)
+        given[a] += terms or [-(law.stiffness * stretch)]
     else:
         energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)
     return energy if law.stops is None else energy + _stop_force(m, a, law.stops, forces)

@@ -78,12 +78,14 @@ class Scope:
         return self.graph.zero
 
     def terms(self, value: Any, pointer: str, lookup: Lookup | None = None) -> list[Expr]:
-        """The terms of an expression as it is written, whose sum it is; none after a fault that :meth:`read` notes."""
+        """The terms of an expression as it is written, what names the time apart, whose sum it is; none after a fault
+        that :meth:`read` notes.
+        """
         value = in_si(value)
         if not isinstance(value, str):
             return [self.read(value, pointer)]
         try:
-            return parse_terms(self.graph, value, lookup or self.names.get)
+            return parse_terms(self.graph, value, lookup or self.names.get, "t")
         except (ValueError, ArithmeticError, TooLarge):
             return []
 
