@@ -19,6 +19,7 @@ from substructures.certificate.bodies import (
     of_step,
 )
 from substructures.certificate.linear import Ball, Matrix, cross, dot, zeros
+from substructures.certificate.linear import vector as triple
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import Steps, difference, names_of, negative, product, slope
 from substructures.expr.direct import steps_of
@@ -32,7 +33,8 @@ class Forces:
     ``potential``: V of springs, stops and potentials in closed form, ``slopes`` its -dV/dq^a; ``dead``, ``dead_slopes``
     the same of forces that are constant in the world.
     Of two kinds of forces potentials may have been found: ``given`` as formulas, by joint; ``bent``, of springs whose
-    stiffness or length depends on coordinates, as far as they are gradients.
+    stiffness or length depends on coordinates, as far as they are gradients. ``steady``: the same of forces and torques
+    on bodies that depend on coordinates and parameters alone.
     ``joints``: of the definition; ``prefix``: of its names; ``like``: the forces at a random state, where these are at
     one at which numbers may not change with coordinates that they depend on.
     """
@@ -55,6 +57,7 @@ class Forces:
         self.dead_slopes: dict[int, Ball] = {}
         self.given: dict[int, list[Steps]] = {}
         self.bent: list[dict[int, Ball]] = []
+        self.steady: list[dict[int, Ball]] = []
         self.places: list[tuple[Matrix, Matrix]] = []
         self.index = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
         self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in joints}
@@ -156,6 +159,10 @@ def _force(found: Forces, load: Plain) -> None:
         # V = -F . x
         found.dead -= dot(F, x)
         _add(found.dead_slopes, Q)
+    else:
+        # d_b Q_a - d_a Q_b = d_b F . u_a - d_a F . u_b, as d_b u_a = d_b d_a x
+        changes = _changes(found, load, frame, F)
+        _steady(found, load, Q, {(a, b): dot(changes[b], u_a) for a, u_a in u.items() for b in changes})
     _keep(found, frame, x, load, given)
 
 
@@ -164,8 +171,37 @@ def _torque(found: Forces, load: Plain) -> None:
     frame = found.bodies.frames[found.prefix + load["body"]]
     given = found.numbers.vector(load["vector"])
     M = given if load.get("frame") == "world" else frame.A * given
-    _add(found.wrenches, {a: dot(M, found.bodies.joints[a].w) for a in found.bodies.path(frame.carrier)})
+    w = {a: found.bodies.joints[a].w for a in found.bodies.path(frame.carrier)}
+    Q = {a: dot(M, w_a) for a, w_a in w.items()}
+    _add(found.wrenches, Q)
+    # d_b Q_a = d_b M . w_a + M . (w_b x w_a), the last where the axis a is carried by the joint b
+    changes = _changes(found, load, frame, M)
+    turned = {(a, b): dot(M, cross(w[b], w_a)) for a, w_a in w.items() for b in w if b < a}
+    rates = {(a, b): dot(changes[b], w_a) + turned.get((a, b), arb(0)) for a, w_a in w.items() for b in changes}
+    _steady(found, load, Q, rates)
     _keep(found, frame, None, load, given)
+
+
+def _changes(found: Forces, load: Plain, frame: Frame, vector: Matrix) -> dict[int, Matrix]:
+    """d_b F in the world by joint: of the numbers with the coordinates, and of axes that turn with the body."""
+    is_world = load.get("frame") == "world"
+    changes: dict[int, Matrix] = {}
+    for a in {*found.bodies.path(frame.carrier), *found.joints}:
+        name = found.bodies.joints[a].coordinate.rpartition(".")[2] if a in found.joints else ""
+        slopes = triple(*(slope(x, found.numbers.names, name) for x in load["vector"]))
+        changes[a] = slopes if is_world else frame.A * slopes
+    if not is_world:
+        for a in found.bodies.path(frame.carrier):
+            changes[a] = changes[a] + cross(found.bodies.joints[a].w, vector)
+    return changes
+
+
+def _steady(found: Forces, load: Plain, Q: Mapping[int, Ball], rates: Mapping[tuple[int, int], Ball]) -> None:
+    """Notes a load of coordinates and parameters alone whose curl d_b Q_a - d_a Q_b is zero; ``rates``: d_b Q_a."""
+    known = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
+    curl = (rate - rates.get((b, a), arb(0)) for (a, b), rate in rates.items())
+    if all(names_of(steps_of(x)) <= known for x in load["vector"]) and all(x.contains(0) for x in curl):
+        found.steady.append(dict(Q))
 
 
 def _keep(found: Forces, frame: Frame, x: Matrix | None, load: Plain, given: Matrix) -> None:

@@ -53,6 +53,8 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
     gravity = numbers.vector(tree.get("gravity", NONE))
     _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
+    for each in acting:
+        each.bent += each.steady
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
         known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])

@@ -23,7 +23,7 @@ from substructures.expr.expand import Expanded, Term, expand, is_zero
 from substructures.expr.generators import times_power
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin
-from substructures.expr.walk import reachable
+from substructures.expr.walk import reachable, transfer
 
 #: terms of a force that is integrated
 LIMIT = 2_000
@@ -54,6 +54,16 @@ def potential(forces: Sequence[Expr], names: Sequence[str], limit: int = LIMIT) 
         return result if all(is_zero(gap, limit) for gap in gaps) else None
     except (TooLarge, ZeroDivisionError):
         return None
+
+
+def from_zero(energy: Expr, names: Iterable[str]) -> Expr:
+    """V less its value where all coordinates are 0; as it is where it has none there."""
+    graph = energy.graph
+    try:
+        (start,) = transfer([energy], graph, dict.fromkeys(names, graph.zero))
+    except ZeroDivisionError:
+        return energy
+    return energy - start
 
 
 def antiderivative(expr: Expr, name: str, limit: int = LIMIT) -> Expr | None:

@@ -77,7 +77,7 @@ def _told_apart(graph: Graph, step: Step, operands: list[_Terms]) -> _Terms:
     whole = carried_out(operands)
     if not any(named for terms in operands for _, named in terms):
         return [(whole, False)]
-    without = [[(x, named) for x, named in terms if not named] for terms in operands]
+    without: list[_Terms] = [[(x, named) for x, named in terms if not named] for terms in operands]
     splits = step.op in ("mul", "pow") or (step.op == "div" and without[1] == operands[1])
     if not splits or not all(without) or (step.op == "pow" and int(step.value or 0) < 1):
         return [(whole, True)]

@@ -6,7 +6,7 @@ their generalised forces are complete without a host. Forces and torques act on 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -81,6 +81,18 @@ def dead_loads(definition: Definition) -> tuple[bool, ...]:
         and all(names_in(x) <= definition.parameters.keys() for x in load.vector)
         for load in definition.loads
         if isinstance(load, (ForceLoad, TorqueLoad))
+    )
+
+
+def steady_loads(definition: Definition, coordinates: Iterable[str]) -> tuple[bool, ...]:
+    """Of every force and torque, whether its vector depends on coordinates and parameters alone, but for those with a
+    potential in closed form (:func:`dead_loads`).
+    """
+    known = definition.parameters.keys() | set(coordinates)
+    loads = (load for load in definition.loads if isinstance(load, (ForceLoad, TorqueLoad)))
+    return tuple(
+        not is_dead and all(names_in(x) <= known for x in load.vector)
+        for load, is_dead in zip(loads, dead_loads(definition), strict=True)
     )
 
 

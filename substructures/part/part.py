@@ -15,7 +15,7 @@ from substructures.part.certificate import certify_part, require_no_less, told_a
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
-from substructures.part.loads import dead_loads, read_loads, wrench_places
+from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.topology import BASE, Topology, christoffel_entries, expected_operations, topology
 from substructures.part.units import UnitCheck, check_units, described, uncounted, without_effect
@@ -113,6 +113,11 @@ class Part:
     def wrenches(self) -> tuple[tuple[int, bool, bool], ...]:
         """(carrier, is a moment, in world axes) of every force and torque load."""
         return wrench_places(self.definition, self.topology.carrier)
+
+    @cached_property
+    def steady_loads(self) -> tuple[bool, ...]:
+        """Of every force and torque, whether it may have a potential that is to be found."""
+        return steady_loads(self.definition, self.coordinates)
 
     @cached_property
     def dead_loads(self) -> tuple[bool, ...]:

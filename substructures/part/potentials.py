@@ -14,7 +14,7 @@ from substructures.errors import TooLarge
 from substructures.expr.differentiate import derivative, gradient
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr
-from substructures.expr.integrate import LIMIT, filtered, needed, potential, symbols_of
+from substructures.expr.integrate import LIMIT, filtered, from_zero, needed, potential, symbols_of
 from substructures.expr.walk import transfer
 from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
@@ -37,16 +37,7 @@ def spring_potential(m: Mechanism, forces: Mapping[int, Expr], pointer: str) -> 
     if found is None:
         message = "the force of this spring depends on the state, and no potential of it was found"
         m.scope.notices.append({"pointer": pointer, "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
-    return m.graph.zero if found is None else _from_zero(m, found)
-
-
-def _from_zero(m: Mechanism, energy: Expr) -> Expr:
-    """V less its value where all coordinates are 0; as it is where it has none there."""
-    try:
-        (start,) = transfer([energy], m.graph, dict.fromkeys(m.topology.coordinates, m.graph.zero))
-    except ZeroDivisionError:
-        return energy
-    return energy - start
+    return m.graph.zero if found is None else from_zero(found, names)
 
 
 def found_potential(m: Mechanism, forces: Sequence[Sequence[Expr]]) -> Expr:
@@ -65,7 +56,7 @@ def found_potential(m: Mechanism, forces: Sequence[Sequence[Expr]]) -> Expr:
             on = ", ".join(f"'{names[a]}'" for a in group if not held[a].is_zero)
             message = f"no potential was found of all forces of joints and loads on {on}"
             m.scope.notices.append({"pointer": "/loads", "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
-    return _from_zero(m, result)
+    return from_zero(result, names)
 
 
 def _at_rest(m: Mechanism, terms: Sequence[Expr], steady: frozenset[str]) -> Expr:
