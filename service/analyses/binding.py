@@ -15,7 +15,7 @@ from substructures.errors import Fault, InvalidInput, listed
 from substructures.expr.bind import bind
 from substructures.expr.dimensions import Dimensioned
 from substructures.expr.program import Program
-from substructures.part.units import UnitCheck, dimension_of
+from substructures.expr.unit_check import UnitCheck, dimension_of
 
 Parameters = Mapping[str, Mapping[str, Any]]
 DEFAULTS, PLACE = "defaults", "/query/bind"
@@ -68,5 +68,5 @@ def unit_faults(name: str, value: str | Quantity, parameters: Parameters) -> lis
     known = {n: dimension_of(str(p.get("unit", ""))) for n, p in parameters.items()}
     expected = known.get(name, "unknown")
     check = UnitCheck(lambda n: known.get(n, "unknown"))
-    check.check(iter([(PLACE, value, expected.dimension if isinstance(expected, Dimensioned) else None)]), False)
+    check.check([(PLACE, value, expected.dimension if isinstance(expected, Dimensioned) else None)], False)
     return [Fault(PLACE, fault.code, f"'{name[:80]}': {fault.message}") for fault in check.faults]

@@ -19,7 +19,7 @@ from substructures.documents.units import Dimension, si_text
 from substructures.errors import Fault, InvalidArgument
 from substructures.expr.dimensions import Dimensioned, DimensionError, Inference, Inferred
 from substructures.expr.syntax import ExpressionError, read
-from substructures.part.units import UnitCheck, dimension_of
+from substructures.expr.unit_check import UnitCheck, dimension_of
 from substructures.quantities.measured import PlaceUnits, si_values
 from substructures.tree.model import EFFORTS, Model
 

@@ -26,9 +26,9 @@ from substructures.mechanics.linear3 import (
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
+from substructures.part.parameters import si_unit
 from substructures.part.scope import Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
-from substructures.part.units import si_unit
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 

@@ -11,14 +11,16 @@ from typing import Any
 from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.operations import Output
 from substructures.expr.program import Program, program
+from substructures.expr.unit_check import UnitCheck
 from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
+from substructures.part.parameters import described, uncounted, without_effect
 from substructures.part.topology import BASE, Topology, christoffel_entries, expected_operations, topology
-from substructures.part.units import UnitCheck, check_units, described, uncounted, without_effect
+from substructures.part.units import check_units
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))

@@ -19,7 +19,7 @@ from substructures.documents import escape
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import InvalidArgument
 from substructures.expr.dimensions import Dimensioned
-from substructures.part.units import dimension_of
+from substructures.expr.unit_check import dimension_of
 
 #: the SI unit of a place, empty where it is not known: one for all numbers, or by name (of lists: in that order)
 PlaceUnits = str | Mapping[str, "PlaceUnits"]

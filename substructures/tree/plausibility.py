@@ -18,9 +18,10 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import value
 from substructures.expr.syntax import ExpressionError
+from substructures.expr.unit_check import Notice
 from substructures.part.definition import Body, Definition
+from substructures.part.parameters import names_in_limits
 from substructures.part.topology import topology
-from substructures.part.units import Notice, names_in_limits
 from substructures.tree.document import TreeSpec
 
 #: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
