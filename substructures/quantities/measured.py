@@ -23,6 +23,7 @@ from substructures.expr.unit_check import dimension_of
 
 #: the SI unit of a place, empty where it is not known: one for all numbers, or by name (of lists: in that order)
 PlaceUnits = str | Mapping[str, "PlaceUnits"]
+_PLAIN = frozenset((float, int, Decimal, str, bool, type(None)))
 
 
 def si_values(given: Any, units: PlaceUnits, pointer: str) -> Any:
@@ -33,10 +34,10 @@ def si_values(given: Any, units: PlaceUnits, pointer: str) -> Any:
     >>> si_values([{"value": 1200, "unit": "mm"}, 2], "m", "/q")
     [1.2, 2]
     """
+    if _is_plain(given):
+        return given
     if isinstance(given, Mapping):
         return _of_mapping(given, units, pointer)
-    if not isinstance(given, list | tuple) or not any(map(_may_have_units, given)):
-        return given
     each = list(units.items()) if isinstance(units, Mapping) else []
     return [
         si_values(x, units if isinstance(x, list | tuple) or not each else dict(each[i : i + 1]), f"{pointer}/{i}")
@@ -44,8 +45,14 @@ def si_values(given: Any, units: PlaceUnits, pointer: str) -> Any:
     ]
 
 
-def _may_have_units(x: Any) -> bool:
-    return isinstance(x, Mapping | list | tuple) and bool(x)
+def _is_plain(given: Any) -> bool:
+    """Whether nothing in it can have a unit: numbers, lists of them, and lists of these, are told by their types."""
+    kind = type(given)
+    if kind is not list and kind is not tuple:
+        return kind in _PLAIN or not isinstance(given, Mapping | list | tuple)
+    if _PLAIN.issuperset(map(type, given)):
+        return True
+    return all(type(row) is list and _PLAIN.issuperset(map(type, row)) for row in given)
 
 
 def _of_mapping(given: Mapping[str, Any], units: PlaceUnits, pointer: str) -> Any:

@@ -52,7 +52,6 @@ class States:
 
 def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> States:
     """q, qd, qdd of arguments. One q holds for all velocities, times, inputs, ... Raises InvalidArgument."""
-    given = {**given, **{name: si_values(given.get(name), model.state_units[name], f"/{name}") for name in STATE}}
     q = _state(model, given.get("q"), "q")
     if q is None:
         if model.dof:
@@ -106,6 +105,7 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
     """(N, n) array of a state, and whether it was (n,)."""
     if given is None:
         return None
+    given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
         given = _by_name(model, given, name)
     values = numeric(given, f"/{name}")
