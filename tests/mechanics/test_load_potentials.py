@@ -108,6 +108,8 @@ def test_what_has_none(name: str) -> None:
     q = np.array([[0.4, 0.3]])
     found = evaluate(model, ["potential_energy", "forces"], q=q)
     assert found["potential_energy"][0] == 0
+    # nor does the certificate say that something is left out
+    assert "potential_left_out" not in model.certificate["direct_form"]
     assert np.abs(found["forces"]).max() > 0.1
 
 
