@@ -17,7 +17,7 @@ from substructures.tree.coupling import place, wrench_forces
 from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: terms of a generalised force that is integrated
-LIMIT = 200
+LIMIT = 50
 #: outputs of parts that poses, columns and loads are made of
 PLACED = (
     *("E.tilt", "E.turn", "E.full", "Z", "tau", "U", "Omega"),
