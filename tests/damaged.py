@@ -16,6 +16,7 @@ from substructures import Model, Part, TreeSpec
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Operation, Program
+from substructures.part.certificate import require_no_less
 from substructures.part.part import recheck
 from substructures.tree.certificate import certify_tree
 
@@ -94,7 +95,8 @@ def found_in_part(part: Part, wrong: Program) -> str | None:
 
 def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: Program) -> str | None:
     try:
-        certify_tree(spec, {name: part.definition for name, part in parts.items()}, model.summary(), wrong)
+        definitions = {name: part.definition for name, part in parts.items()}
+        require_no_less(model.certificate, certify_tree(spec, definitions, model.summary(), wrong))
     except VerificationFailed as error:
         return str(error)
     return None

@@ -53,7 +53,7 @@ class Analysis:
 
     def read(self, body: Any, model: Model) -> BaseModel:
         """The body of a request about a tree. Raises InvalidInput with pointers."""
-        return read_request(self.schema, body, bool(model.closures), model.units)
+        return read_request(self.schema, body, model)
 
     def compute(self, source: Source, body: Any, report: ProgressReport) -> Answered:
         """The result for the body of a request, with warnings about it. Raises InvalidInput with pointers into it,

@@ -1,4 +1,4 @@
-"""Formulas as text: which outputs a quantity has, numbers in place of parameters, and the formats."""
+"""Formulas as text: which outputs a quantity has, and the formats."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 import orjson
 
+from service.analyses.binding import bound
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
-from service.refusals import not_found, unprocessable
-from substructures.errors import InvalidInput, TooLarge, listed
-from substructures.expr.bind import bind
+from service.refusals import not_found
+from substructures.errors import TooLarge
 from substructures.expr.program import Program
 from substructures.printers import entries, render
 from substructures.printers.render import LIMIT
@@ -81,35 +81,6 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
         return {}, sources.model.parameters
     found = sources.columns()
     return {"columns": {"names": found.names, "units": found.units}}, found.parameters
-
-
-def bound(program: Program, parameters: Mapping[str, Mapping[str, Any]], text: str) -> Program:
-    """The program with numbers in place of parameters; ``text`` is ``name:value,...`` and may contain ``defaults``.
-
-    Raises Refused 422 naming the parameter.
-    """
-    values: dict[str, Any] = {}
-    for item in filter(None, (item.strip() for item in text.split(","))):
-        name, colon, value = item.partition(":")
-        if item == "defaults":
-            given = {n: p["value"] for n, p in parameters.items() if p.get("value") is not None}
-            values = {**given, **values}
-        elif not colon:
-            raise unprocessable("bind", f"'{item[:80]}' is not name:value", "/query/bind")
-        elif name not in parameters:
-            message = f"there is no parameter '{name[:80]}'; there are {listed(parameters)}"
-            raise unprocessable("unknown-parameter", message, "/query/bind")
-        else:
-            values[name] = value
-    used = {symbol.name for symbol in program.symbols}
-    chosen = {name: value for name, value in values.items() if name in used}
-    if not chosen:
-        return program
-    try:
-        return bind(program, chosen)
-    except InvalidInput as error:
-        message = "; ".join(fault.message for fault in error.faults)
-        raise unprocessable("bind", message, "/query/bind") from None
 
 
 def text_of(

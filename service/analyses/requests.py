@@ -7,38 +7,22 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from service.schemas.measured import read_measured
 from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.parts import RequestPart
-from substructures.documents import pointer_step, read_model
 from substructures.errors import InvalidDocument
-from substructures.quantities.states import NO_UNITS, si_numbers
+from substructures.tree.model import Model
 
 
-def read_request(
-    schema: type[BaseModel], body: Any, is_closed: bool = False, units: Mapping[str, str] = NO_UNITS
-) -> BaseModel:
-    """The body of a request about a tree, ``is_closed``: with closures, ``units``: of its parameters and inputs in SI.
+def read_request(schema: type[BaseModel], body: Any, model: Model | None = None) -> BaseModel:
+    """The body of a request about a tree, numbers in SI; without the model names are not looked at.
 
     Raises InvalidInput with pointers.
     """
     if not isinstance(body, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
-    body = {**body, **{field: _in_si(body[field], field, units) for field in ("parameters", "inputs") if field in body}}
-    return read_model(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body)
-
-
-def _in_si(given: Any, field: str, units: Mapping[str, str]) -> Any:
-    """Values by name, those with a unit converted."""
-    if not isinstance(given, Mapping):
-        return given
-    return {
-        name: si_numbers(x, units.get(name, ""), f"/{field}{pointer_step(name)}") if _has_unit(x) else x
-        for name, x in given.items()
-    }
-
-
-def _has_unit(given: Any) -> bool:
-    return isinstance(given, Mapping) and "unit" in given
+    is_closed = model is not None and bool(model.closures)
+    return read_measured(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body, model)
 
 
 def _motion(body: Mapping[str, Any], is_closed: bool) -> type[BaseModel]:

@@ -18,13 +18,16 @@ from substructures.formats import arrow
 from substructures.formats.arrays import flat, read_npz
 from substructures.formats.columns import has_rows, request_of
 from substructures.quantities.evaluation import Sources
-from substructures.quantities.states import numeric, read_states
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states
+from substructures.tree.model import Model
 
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
 _CONSTANTS = ("quantities", "parameters", "inputs", "along", "t")
 
-Evaluate = Callable[[EvaluationRequest], Mapping[str, Any]]
+#: of a request, and the number of its first state
+Evaluate = Callable[[EvaluationRequest, int], Mapping[str, Any]]
 
 
 def npz_request(file: IO[bytes], limits: Limits) -> EvaluationRequest:
@@ -49,8 +52,8 @@ def arrow_requests(file: IO[bytes], limits: Limits) -> Iterator[EvaluationReques
         raise InvalidDocument.at("/q", "missing", "the stream has no states")
 
 
-def joined(requests: Iterable[EvaluationRequest], limits: Limits) -> EvaluationRequest:
-    """One request of all record batches, for an answer in one piece. Raises TooLarge."""
+def joined(model: Model, requests: Iterable[EvaluationRequest], limits: Limits) -> EvaluationRequest:
+    """One request of all record batches, for an answer in one piece. Raises TooLarge, InvalidArgument."""
     kept, size = [], 0
     for request in requests:
         kept.append(request)
@@ -61,7 +64,7 @@ def joined(requests: Iterable[EvaluationRequest], limits: Limits) -> EvaluationR
         return kept[0]
     batches = [_arrays(request) for request in kept]
     columns = {name: np.concatenate([each[name] for each in batches]) for name in batches[0]}
-    return EvaluationRequest.read(request_of({}, flat(kept[0].given()) | columns))
+    return EvaluationRequest.read(request_of({}, flat(kept[0].in_si(model).given()) | columns))
 
 
 def _arrays(request: EvaluationRequest) -> dict[str, Array]:
@@ -72,6 +75,7 @@ def split(sources: Sources, request: EvaluationRequest, limits: Limits) -> Itera
     """Check the numbers of a request, and cut it into parts whose results are of moderate size and have a leading axis
     also for a single state. Raises InvalidInput.
     """
+    request = request.in_si(sources.model)
     states = read_states(sources.model, request.arguments(), limits.states)
     given = {**request.given(), "q": states.q}
     if states.single:
@@ -119,9 +123,23 @@ def _without(answer: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
 def as_arrow(
     evaluate: Evaluate, cuts: Iterable[Iterable[EvaluationRequest]], quantities: Iterable[str]
 ) -> Iterator[memoryview | bytes]:
-    """The answer as an Arrow stream: a record batch for every part, null where a state has no result."""
+    """The answer as an Arrow stream: a record batch for every part, null where a state has no result.
+
+    Warnings about the values of a part stand in its rows, since what comes first was sent before these were known.
+    """
     names = list(dict.fromkeys(quantities))
-    answers = (evaluate(part) for cut in cuts for part in cut)
+    answers = _answers(evaluate, (part for cut in cuts for part in cut))
     first = next(answers)
     metadata = {**_without(first, [*names, "count"]), "quantities": names}
     return arrow.write_tables((arrow.table_of(answer, names) for answer in chain([first], answers)), metadata)
+
+
+def _answers(evaluate: Evaluate, parts: Iterable[EvaluationRequest]) -> Iterator[Mapping[str, Any]]:
+    """The answers one after the other; a warning that is about no single state is told once."""
+    start, told = 0, list[Mapping[str, Any]]()
+    for part in parts:
+        answer = evaluate(part, start)
+        new = [each for each in answer["warnings"] if "state" in each or each not in told]
+        told += [each for each in new if "state" not in each]
+        start += answer["count"]
+        yield {**answer, "warnings": new}

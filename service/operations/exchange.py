@@ -68,7 +68,7 @@ class TreeEvaluation:
         """
         if wanted == arrow.MEDIA_TYPE:
             return streamed(self._arrow(iter(requests)), wanted)
-        return self.whole(batches.joined(requests, self.limits), wanted)
+        return self.whole(batches.joined(self.sources.model, requests, self.limits), wanted)
 
     def whole(self, request: EvaluationRequest, wanted: str) -> Answer | Stream:
         """The answer to one request in one piece, as JSON or npz. Raises as :meth:`answer`."""
@@ -90,14 +90,15 @@ class TreeEvaluation:
         evaluations.check_size(self.sources, request.quantities, states, self.limits, streamed=True)
         return batches.split(self.sources, request, self.limits)
 
-    def _plain(self, request: EvaluationRequest) -> dict[str, Any]:
-        return self._evaluated(request.arguments()).plain(self.digest)
+    def _plain(self, request: EvaluationRequest, first: int) -> dict[str, Any]:
+        return self._evaluated(request.arguments(), first).plain(self.digest)
 
-    def _evaluated(self, arguments: Mapping[str, Any]) -> Evaluation:
+    def _evaluated(self, arguments: Mapping[str, Any], first: int = 0) -> Evaluation:
         return evaluate(
             self.sources.model,
             **arguments,
             limit=self.limits.states,
             evaluator=self.evaluator,
             sources=self.sources,
+            first=first,
         )

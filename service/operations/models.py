@@ -9,7 +9,8 @@ from typing import Any
 
 import orjson
 
-from service.analyses.printing import Style, bound, check_quantity, described, model_quantity, quantities, text_of
+from service.analyses.binding import bound
+from service.analyses.printing import Style, check_quantity, described, model_quantity, quantities, text_of
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.queries.content import FormulaRow

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import orjson
 
 from service.operations.evaluations import check_size
 from service.operations.sources import tree_parts
@@ -15,9 +16,12 @@ from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.refusals import unprocessable
 from service.store import Store
+from substructures.documents.fields import Quantity, quantity_of
+from substructures.errors import InvalidArgument
 from substructures.part.part import Part
 from substructures.pictures.tree import picture
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.measured import si_values
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
@@ -36,18 +40,40 @@ class Scene:
     model: Model
 
 
-def read_pose(text: str | None, dof: int) -> PoseValues | None:
-    """The pose of ``?q=0.1,0.2``; None for the standard one. Raises Refused 422 with the pointer ``/query/q``."""
+def joints_of(tree: Tree) -> str:
+    """The kinds of a tree's joints, R and P."""
+    return str(orjson.loads(tree.summary)["joints"])
+
+
+def read_pose(text: str | None, joints: str) -> PoseValues | None:
+    """The pose of ``?q=0.1,30 deg``; None for the standard one. Raises Refused 422 with the pointer ``/query/q``.
+
+    ``joints``: the kind of every coordinate, R or P.
+    """
     if text is None:
         return None
     fields = [field.strip() for field in text.split(",")] if text.strip() else []
-    if len(fields) != dof:
-        raise unprocessable("q", f"expected {dof} comma separated numbers, found {len(fields)}", "/query/q")
-    for field in fields:
-        if not _NUMBER.fullmatch(field) or not math.isfinite(float(field)) or abs(float(field)) > LARGEST:
-            detail = f"'{field[:40]}' is no number between -{LARGEST:g} and {LARGEST:g} (rad or m)"
-            raise unprocessable("q", detail, "/query/q")
-    return tuple(map(float, fields))
+    if len(fields) != len(joints):
+        raise unprocessable("q", f"expected {len(joints)} comma separated numbers, found {len(fields)}", "/query/q")
+    return tuple(_coordinate(field, kind) for field, kind in zip(fields, joints, strict=True))
+
+
+def _coordinate(field: str, kind: str) -> float:
+    """A number in rad or m, or one with its unit."""
+    given = quantity_of(field)
+    number = str(given.value) if isinstance(given, Quantity) else given
+    value = math.nan
+    if _NUMBER.fullmatch(number) and math.isfinite(float(number)):
+        try:
+            plain = {"value": float(number), "unit": given.unit} if isinstance(given, Quantity) else float(number)
+            value = si_values(plain, {"R": "rad", "P": "m"}[kind], "/query/q")
+        except InvalidArgument as error:
+            (fault,) = error.faults
+            raise unprocessable(fault.code, f"'{field[:40]}': {fault.message}", "/query/q") from None
+    if not abs(value) <= LARGEST:
+        detail = f"'{field[:40]}' is no number between -{LARGEST:g} and {LARGEST:g} (rad or m)"
+        raise unprocessable("q", detail, "/query/q")
+    return value
 
 
 def draw_part(store: Store, version: Version, pose: PoseValues | None) -> str:

@@ -20,8 +20,8 @@ from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument, InvalidInput
+from substructures.part.parameters import counted
 from substructures.part.part import Part, derive
-from substructures.part.units import counted
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
 

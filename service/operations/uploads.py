@@ -104,6 +104,7 @@ def _parted(sources: Sources, request: EvaluationRequest, first: int) -> tuple[d
 
     ``first``: how many states came before.
     """
+    request = request.in_si(sources.model)
     rows, rest = parted(flat(request.given()))
     count = _length(rows) if rows else 1
     try:

@@ -20,7 +20,7 @@ HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
 }
-POSE = "pose: a number for every coordinate, in order, separated by commas; rad or m"
+POSE = "pose: a number for every coordinate, in order, separated by commas; rad or m, or with a unit: 30 deg"
 Q = Annotated[str | None, Query(max_length=100_000, description=POSE)]
 DRAWN: dict[int | str, dict[str, Any]] = {
     200: {"description": "The picture", "content": {MEDIA_TYPE: {"schema": {"type": "string"}}}}
@@ -34,7 +34,7 @@ def substructure_picture(ref: str, request: Request, store: StoreOf, q: Q = None
     """A part alone, in the pose given or in one that shows its joints."""
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
-    pose = pictures.read_pose(q, version.dof)
+    pose = pictures.read_pose(q, version.joints)
     pinned = is_pinned(ref)
     return _answer(request, version.digest, pose, pinned, lambda: pictures.draw_part(store, version, pose))
 
@@ -44,7 +44,7 @@ def tree_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Res
     """A tree, in the pose given or in one that shows its joints."""
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
-    pose = pictures.read_pose(q, tree.dof)
+    pose = pictures.read_pose(q, pictures.joints_of(tree))
     pinned = is_pinned(ref)
     return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
 

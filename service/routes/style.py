@@ -18,7 +18,9 @@ async def style_of(
     form: Annotated[
         str, Query(description="compact (shared subexpressions) or expanded", json_schema_extra={"enum": [*FORMS]})
     ] = "compact",
-    bind: Annotated[str, Query(max_length=100_000, description="name:value,... or defaults")] = "",
+    bind: Annotated[
+        str, Query(max_length=100_000, description="name:value,... or defaults; a value may be 1200 mm")
+    ] = "",
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:
     """The style that a request asks for."""

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from service.schemas.measured import BY_NAME, COORDINATES, SECONDS, VELOCITIES
 from service.schemas.parts import RequestPart
 from substructures.analysis.control import nonlinear_program, problem
 from substructures.documents import DocumentPart
@@ -15,6 +16,9 @@ from substructures.documents import DocumentPart
 LIMIT = "largest relative error by the size of steps in a right result, by a second run with steps half as long"
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+Constants = Annotated[dict[str, Finite], BY_NAME]
+#: one number, or one for each node
+ByControl = Annotated[dict[str, Any], BY_NAME]
 
 
 class Cost(RequestPart):
@@ -37,15 +41,15 @@ class ControlProblem(DocumentPart):
 
     controls: tuple[str, ...] = Field(min_length=1, description="names of inputs")
     cost: Cost = Cost()
-    horizon: float = Field(gt=0, allow_inf_nan=False, description="s")
+    horizon: Annotated[float, SECONDS] = Field(gt=0, allow_inf_nan=False, description="s")
     intervals: int = Field(ge=1, le=problem.MAX_INTERVALS)
     steps: int = Field(1, ge=1, le=10_000, description="Runge-Kutta steps in each interval")
     hold: Literal["constant", "linear"] = "linear"
-    q: Any = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
-    qd: Any = Field(None, description="rad/s, m/s; default: at rest")
-    t: float = Field(0.0, allow_inf_nan=False, description="when it starts, s")
-    inputs: dict[str, Finite] = Field({}, description="constant values of the other inputs; default: zero")
-    parameters: dict[str, Finite] = Field({}, description="instead of their defaults")
+    q: Annotated[Any, COORDINATES] = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
+    qd: Annotated[Any, VELOCITIES] = Field(None, description="rad/s, m/s; default: at rest")
+    t: Annotated[float, SECONDS] = Field(0.0, allow_inf_nan=False, description="when it starts, s")
+    inputs: Constants = Field({}, description="constant values of the other inputs; default: zero")
+    parameters: Constants = Field({}, description="instead of their defaults")
 
 
 #: of requests with a second run
@@ -55,7 +59,7 @@ ErrorLimit = Annotated[float, Field(gt=0, allow_inf_nan=False, description=LIMIT
 class GradientRequest(ControlProblem):
     """A problem with controls."""
 
-    values: dict[str, Any] = Field({}, description="by control: one number, or one for each node; default: zero")
+    values: ByControl = Field({}, description="by control: one number, or one for each node; default: zero")
     vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
     error_limit: ErrorLimit = problem.ERROR_LIMIT
 
@@ -63,8 +67,8 @@ class GradientRequest(ControlProblem):
 class End(RequestPart):
     """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
 
-    q: list[float | None] | dict[str, float | None] = Field({}, description="rad, m")
-    qd: list[float | None] | dict[str, float | None] = Field({}, description="rad/s, m/s")
+    q: Annotated[list[float | None] | dict[str, float | None], COORDINATES] = Field({}, description="rad, m")
+    qd: Annotated[list[float | None] | dict[str, float | None], VELOCITIES] = Field({}, description="rad/s, m/s")
 
     def value(self) -> nonlinear_program.End:
         """As the science takes it."""
@@ -75,8 +79,10 @@ class OptimalControlRequest(ControlProblem):
     """A problem with demands, bounds and a guess."""
 
     end: End = End()
-    bounds: dict[str, tuple[float | None, float | None]] = Field({}, description="least and largest value by control")
-    guess: dict[str, Any] = Field({}, description="controls to begin with: one number, or one for each node")
+    bounds: Annotated[dict[str, tuple[float | None, float | None]], BY_NAME] = Field(
+        {}, description="least and largest value by control"
+    )
+    guess: ByControl = Field({}, description="controls to begin with: one number, or one for each node")
     segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
     iterations: int = Field(500, ge=1, le=100_000)
     tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")

@@ -15,9 +15,9 @@ certificate is made anew from what is stored.
 `POST /v1/trees/{ref}/evaluations` (`EvaluationRequest`); its states are `q` and `qd` there, or come from a grid or a \
 sample, in which coordinates that are not named are 0. Names are coordinates (`rod.q1`), velocities (`rod.q1'`), \
 parameters (`rod.m1`) and inputs (`tau.rod.q1`). `grid`: by name a number, a list, or `{"from", "to", "count"}`; all \
-combinations, the last name varies fastest. `sample`: `{"count", ["seed"], ["ranges"]}`, uniform in `ranges`, `[low, \
-high]` by name, and for coordinates without one in their joint limits. Many states are split into items of at most \
-`job_states`.
+combinations, the last name varies fastest; numbers may have units. `sample`: `{"count", ["seed"], ["ranges"]}`, \
+uniform in `ranges`, `[low, high]` by name, and for coordinates without one in their joint limits. Many states are \
+split into items of at most `job_states`.
 - `simulate`, `optimise`: `tree`, `request` or `requests` (a list, an item each), [`format`: `json` (default), `npz`, \
 `csv`, `arrow`, `svg`, as far as the result can be one]. A request is the body of `POST /v1/trees/{ref}/simulations` \
 or `.../optimal-controls`.

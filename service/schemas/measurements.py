@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from service.schemas.measured import ACCELERATIONS, BY_NAME, COORDINATES, EFFORTS_OF_ACTUATORS, VELOCITIES
 from substructures.analysis.identification.fit import ERROR_LIMIT
 from substructures.documents import DocumentPart
 
@@ -13,8 +14,8 @@ from substructures.documents import DocumentPart
 class CurvatureRequest(DocumentPart):
     """States."""
 
-    q: Any = Field(description="(n,), (N, n) or columns by name; rad, m")
-    parameters: dict[str, Any] = Field({}, description="in place of their defaults")
+    q: Annotated[Any, COORDINATES] = Field(description="(n,), (N, n) or columns by name; rad, m")
+    parameters: Annotated[dict[str, Any], BY_NAME] = Field({}, description="in place of their defaults")
 
 
 Drive = Literal["armature", "viscous", "coulomb", "offset"]
@@ -23,17 +24,17 @@ Drive = Literal["armature", "viscous", "coulomb", "offset"]
 class ExcitationRequest(DocumentPart):
     """A motion: how well does it show the base parameters?"""
 
-    q: Any = Field(description="(N, n) or columns by name; rad, m")
-    qd: Any = Field(None, description="rad/s, m/s")
-    qdd: Any = Field(description="rad/s^2, m/s^2")
-    parameters: dict[str, Any] = Field({}, description="kinematic ones, in place of their defaults")
+    q: Annotated[Any, COORDINATES] = Field(description="(N, n) or columns by name; rad, m")
+    qd: Annotated[Any, VELOCITIES] = Field(None, description="rad/s, m/s")
+    qdd: Annotated[Any, ACCELERATIONS] = Field(description="rad/s^2, m/s^2")
+    parameters: Annotated[dict[str, Any], BY_NAME] = Field({}, description="kinematic ones, in place of their defaults")
     drives: tuple[Drive, ...] = Field((), description="columns of drives that are taken along")
 
 
 class IdentificationRequest(ExcitationRequest):
     """A measured motion."""
 
-    tau: Any = Field(description="forces of the actuators, as q; N m, N")
+    tau: Annotated[Any, EFFORTS_OF_ACTUATORS] = Field(description="forces of the actuators, as q; N m, N")
     known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
     error_limit: float = Field(
         ERROR_LIMIT,

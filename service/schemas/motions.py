@@ -13,8 +13,20 @@ import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
+from service.schemas.measured import (
+    COORDINATE_SIGNALS,
+    COORDINATES,
+    EXPRESSION,
+    EXPRESSIONS,
+    INPUT_SIGNALS,
+    OF_QUANTITY,
+    OF_SIGNAL,
+    QUASI_VELOCITIES,
+    SECONDS,
+    VELOCITIES,
+    Values,
+)
 from service.schemas.parts import RequestPart
-from service.schemas.shapes import Values
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis import simulate as science
 from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
@@ -40,7 +52,8 @@ def _checked(make: Callable[[], object]) -> None:
 
 #: numbers in a tuple, a list or a numpy array
 Reals = Annotated[tuple[Real, ...], BeforeValidator(_listed)]
-Span = Annotated[tuple[Real, Real], BeforeValidator(_listed)]
+Span = Annotated[tuple[Real, Real], BeforeValidator(_listed), SECONDS]
+Seconds = Annotated[Positive, SECONDS]
 _Column = Annotated[Reals, Field(min_length=2, max_length=100_000)]
 
 
@@ -49,8 +62,8 @@ class Table(RequestPart):
     degree five.
     """
 
-    times: _Column
-    values: _Column
+    times: Annotated[_Column, SECONDS]
+    values: Annotated[_Column, OF_SIGNAL]
     interpolation: Literal["hold", "linear", "cubic"] = "linear"
 
     @model_validator(mode="after")
@@ -75,8 +88,8 @@ class Event(RequestPart):
     """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
 
     name: Name
-    quantity: PlainNumber
-    level: Real = 0.0
+    quantity: Annotated[PlainNumber, EXPRESSION]
+    level: Annotated[Real, OF_QUANTITY] = 0.0
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"
 
@@ -88,7 +101,7 @@ class Event(RequestPart):
 class FixedStep(RequestPart):
     """Real-time mode: every step takes the same, known time. Semi-implicit Euler, or Runge-Kutta of fourth order."""
 
-    step: Positive = Field(description="s")
+    step: Seconds = Field(description="s")
     method: Literal["semi-implicit-euler", "rk4"] = "rk4"
 
     def value(self) -> science.FixedStep:
@@ -99,10 +112,12 @@ class FixedStep(RequestPart):
 class StateRequest(DocumentPart):
     """A state, parameters and inputs."""
 
-    q: Any = Field(None, description="coordinates: a list, or an object by name; rad, m")
-    qd: Any = Field(None, description="velocities, 0 by default; rad/s, m/s")
+    q: Annotated[Any, COORDINATES] = Field(None, description="coordinates: a list, or an object by name; rad, m")
+    qd: Annotated[Any, VELOCITIES] = Field(None, description="velocities, 0 by default; rad/s, m/s")
     parameters: Values = Field({}, description="in place of their defaults")
-    inputs: dict[str, Signal] = Field({}, description="number, expression in q, q' and t, or table; N m or N")
+    inputs: Annotated[dict[str, Signal], INPUT_SIGNALS] = Field(
+        {}, description="number, expression in q, q' and t, or table; N m or N"
+    )
 
 
 class SpanRequest(StateRequest):
@@ -112,14 +127,16 @@ class SpanRequest(StateRequest):
     """
 
     span: Span = Field(description="s")
-    times: Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None = Field(None, description="s")
-    step: Positive | None = Field(None, description="s")
+    times: Annotated[Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None, SECONDS] = Field(None, description="s")
+    step: Seconds | None = Field(None, description="s")
     count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
     events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = ()
-    series: dict[Name, PlainNumber] = Field({}, max_length=MAX_EVENTS, description="expressions to be followed")
+    series: Annotated[dict[Name, PlainNumber], EXPRESSIONS] = Field(
+        {}, max_length=MAX_EVENTS, description="expressions to be followed"
+    )
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-10
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
-    max_step: Positive | None = Field(None, description="s")
+    max_step: Seconds | None = Field(None, description="s")
     max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
     drift_limit: Positive = Field(1e-7, description="largest relative drift of first integrals of a right result")
 
@@ -145,9 +162,9 @@ class LoopRequest(StateRequest):
     move as given: a number, an expression in t, or a table.
     """
 
-    t: Real = 0.0
+    t: Annotated[Real, SECONDS] = 0.0
     fixed: tuple[str, ...] = Field((), max_length=500)
-    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+    prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
 
 
 class ClosedRequest(SpanRequest):
@@ -157,7 +174,7 @@ class ClosedRequest(SpanRequest):
     """
 
     fixed: tuple[str, ...] = Field((), max_length=500)
-    prescribed: dict[str, Signal] = Field({}, description="by coordinate; rad or m")
+    prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
     method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
     reduction: Literal["projection", "partitioning"] = "projection"
 
@@ -165,7 +182,9 @@ class ClosedRequest(SpanRequest):
 class RollingRequest(SpanRequest, VelocityConstraints):
     """A motion with velocity constraints from ``q`` and quasi-velocities ``v``, or velocities ``qd`` that meet them."""
 
-    v: Any = Field(None, description="quasi-velocities: a list, or an object by name; 0 by default")
+    v: Annotated[Any, QUASI_VELOCITIES] = Field(
+        None, description="quasi-velocities: a list, or an object by name; 0 by default"
+    )
     method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"] = "DOP853"
     form: Literal["voronets", "boltzmann-hamel"] = "voronets"
 

@@ -9,20 +9,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError, WithJsonSchema
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError
 
-from service.schemas.shapes import Digest, Shape, Warned, values_with_units
+from service.schemas.measured import WithUnits
+from service.schemas.shapes import Digest, Shape, Warned
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
+from substructures.quantities.measured import si_values
+from substructures.quantities.states import argument_units
+from substructures.tree.model import Model
 
 Column = float | list[float]
 
 
-_COLUMN: list[dict[str, Any]] = [{"type": "number"}, {"items": {"type": "number"}, "type": "array"}]
-ValueColumns = Annotated[dict[str, Any], SkipValidation, WithJsonSchema(values_with_units(_COLUMN))]
-StateColumns = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation]
+#: numbers that the science looks at, with its units: see :func:`substructures.quantities.states.argument_units`
+ValueColumns = Annotated[dict[str, Column], SkipValidation, WithUnits()]
+StateColumns = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation, WithUnits()]
 _NEEDED = {
     "quantities": "a list of quantities is needed",
     "along": "the direction 'along' is needed: q, qd, qdd and inputs",
@@ -66,7 +70,7 @@ class EvaluationRequest(Shape):
     qd: StateColumns = None
     qdd: StateColumns = None
     inputs: ValueColumns = _values("tau.<coordinate> (N m or N) and inputs of loads")
-    t: Annotated[Column, SkipValidation] = Field(0, description="s")
+    t: Annotated[Column, SkipValidation, WithUnits()] = Field(0, description="s")
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
 
     @classmethod
@@ -94,6 +98,10 @@ class EvaluationRequest(Shape):
                 name: getattr(along, name) for name in Direction.model_fields if name in along.model_fields_set
             }
         return found
+
+    def in_si(self, model: Model) -> EvaluationRequest:
+        """The request with numbers of SI in the places of those with units. Raises InvalidArgument with pointers."""
+        return EvaluationRequest.read(si_values(self.given(), argument_units(model), ""))
 
     def arguments(self) -> dict[str, Any]:
         """Arguments of :func:`substructures.quantities.evaluation.evaluate` by name."""

@@ -4,28 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
-
-from substructures.documents.fields import Real
+from pydantic import BaseModel, ConfigDict, Field
 
 Digest = Annotated[str, Field(pattern=r"^sha256:[0-9a-f]{64}$", description="sha256 of the canonical bytes")]
 Time = Annotated[str, Field(description="UTC, ISO 8601")]
 Links = dict[str, Any]
-
-
-def values_with_units(kinds: list[dict[str, Any]]) -> dict[str, Any]:
-    """How values by name are described that may have a unit; ``kinds``: what a value may be."""
-    measured = {
-        "type": "object",
-        "properties": {"value": {"anyOf": kinds}, "unit": {"type": "string"}},
-        "required": ["value", "unit"],
-        "additionalProperties": False,
-    }
-    return {"type": "object", "additionalProperties": {"anyOf": [*kinds, measured]}}
-
-
-#: numbers by name in SI; where a body is read they may have units
-Values = Annotated[dict[str, Real], WithJsonSchema(values_with_units([{"type": "number"}]))]
 
 
 class Warned(BaseModel):

@@ -8,9 +8,25 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from service.schemas.shapes import Values
+from service.schemas.measured import (
+    ACCELERATIONS,
+    BY_NAME,
+    COORDINATES,
+    EXPRESSIONS,
+    METRES,
+    MOMENTA_OF_COORDINATES,
+    OF_PARAMETER,
+    SECONDS,
+    VELOCITIES,
+    Values,
+)
 from substructures.documents import DocumentPart
 from substructures.documents.fields import PlainNumber, Positive, Real
+
+States = Annotated[Any, COORDINATES]
+#: by name, one number or one for each state
+Columns = Annotated[dict[str, Any], BY_NAME]
+Reach = Annotated[Positive, METRES]
 
 
 class LinearisationRequest(DocumentPart):
@@ -19,24 +35,26 @@ class LinearisationRequest(DocumentPart):
     With closures one state, which is moved onto them, and no ``qdd``.
     """
 
-    q: Any
-    qd: Any = None
-    qdd: Any = None
-    t: Any = 0
-    parameters: dict[str, Any] = Field({}, description="in place of their defaults; numbers, or one for each state")
-    inputs: dict[str, Any] = Field({}, description="about which is linearised, 0 by default; or one for each state")
-    outputs: dict[str, PlainNumber] = Field({}, max_length=1000, description="y: expressions in q, q', inputs and t")
+    q: States
+    qd: Annotated[Any, VELOCITIES] = None
+    qdd: Annotated[Any, ACCELERATIONS] = None
+    t: Annotated[Any, SECONDS] = 0
+    parameters: Columns = Field({}, description="in place of their defaults; numbers, or one for each state")
+    inputs: Columns = Field({}, description="about which is linearised, 0 by default; or one for each state")
+    outputs: Annotated[dict[str, PlainNumber], EXPRESSIONS] = Field(
+        {}, max_length=1000, description="y: expressions in q, q', inputs and t"
+    )
     of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
 
 
 class EquilibriaRequest(DocumentPart):
     """Where to look: ``starts`` (N, n), and ``count`` random ones in +-pi for angles, +-``reach`` for distances."""
 
-    starts: Any = None
+    starts: States = None
     count: Annotated[int, Field(ge=0, le=10_000)] = 32
-    reach: Positive = Field(1.0, description="m")
+    reach: Reach = Field(1.0, description="m")
     seed: Annotated[int, Field(ge=0)] = 0
-    t: Real = 0.0
+    t: Annotated[Real, SECONDS] = 0.0
     parameters: Values = Field({}, description="in place of their defaults")
     inputs: Values = Field({}, description="constant; 0 by default")
 
@@ -47,22 +65,26 @@ class SteadyMotionsRequest(DocumentPart):
     ``held``: what keeps its values when the motion is disturbed: momenta, or rates of coordinates that are driven.
     """
 
-    rates: dict[str, Real] | None = Field(None, description="rad/s, m/s by coordinate; 0 for cyclic ones not named")
-    momenta: dict[str, Real] | None = Field(None, description="N m s, N s by coordinate; 0 for cyclic ones not named")
+    rates: Annotated[dict[str, Real] | None, VELOCITIES] = Field(
+        None, description="rad/s, m/s by coordinate; 0 for cyclic ones not named"
+    )
+    momenta: Annotated[dict[str, Real] | None, MOMENTA_OF_COORDINATES] = Field(
+        None, description="N m s, N s by coordinate; 0 for cyclic ones not named"
+    )
     held: Literal["momenta", "rates"] = "momenta"
-    starts: Any = None
+    starts: States = None
     count: Annotated[int, Field(ge=0, le=10_000)] = 32
-    reach: Positive = Field(1.0, description="m")
+    reach: Reach = Field(1.0, description="m")
     seed: Annotated[int, Field(ge=0)] = 0
-    parameters: dict[str, Real] = Field({}, description="in place of their defaults")
-    inputs: dict[str, Real] = Field({}, description="constant; 0 by default")
+    parameters: Values = Field({}, description="in place of their defaults")
+    inputs: Values = Field({}, description="constant; 0 by default")
 
 
 class RootLocusRequest(DocumentPart):
     """``parameter`` takes the ``values`` one after the other; ``q``: where the first equilibrium is near to."""
 
     parameter: str
-    values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000)]
-    q: Any
+    values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000), OF_PARAMETER]
+    q: States
     parameters: Values = Field({}, description="of all others, in place of their defaults")
     inputs: Values = Field({}, description="constant; 0 by default")

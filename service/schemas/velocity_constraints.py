@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from service.schemas.measured import METRES
 from service.schemas.parts import RequestPart
 from substructures.analysis.equations import velocity_constraints as science
 from substructures.documents import DocumentPart
@@ -44,7 +45,7 @@ class Rolling(RequestPart):
     type: Literal["rolling"]
     name: Name
     frame: FrameName
-    radius: PlainNumber = Field(description="m")
+    radius: Annotated[PlainNumber, METRES] = Field(description="m")
     shape: Literal["disc", "sphere"] = "disc"
     normal: tuple[PlainNumber, PlainNumber, PlainNumber] = Field(
         (0, 0, 1), description="of the plane in the world (constant)"

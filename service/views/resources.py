@@ -13,7 +13,8 @@ from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.catalogue import Version
 from service.queries.content import FormulaRow
 from service.queries.trees import Tree
-from substructures.part.units import Notice, uncounted
+from substructures.expr.unit_check import Notice
+from substructures.part.parameters import uncounted
 
 _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import arb, ctx
 
@@ -35,11 +35,18 @@ Index = tuple[int, ...]
 Elements = dict[str, set[Index]]
 
 
-def compare(
-    program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any]
-) -> dict[str, float | None]:
-    """Of every output of a program the largest relative difference from ``expected`` that enclosures leave open; None
-    where an element has no finite value at any state.
+class Compared(NamedTuple):
+    """``errors``: of every output the largest relative difference that enclosures leave open; None where an element has
+    no finite value at any state. ``left_out``: coordinates on which forces act that have a potential, of which the
+    stored one is without.
+    """
+
+    errors: dict[str, float | None]
+    left_out: list[str]
+
+
+def compare(program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any]) -> Compared:
+    """Every output of a program beside what is ``expected``.
 
     ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain.
     Raises VerificationFailed, which names output and element.
@@ -52,7 +59,7 @@ def compare(
         comparison.at(states)
         if not comparison.open:
             break
-    return comparison.result()
+    return Compared(comparison.result(), sorted(comparison.left_out))
 
 
 @dataclass
@@ -65,6 +72,7 @@ class _Comparison:
     program: Stored
     expected: Expected
     errors: dict[str, float] = field(default_factory=dict)
+    left_out: set[str] = field(default_factory=set)
     open: Elements | None = None
     never: Elements | None = None
 
@@ -117,7 +125,7 @@ class _Comparison:
         zero, worst = arb(0), self.errors.get(name, 0.0)
         for index in some:
             a = stored.get(index, zero)
-            b = values.like(index, a) if index in values.others else values.entries.get(index, zero)
+            b = self._like(values, index, a) if index in values.others else values.entries.get(index, zero)
             difference, size = float((a - b).abs_upper()), abs(float(b))
             # most are precise; what is not finite, zero, or beyond the range of doubles is looked at below
             if difference <= size * PRECISE and SMALL < size < 1 / SMALL:
@@ -125,6 +133,13 @@ class _Comparison:
             elif size or difference or not (a.is_zero() and b.is_zero()):
                 worst = max(worst, self._element(name, index, a, b, values, unsure, last))
         self.errors[name] = worst
+
+    def _like(self, values: Values, index: Index, stored: Ball) -> Ball:
+        """What an element of several choices has to be; notes what is left out then."""
+        ball, leaves_out = values.like(index, stored)
+        if leaves_out:
+            self.left_out.add(values.along[index[0]])
+        return ball
 
     def _element(
         self, name: str, index: Index, a: Ball, b: Ball, values: Values, unsure: tuple[Elements, Elements], last: bool
@@ -183,6 +198,7 @@ def _told(place: str, a: Ball, b: Ball) -> str:
 
 def _place(name: str, index: Index, values: Values | None = None) -> str:
     if values is not None and values.along:
-        by = (*values.along, "the time, inputs and velocities")[index[0]]
-        return f"the change of {name} with {by}"
+        if index[0] == len(values.along):
+            return f"{name} where all coordinates are zero"
+        return f"the change of {name} with {values.along[index[0]]}"
     return f"{name}[{', '.join(map(str, index))}]" if index else name

@@ -19,6 +19,7 @@ from substructures.certificate.bodies import (
     of_step,
 )
 from substructures.certificate.linear import Ball, Matrix, cross, dot, zeros
+from substructures.certificate.linear import vector as triple
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import Steps, difference, names_of, negative, product, slope
 from substructures.expr.direct import steps_of
@@ -32,13 +33,23 @@ class Forces:
     ``potential``: V of springs, stops and potentials in closed form, ``slopes`` its -dV/dq^a; ``dead``, ``dead_slopes``
     the same of forces that are constant in the world.
     Of two kinds of forces potentials may have been found: ``given`` as formulas, by joint; ``bent``, of springs whose
-    stiffness or length depends on the state (``varying``: and on more than that).
-    ``joints``: of the definition; ``prefix``: of its names.
+    stiffness or length depends on coordinates, as far as they are gradients. ``steady``: the same of forces and torques
+    on bodies that depend on coordinates and parameters alone.
+    ``joints``: of the definition; ``prefix``: of its names; ``like``: the forces at a random state, where these are at
+    one at which numbers may not change with coordinates that they depend on.
     """
 
-    def __init__(self, bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> None:
+    def __init__(
+        self,
+        bodies: Bodies,
+        definition: Plain,
+        numbers: Numbers,
+        joints: range,
+        prefix: str = "",
+        like: Forces | None = None,
+    ) -> None:
         self.bodies, self.numbers, self.joints, self.prefix = bodies, numbers, joints, prefix
-        self.definition = definition
+        self.definition, self.somewhere = definition, like.numbers.names if like else numbers.names
         self.applied: dict[int, Ball] = {}
         self.wrenches: dict[int, Ball] = {}
         self.potential = self.dead = arb(0)
@@ -46,7 +57,7 @@ class Forces:
         self.dead_slopes: dict[int, Ball] = {}
         self.given: dict[int, list[Steps]] = {}
         self.bent: list[dict[int, Ball]] = []
-        self.varying = False
+        self.steady: list[dict[int, Ball]] = []
         self.places: list[tuple[Matrix, Matrix]] = []
         self.index = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
         self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in joints}
@@ -54,7 +65,7 @@ class Forces:
     def depends(self, *given: Any) -> bool:
         """Whether numbers depend on a coordinate or a velocity of the definition."""
         return any(
-            not slope(x, self.numbers.names, name).contains(0)
+            not slope(x, self.somewhere, name).contains(0)
             for x in given
             for name in names_of(steps_of(x))
             if name.removesuffix("'") in self.coordinates
@@ -72,9 +83,11 @@ class Forces:
         return frame, x, {a: self.bodies.joints[a].v + cross(self.bodies.joints[a].w, x) for a in path}
 
 
-def forces(bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "") -> Forces:
+def forces(
+    bodies: Bodies, definition: Plain, numbers: Numbers, joints: range, prefix: str = "", like: Forces | None = None
+) -> Forces:
     """All loads of a definition; ``joints``: its own. Raises LookupError for a type of load that is not known here."""
-    found = Forces(bodies, definition, numbers, joints, prefix)
+    found = Forces(bodies, definition, numbers, joints, prefix, like)
     for a, (joint, step) in zip(joints, laws_of(definition), strict=True):
         _joint_law(found, a, joint, step)
     for load in definition.get("loads", ()):
@@ -146,6 +159,10 @@ def _force(found: Forces, load: Plain) -> None:
         # V = -F . x
         found.dead -= dot(F, x)
         _add(found.dead_slopes, Q)
+    else:
+        # d_b Q_a - d_a Q_b = d_b F . u_a - d_a F . u_b, as d_b u_a = d_b d_a x
+        changes = _changes(found, load, frame, F)
+        _steady(found, load, Q, {(a, b): dot(changes[b], u_a) for a, u_a in u.items() for b in changes})
     _keep(found, frame, x, load, given)
 
 
@@ -154,8 +171,37 @@ def _torque(found: Forces, load: Plain) -> None:
     frame = found.bodies.frames[found.prefix + load["body"]]
     given = found.numbers.vector(load["vector"])
     M = given if load.get("frame") == "world" else frame.A * given
-    _add(found.wrenches, {a: dot(M, found.bodies.joints[a].w) for a in found.bodies.path(frame.carrier)})
+    w = {a: found.bodies.joints[a].w for a in found.bodies.path(frame.carrier)}
+    Q = {a: dot(M, w_a) for a, w_a in w.items()}
+    _add(found.wrenches, Q)
+    # d_b Q_a = d_b M . w_a + M . (w_b x w_a), the last where the axis a is carried by the joint b
+    changes = _changes(found, load, frame, M)
+    turned = {(a, b): dot(M, cross(w[b], w_a)) for a, w_a in w.items() for b in w if b < a}
+    rates = {(a, b): dot(changes[b], w_a) + turned.get((a, b), arb(0)) for a, w_a in w.items() for b in changes}
+    _steady(found, load, Q, rates)
     _keep(found, frame, None, load, given)
+
+
+def _changes(found: Forces, load: Plain, frame: Frame, vector: Matrix) -> dict[int, Matrix]:
+    """d_b F in the world by joint: of the numbers with the coordinates, and of axes that turn with the body."""
+    is_world = load.get("frame") == "world"
+    changes: dict[int, Matrix] = {}
+    for a in {*found.bodies.path(frame.carrier), *found.joints}:
+        name = found.bodies.joints[a].coordinate.rpartition(".")[2] if a in found.joints else ""
+        slopes = triple(*(slope(x, found.numbers.names, name) for x in load["vector"]))
+        changes[a] = slopes if is_world else frame.A * slopes
+    if not is_world:
+        for a in found.bodies.path(frame.carrier):
+            changes[a] = changes[a] + cross(found.bodies.joints[a].w, vector)
+    return changes
+
+
+def _steady(found: Forces, load: Plain, Q: Mapping[int, Ball], rates: Mapping[tuple[int, int], Ball]) -> None:
+    """Notes a load of coordinates and parameters alone whose curl d_b Q_a - d_a Q_b is zero; ``rates``: d_b Q_a."""
+    known = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
+    curl = (rate - rates.get((b, a), arb(0)) for (a, b), rate in rates.items())
+    if all(names_of(steps_of(x)) <= known for x in load["vector"]) and all(x.contains(0) for x in curl):
+        found.steady.append(dict(Q))
 
 
 def _keep(found: Forces, frame: Frame, x: Matrix | None, load: Plain, given: Matrix) -> None:
@@ -184,13 +230,28 @@ def _spring(found: Forces, load: Plain) -> None:
     _add(found.applied, {a: -tension * w for a, w in reach.items()})
     pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
     if found.depends(load.get("stiffness", 0), load.get("length", 0)):
-        found.bent.append(pulls)
-        names = (names_of(steps_of(load.get(name, 0))) for name in ("stiffness", "length"))
-        constants = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
-        found.varying |= not frozenset().union(*names) <= constants
+        if _is_gradient(found, load, (k, length - l0), reach):
+            found.bent.append(pulls)
     else:
         found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
         _add(found.slopes, pulls)
+
+
+def _is_gradient(found: Forces, load: Plain, law: tuple[Ball, Ball], reach: Mapping[int, Ball]) -> bool:
+    """Whether Q_a = f dl/dq^a with f = -k (l - l0) has a potential where k and l0 depend on coordinates q, and on no
+    velocity: df/dq^b dl/dq^a = df/dq^a dl/dq^b, of the derivatives of f at fixed l. ``law``: k and l - l0.
+    """
+    k, stretch = law
+    names, given = found.numbers.names, (load.get("stiffness", 0), load.get("length", 0))
+
+    def by(name: str) -> Ball:
+        """df by a name at fixed l."""
+        return k * slope(given[1], names, name) - stretch * slope(given[0], names, name)
+
+    if not all(by(f"{name}'").contains(0) for name in found.coordinates):
+        return False
+    pairs = [(by(name), reach[a]) for name, a in found.coordinates.items()]
+    return all((f * v - g * w).contains(0) for f, w in pairs for g, v in pairs)
 
 
 #: what the loads of each type add to the forces

@@ -15,26 +15,27 @@ class Values:
     """The elements of one array that are not zero by structure; those that a symmetry gives are left out.
 
     ``scale``: what zeros are small against, where that is more than the largest element; ``others``: what elements may
-    be as well. ``along``: of a scalar that is known up to a constant; then the elements are its derivatives by these
-    symbols, and behind them its change when velocities, inputs and the time are halved.
+    be as well, and whether something is left out then. ``along``: of a scalar that is known by its derivatives; then
+    the elements are those by these symbols, coordinates, and behind them its value where all of them are zero (with
+    velocities, inputs and the time halved).
     """
 
     shape: tuple[int, ...]
     symmetry: str = "none"
     entries: dict[tuple[int, ...], Ball] = field(default_factory=dict)
     scale: Ball = field(default_factory=lambda: arb(0))
-    others: dict[tuple[int, ...], list[Ball]] = field(default_factory=dict)
+    others: dict[tuple[int, ...], list[tuple[Ball, bool]]] = field(default_factory=dict)
     along: tuple[str, ...] = ()
     _size: Ball = None
 
-    def like(self, index: tuple[int, ...], stored: Ball) -> Ball:
-        """What an element has to be: of several values the first that a stored one may be; not finite where one of them
-        is not known.
+    def like(self, index: tuple[int, ...], stored: Ball) -> tuple[Ball, bool]:
+        """What an element has to be, and whether something is left out then: of several values the first that a stored
+        one may be; not finite where one of them is not known.
         """
-        likely = self.entries.get(index, arb(0))
+        likely = self.entries.get(index, arb(0)), False
         some = [likely, *self.others.get(index, ())]
-        unknown = (x for x in some if not x.is_finite())
-        return next((x for x in some if x.is_finite() and x.overlaps(stored)), next(unknown, likely))
+        unknown = (x for x in some if not x[0].is_finite())
+        return next((x for x in some if x[0].is_finite() and x[0].overlaps(stored)), next(unknown, likely))
 
     def size(self) -> Ball:
         """The largest element, or the scale."""

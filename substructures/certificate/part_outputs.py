@@ -22,7 +22,8 @@ from substructures.certificate.linear import Ball, Matrix, identity, side_by_sid
 from substructures.certificate.loads import forces
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.potentials import gradient_instead, halved, is_found
+from substructures.certificate.potentials import gradient_instead, is_found
+from substructures.certificate.slopes import at_start
 from substructures.expr.operations import Output
 
 
@@ -60,8 +61,11 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     n, wrenches = len(bodies.joints), len(load.places)
     result.array("applied", (n,)).update({(a,): Q for a, Q in load.applied.items()})
     if is_found([load]):
-        half = forces(bodies, definition, halved(load), load.joints)
-        gradient_instead(result, "potential", [load], load.slopes, load.potential - half.potential)
+        # V of the others where all coordinates are zero
+        start, numbers = Bodies(), Numbers(at_start(values, part_symbols(definition)))
+        start.add(definition, numbers, Frame(GROUND, identity(), zeros(3, 1)))
+        known = forces(start, definition, numbers, load.joints, like=load).potential
+        gradient_instead(result, "potential", [load], load.slopes, known)
     else:
         result.scalar("potential", load.potential)
     result.array("load.at", (wrenches, 3))

@@ -80,18 +80,22 @@ _UNARY: dict[str, Callable[[Ball, Ball], Ball]] = {
 }
 
 
+def at_start(values: Mapping[str, Ball], kinds: Mapping[str, str]) -> dict[str, Ball]:
+    """All coordinates zero; half the velocities, accelerations, inputs and time. ``kinds``: of the symbols."""
+    outside = {name: x / 2 for name, x in values.items() if kinds.get(name) in OUTSIDE}
+    return {**values, **outside} | {name: arb(0) for name in values if kinds.get(name) == "coordinate"}
+
+
 def stored_gradient(
     program: Stored, entry: int | None, found: Sequence[Ball], values: Mapping[str, Ball], along: Sequence[str]
 ) -> dict[tuple[int, ...], Ball]:
-    """Of a stored scalar V: the derivatives by the symbols ``along``, and at last V less V with all velocities, inputs
-    and the time halved. ``entry``: None where V is zero by structure.
+    """Of a stored scalar V: the derivatives by the symbols ``along``, and at last its value :func:`at_start`.
+    ``entry``: None where V is zero by structure.
     """
     if entry is None:
         return {}
     by_name = slopes(program, entry, found)
     result: dict[tuple[int, ...], Ball] = {(a,): by_name[name] for a, name in enumerate(along) if name in by_name}
-    outside = {s.name for s in program.symbols if s.kind in OUTSIDE and s.name in by_name}
-    if outside:
-        halved = {name: x / 2 if name in outside else x for name, x in values.items()}
-        result[len(along),] = found[entry] - operations_in_balls(program, halved)[entry]
+    start = at_start(values, {symbol.name: symbol.kind for symbol in program.symbols})
+    result[len(along),] = operations_in_balls(program, start)[entry]
     return result

@@ -38,8 +38,10 @@ def names_of(steps: Sequence[Step]) -> frozenset[str]:
     return frozenset(str(step.value) for step in steps if step.op == "name")
 
 
-def summands(steps: Steps) -> list[Steps]:
-    """The terms of a sum as it is written."""
+def summands(steps: Steps, apart: str) -> list[Steps]:
+    """The terms of a sum as it is written; products, quotients and powers of sums are multiplied out as far as it takes
+    to tell what names ``apart`` from what does not.
+    """
     stack: list[list[Steps]] = []
     for step in steps:
         if step.op in ("add", "sub"):
@@ -51,9 +53,22 @@ def summands(steps: Steps) -> list[Steps]:
             stack.append([(step,)])
         else:
             operands = 2 if step.op in ("mul", "div") else 1
-            taken = [whole for terms in stack[-operands:] for whole in _sum(terms)]
-            stack[-operands:] = [[(*taken, step)]]
+            stack[-operands:] = [_apart(step, stack[-operands:], apart)]
     return stack.pop()
+
+
+def _apart(step: Step, factors: Sequence[Sequence[Steps]], apart: str) -> list[Steps]:
+    """The step on sums, in what does not name something and the rest, which is the difference to the whole."""
+    whole = (*(x for terms in factors for x in _sum(terms)), step)
+    free = [[term for term in terms if apart not in names_of(term)] for terms in factors]
+    if apart not in names_of(whole) or not all(free):
+        return [whole]
+    is_power = step.op == "pow" and int(step.value or 0) >= 1
+    is_quotient = step.op == "div" and len(free[1]) == len(factors[1])
+    if step.op != "mul" and not is_power and not is_quotient:
+        return [whole]
+    part = (*(x for terms in free for x in _sum(terms)), step)
+    return [part, difference(whole, part)]
 
 
 def _sum(terms: Sequence[Steps]) -> Steps:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from flint import arb
@@ -27,7 +27,8 @@ from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
-from substructures.certificate.potentials import gradient_instead, halved, is_found
+from substructures.certificate.potentials import gradient_instead, is_found
+from substructures.certificate.slopes import at_start
 
 
 def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
@@ -47,24 +48,45 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
 
 def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Outputs:
     """All outputs of the model; ``values``: of all symbols."""
+    result = Outputs()
+    numbers, bodies, loads, acting = _built(tree, definitions, values)
+    rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    gravity = numbers.vector(tree.get("gravity", NONE))
+    _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
+    for each in acting:
+        each.bent += each.steady
+    if is_found(acting):
+        weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
+        known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])
+        _, start, _, there = _built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
+        gradient_instead(result, "potential_energy", acting, known, _potential_energy(start, gravity, there))
+    else:
+        result.scalar("potential_energy", _potential_energy(bodies, gravity, acting))
+    _limits(result, bodies, definitions, loads)
+    _kinematics(result, bodies)
+    if tree.get("closures"):
+        closure_outputs(result, bodies, tree["closures"], numbers, rates)
+    return result
+
+
+def _built(
+    tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball], like: Sequence[Forces] = ()
+) -> tuple[Numbers, Bodies, list[tuple[str, Numbers, range]], list[Forces]]:
+    """The numbers of the tree, its bodies in the world, and what acts on them, by instance."""
     bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
-    numbers, bodies, result = Numbers(Bindings(values, bound)), Bodies(), Outputs()
+    numbers, bodies = Numbers(Bindings(values, bound)), Bodies()
     loads = []
     for instance in hosts_first(tree):
         name, first = instance["name"], len(bodies.joints)
         inside = Numbers(_names(name, definitions[name], numbers.names, values))
         bodies.add(definitions[name], inside, _seat(bodies, instance, numbers), f"{name}.")
         loads.append((name, inside, range(first, len(bodies.joints))))
-    acting = [forces(bodies, definitions[name], inside, joints, f"{name}.") for name, inside, joints in loads]
-    rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
-    gravity = numbers.vector(tree.get("gravity", NONE))
-    _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
-    _potential_energy(result, bodies, gravity, acting)
-    _limits(result, bodies, definitions, loads)
-    _kinematics(result, bodies)
-    if tree.get("closures"):
-        closure_outputs(result, bodies, tree["closures"], numbers, rates)
-    return result
+    before = {forces.prefix: forces for forces in like}
+    acting = [
+        forces(bodies, definitions[name], inside, joints, f"{name}.", before.get(f"{name}."))
+        for name, inside, joints in loads
+    ]
+    return numbers, bodies, loads, acting
 
 
 def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
@@ -166,17 +188,10 @@ def _sums(some: Iterable[Mapping[int, Ball]]) -> dict[int, Ball]:
     return result
 
 
-def _potential_energy(result: Outputs, bodies: Bodies, gravity: Matrix, acting: list[Forces]) -> None:
-    """V = -gamma . s of the whole, -F . x of dead forces, springs, stops, potentials; or its gradient."""
-    if not is_found(acting):
-        whole = sum(bodies.own.values(), massless())
-        result.scalar("potential_energy", sum((f.potential + f.dead for f in acting), -dot(gravity, whole.s)))
-        return
-    weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
-    known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])
-    half = [forces(bodies, f.definition, halved(f), f.joints, f.prefix) for f in acting]
-    change = sum((f.potential - h.potential for f, h in zip(acting, half, strict=True)), arb(0))
-    gradient_instead(result, "potential_energy", acting, known, change)
+def _potential_energy(bodies: Bodies, gravity: Matrix, acting: list[Forces]) -> Ball:
+    """V = -gamma . s of the whole, -F . x of dead forces, springs, stops, potentials: all but what is found."""
+    whole = sum(bodies.own.values(), massless())
+    return sum((f.potential + f.dead for f in acting), -dot(gravity, whole.s))
 
 
 def _limits(

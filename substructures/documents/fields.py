@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
@@ -18,6 +19,9 @@ NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
 
 
+#: a number or a product or quotient of them, pi among them; how a unit begins
+_CONSTANT = re.compile(r"[-+]?(?:[\d.]+(?:[eE][-+]?\d+)?|pi)(?:[*/](?:[\d.]+(?:[eE][-+]?\d+)?|pi))*")
+_UNIT = re.compile(r"[^\W\d_]|[°%]|1\s*/")
 _EITHER = [{"type": "number"}, {"type": "string", "maxLength": 10000}]
 
 
@@ -40,6 +44,17 @@ class Quantity(DocumentPart):
     def __str__(self) -> str:
         """As people write it."""
         return f"{self.value} {self.unit}"
+
+
+def quantity_of(text: str) -> Quantity | str:
+    """A text such as ``1200 mm``: a constant, a space and a unit; any other text as it is.
+
+    >>> quantity_of("1/2 m"), quantity_of("2*l")
+    (Quantity(value='1/2', unit='m'), '2*l')
+    """
+    value, _, unit = text.strip().partition(" ")
+    unit = unit.strip()
+    return Quantity(value=value, unit=unit) if _CONSTANT.fullmatch(value) and _UNIT.match(unit) else text
 
 
 def unit_of(text: str) -> Unit:

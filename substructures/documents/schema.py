@@ -53,15 +53,17 @@ class Document(DocumentPart):
 M = TypeVar("M", bound=BaseModel)
 
 
-def read_model(model: type[M], data: Any, *, stored: bool = False) -> M:
+def read_model(model: type[M], data: Any, *, stored: bool = False, context: Mapping[str, Any] | None = None) -> M:
     """Validate plain data against a pydantic model; pydantic's errors become faults with RFC 6901 pointers.
 
     ``stored``: the data were accepted before, perhaps by an older version (``stored`` of the validation context).
+    ``context``: what else validators are told. A fault below of what a validator takes as a whole has ``below`` in its
+    context: the rest of the pointer.
     """
     if not isinstance(data, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
     try:
-        return model.model_validate(data, context={"stored": True} if stored else None)
+        return model.model_validate(data, context={**(context or {}), **({"stored": True} if stored else {})} or None)
     except ValidationError as error:
         raise InvalidDocument(_faults(error, data)) from None
 
@@ -69,7 +71,7 @@ def read_model(model: type[M], data: Any, *, stored: bool = False) -> M:
 def _faults(error: ValidationError, data: Any) -> list[Fault]:
     return [
         Fault(
-            _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]),
+            _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]) + e.get("ctx", {}).get("below", ""),
             e["type"].replace("_", "-"),
             message_of(e),
         )
@@ -89,6 +91,8 @@ def message_of(error: Mapping[str, Any]) -> str:
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
     if error["type"] == "extra_forbidden":
         return f"unknown field '{str(name)[:80]}'"
+    if "below" in error.get("ctx", ()):
+        return str(error["msg"])
     return str(error["msg"]) + _found(error["input"])
 
 

@@ -23,7 +23,7 @@ from substructures.expr.expand import Expanded, Term, expand, is_zero
 from substructures.expr.generators import times_power
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin
-from substructures.expr.walk import reachable
+from substructures.expr.walk import reachable, transfer
 
 #: terms of a force that is integrated
 LIMIT = 2_000
@@ -56,6 +56,16 @@ def potential(forces: Sequence[Expr], names: Sequence[str], limit: int = LIMIT) 
         return None
 
 
+def from_zero(energy: Expr, names: Iterable[str]) -> Expr:
+    """V less its value where all coordinates are 0; as it is where it has none there."""
+    graph = energy.graph
+    try:
+        (start,) = transfer([energy], graph, dict.fromkeys(names, graph.zero))
+    except ZeroDivisionError:
+        return energy
+    return energy - start
+
+
 def antiderivative(expr: Expr, name: str, limit: int = LIMIT) -> Expr | None:
     """The integral by one symbol, from 0 where it is a polynomial; None where a term is no polynomial in the symbol and
     in cosines and sines of its multiples. Raises TooLarge for more than ``limit`` terms.
@@ -82,18 +92,13 @@ def filtered(expr: Expr, names: AbstractSet[str], limit: int = LIMIT) -> Expr | 
     return expr if len(kept) == len(form.terms) else _over(form, expr.graph, kept)
 
 
-def summands(expr: Expr) -> list[Expr]:
-    """The terms of a sum as it is built: expr = sum of summands."""
-    result, stack = [], [(expr, 1)]
-    while stack:
-        node, sign = stack.pop()
-        if node.op in ("add", "sub"):
-            stack += [(node.args[1], sign if node.op == "add" else -sign), (node.args[0], sign)]
-        elif node.op == "neg":
-            stack.append((node.args[0], -sign))
-        else:
-            result.append(node if sign > 0 else -node)
-    return result
+def needed(expr: Expr, limit: int = LIMIT) -> frozenset[str]:
+    """The symbols in the canonical form; all that occur, where it has more than ``limit`` terms."""
+    try:
+        form = expand(expr, limit)
+    except (TooLarge, ZeroDivisionError):
+        return symbols_of([expr])
+    return symbols_of(_atoms((*form.terms, *form.denominator)))
 
 
 def _atoms(terms: Iterable[Term]) -> list[Expr]:

@@ -31,14 +31,69 @@ def parse(graph: Graph, text: str, lookup: Callable[[str], Expr | None]) -> Expr
     """
     stack: list[Expr] = []
     for step in read(text):
-        if step.op in LEAVES:
-            stack.append(_leaf(graph, step, lookup))
-            continue
-        try:
-            stack.append(_node(step, stack))
-        except (TooLarge, ValueError, ZeroDivisionError) as error:
-            raise ExpressionError(str(error), step.column) from None
+        _carry_out(graph, step, lookup, stack)
     return stack.pop()
+
+
+#: terms of a sum, and whether they name what is to be told apart
+_Terms = list[tuple[Expr, bool]]
+
+
+def parse_terms(graph: Graph, text: str, lookup: Callable[[str], Expr | None], apart: str) -> list[Expr]:
+    """The terms of an expression as it is written: what ``+`` and ``-`` join, whose sum it is. Raises as :func:`parse`.
+
+    Products, quotients and powers of sums are multiplied out as far as it takes to tell what names the symbol ``apart``
+    from what does not: ``2*(x + sin(t))`` has the terms ``2*x`` and ``2*sin(t)`` for the time t.
+
+    >>> graph = Graph()
+    >>> parse_terms(graph, "2*(x + t)*(1 + x) - (x - 2)", lambda name: graph.symbol(name), "t")[0]
+    2*x*(1 + x)
+    """
+    stack: list[_Terms] = []
+    for step in read(text):
+        if step.op in ("add", "sub"):
+            last = stack.pop()
+            stack[-1] = stack[-1] + (last if step.op == "add" else [(-x, named) for x, named in last])
+        elif step.op == "neg":
+            stack[-1] = [(-x, named) for x, named in stack[-1]]
+        elif step.op in LEAVES:
+            stack.append([(_leaf(graph, step, lookup), step.op == "name" and step.value == apart)])
+        else:
+            count = 2 if step.op in _ARITHMETIC else 1
+            operands = stack[len(stack) - count :]
+            stack[len(stack) - count :] = [_told_apart(graph, step, operands)]
+    return [x for x, _ in stack.pop()]
+
+
+def _told_apart(graph: Graph, step: Step, operands: list[_Terms]) -> _Terms:
+    """The terms of a product, quotient, power or function of sums: what does not name the symbol, and the rest."""
+
+    def carried_out(some: list[_Terms]) -> Expr:
+        """The step on the sums of some terms."""
+        stack = [graph.sum(x for x, _ in terms) for terms in some]
+        _carry_out(graph, step, lambda _: None, stack)
+        return stack.pop()
+
+    whole = carried_out(operands)
+    if not any(named for terms in operands for _, named in terms):
+        return [(whole, False)]
+    without: list[_Terms] = [[(x, named) for x, named in terms if not named] for terms in operands]
+    splits = step.op in ("mul", "pow") or (step.op == "div" and without[1] == operands[1])
+    if not splits or not all(without) or (step.op == "pow" and int(step.value or 0) < 1):
+        return [(whole, True)]
+    pure = carried_out(without)
+    return [(pure, False), (whole - pure, True)]
+
+
+def _carry_out(graph: Graph, step: Step, lookup: Callable[[str], Expr | None], stack: list[Expr]) -> None:
+    """A step on the stack."""
+    if step.op in LEAVES:
+        stack.append(_leaf(graph, step, lookup))
+        return
+    try:
+        stack.append(_node(step, stack))
+    except (TooLarge, ValueError, ZeroDivisionError) as error:
+        raise ExpressionError(str(error), step.column) from None
 
 
 def _leaf(graph: Graph, step: Step, lookup: Callable[[str], Expr | None]) -> Expr:

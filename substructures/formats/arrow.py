@@ -179,10 +179,12 @@ def table_of(answer: Mapping[str, Any], names: Iterable[str]) -> ArrowTable:
 
 
 def _notes(rows: Iterable[Mapping[str, Any]]) -> dict[int, str]:
-    """Rows about states as one text for each state; a row that is about none is about the first."""
+    """Rows about states as one text for each state; a row that is about none, or several, stands at the first."""
     found: dict[int, list[dict[str, Any]]] = {}
     for row in rows:
-        about = {key: value for key, value in row.items() if key not in ("state", "pointer")}
+        # where a state is told by the row, a pointer to it would tell another one as soon as the row is moved
+        local = ("state", "pointer") if "state" in row else ()
+        about = {key: value for key, value in row.items() if key not in local}
         found.setdefault(row.get("state", 0), []).append(about)
     return {state: orjson.dumps(some).decode() for state, some in found.items()}
 
@@ -208,8 +210,8 @@ def write_tables(tables: Iterable[ArrowTable], metadata: Mapping[str, Any]) -> I
 
 
 def read_tables(file: io.BufferedIOBase) -> Iterator[dict[str, Any]]:
-    """The batches of a stream from :func:`write_tables`: arrays (N, ...), and ``failures`` and ``warnings`` with places
-    in the batch.
+    """The batches of a stream from :func:`write_tables`: arrays (N, ...), ``failures`` and ``warnings``, with places in
+    the batch where they are about one state.
     """
     for batch in pa.ipc.open_stream(file):
         result: dict[str, Any] = {"count": len(batch)}
@@ -217,7 +219,10 @@ def read_tables(file: io.BufferedIOBase) -> Iterator[dict[str, Any]]:
             values = batch.column(described.name)
             if described.name in (FAILURES, WARNINGS):
                 notes = {i: orjson.loads(text) for i, text in enumerate(values.to_pylist()) if text is not None}
-                result[described.name] = [{"state": i, **each} for i, note in notes.items() for each in note]
+                # what has a pointer is about no single state
+                result[described.name] = [
+                    each if "pointer" in each else {"state": i, **each} for i, note in notes.items() for each in note
+                ]
             else:
                 result[described.name] = _from_arrow(values, orjson.loads(described.metadata[b"shape"]))
         yield result

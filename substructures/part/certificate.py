@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from flint import arb
 
-from substructures.certificate.compare import TOLERANCE, compare
+from substructures.certificate.compare import TOLERANCE, Compared, compare
 from substructures.certificate.numbers import Plain
 from substructures.certificate.part_outputs import metric_alone, part_outputs, part_symbols
 from substructures.certificate.states import STATES, draws
 from substructures.documents import Document
 from substructures.documents.units import read_unit
+from substructures.errors import VerificationFailed, listed
 from substructures.expr.direct import ball
 from substructures.expr.program import Program
 from substructures.part.mechanism import Mechanism
@@ -68,13 +69,31 @@ def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[s
     if m.joints:
         certificate["positive_definite"] = _positive_definite(definition)
     kinds = part_symbols(definition)
-    certificate["direct_form"] = {
-        "max_relative_error": compare(
-            result, kinds, lambda values: part_outputs(definition, values, result.outputs), defaults_of(definition)
-        )
-    }
+    certificate["direct_form"] = told(
+        compare(result, kinds, lambda values: part_outputs(definition, values, result.outputs), defaults_of(definition))
+    )
     certificate["seconds"] = {"derive": round(derive_seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate
+
+
+def told(found: Compared) -> dict[str, Any]:
+    """What a comparison says in a certificate: ``potential_left_out`` where there is anything to say."""
+    left_out = {"potential_left_out": found.left_out} if found.left_out else {}
+    return {"max_relative_error": found.errors, **left_out}
+
+
+def require_no_less(before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+    """Raise VerificationFailed where a certificate made anew vouches for less than the one that is stored."""
+    if any(before.get(name) != value for name, value in HOW.items()):
+        return
+    was, found = before.get("direct_form", {}), now["direct_form"]
+    errors = was.get("max_relative_error", {})
+    lost = [n for n, error in found["max_relative_error"].items() if error is None and errors.get(n) is not None]
+    if lost:
+        raise VerificationFailed(f"{listed(lost)} had values that could be compared with the documents, and has none")
+    left_out = set(found.get("potential_left_out", ())) - set(was.get("potential_left_out", ()))
+    if left_out:
+        raise VerificationFailed(f"the potential of the forces on {listed(sorted(left_out))} is left out")
 
 
 def defaults_of(definition: Plain, prefix: str = "") -> dict[str, Any]:

@@ -11,9 +11,9 @@ from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
 from substructures.expr.syntax import read
 from substructures.part.definition import Definition
+from substructures.part.parameters import si_unit
 from substructures.part.scope import Lookup, Scope
 from substructures.part.topology import Topology
-from substructures.part.units import si_unit
 
 NONE: frozenset[str] = frozenset()
 

@@ -6,7 +6,7 @@ their generalised forces are complete without a host. Forces and torques act on 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -52,11 +52,15 @@ class Spring:
 
 @dataclass(frozen=True)
 class Loads:
-    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index, potentials."""
+    """All applied loads, read: wrenches in order, springs, extra joint forces by coordinate index, potentials.
+
+    ``joint_terms``: the terms of the joint forces as they are written.
+    """
 
     wrenches: tuple[AppliedWrench, ...]
     springs: tuple[Spring, ...]
     joint_forces: dict[int, Expr]
+    joint_terms: dict[int, list[Expr]]
     potentials: tuple[Expr, ...] = ()
 
 
@@ -80,12 +84,25 @@ def dead_loads(definition: Definition) -> tuple[bool, ...]:
     )
 
 
+def steady_loads(definition: Definition, coordinates: Iterable[str]) -> tuple[bool, ...]:
+    """Of every force and torque, whether its vector depends on coordinates and parameters alone, but for those with a
+    potential in closed form (:func:`dead_loads`).
+    """
+    known = definition.parameters.keys() | set(coordinates)
+    loads = (load for load in definition.loads if isinstance(load, (ForceLoad, TorqueLoad)))
+    return tuple(
+        not is_dead and all(names_in(x) <= known for x in load.vector)
+        for load, is_dead in zip(loads, dead_loads(definition), strict=True)
+    )
+
+
 def read_loads(m: Mechanism) -> Loads:
     """Read the loads; expressions may name parameters, coordinates, velocities (q'), inputs and the time t."""
     lookup = load_names(m.scope, m.definition, m.topology)
     wrenches: list[AppliedWrench] = []
     springs: list[Spring] = []
     forces: dict[int, Expr] = {}
+    terms: dict[int, list[Expr]] = {}
     potentials: list[Expr] = []
     for i, load in enumerate(m.definition.loads):
         pointer = f"/loads/{i}"
@@ -96,9 +113,9 @@ def read_loads(m: Mechanism) -> Loads:
         elif isinstance(load, PotentialLoad):
             potentials.append(_potential(m, load, pointer, lookup))
         else:
-            _joint_force(m, load, pointer, lookup, forces)
+            _joint_force(m, load, pointer, lookup, forces, terms)
     m.scope.finish()
-    return Loads(tuple(wrenches), tuple(springs), forces, tuple(potentials))
+    return Loads(tuple(wrenches), tuple(springs), forces, terms, tuple(potentials))
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
@@ -152,12 +169,20 @@ def _potential(m: Mechanism, load: PotentialLoad, pointer: str, lookup: Lookup) 
     return energy
 
 
-def _joint_force(m: Mechanism, load: JointLoad, pointer: str, lookup: Lookup, forces: dict[int, Expr]) -> None:
+def _joint_force(
+    m: Mechanism,
+    load: JointLoad,
+    pointer: str,
+    lookup: Lookup,
+    forces: dict[int, Expr],
+    terms: dict[int, list[Expr]],
+) -> None:
     if load.coordinate not in m.topology.coordinates:
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
         return
     a = m.topology.coordinates.index(load.coordinate)
     forces[a] = forces.get(a, m.graph.zero) + m.scope.read(load.force, f"{pointer}/force", lookup)
+    terms.setdefault(a, []).extend(m.scope.terms(load.force, f"{pointer}/force", lookup))
 
 
 @dataclass(frozen=True)
@@ -177,8 +202,8 @@ def applied_forces(
     """
     zero = m.graph.zero
     forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
-    #: given as formulas: whether they have a potential is to be found out
-    given = list(forces)
+    #: terms of those that are given as formulas: whether they have a potential is to be found out
+    given = [list(loads.joint_terms.get(a, ())) for a in range(len(m.joints))]
     potential = zero
     for a, entry in enumerate(m.topology.joints):
         stretch = m.graph.symbol(entry.coordinate) - m.laws[a].rest
@@ -195,7 +220,7 @@ def applied_forces(
     return forces, potential + found_potential(m, given)
 
 
-def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[Expr]) -> Expr:
+def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[list[Expr]]) -> Expr:
     """Adds Q_a = -k (q - rest) - c q' and the stops; returns V, k (q - rest)^2 / 2 where k and rest are no functions of
     the state. Where they are, the force is ``given`` as a formula.
     """
@@ -205,7 +230,10 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
         forces[a] = forces[a] - law.damping * velocity(m, a)
     energy = m.graph.zero
     if depends_on_state(m.topology, law.stiffness, law.rest):
-        given[a] = given[a] - law.stiffness * stretch
+        k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
+        lookup = load_names(m.scope, m.definition, m.topology)
+        terms = m.scope.terms(f"-({k})*({m.topology.coordinates[a]} - ({rest}))", "", lookup)
+        given[a] += terms or [-(law.stiffness * stretch)]
     else:
         energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)
     return energy if law.stops is None else energy + _stop_force(m, a, law.stops, forces)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.documents.fields import in_si
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
@@ -25,9 +26,9 @@ from substructures.mechanics.linear3 import (
 from substructures.part.definition import Body, Definition
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
+from substructures.part.parameters import si_unit
 from substructures.part.scope import Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
-from substructures.part.units import si_unit
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -44,12 +45,13 @@ class Stops:
 
 @dataclass(frozen=True)
 class JointLaw:
-    """Spring, damper, rotor and end stops of a coordinate; expressions."""
+    """Spring, damper, rotor and end stops of a coordinate; expressions. ``given``: stiffness and rest as written."""
 
     stiffness: Expr
     rest: Expr
     damping: Expr
     armature: Expr
+    given: tuple[Any, Any]
     stops: Stops | None = None
 
 
@@ -205,12 +207,14 @@ class _Builder:
         return phi, tau
 
     def _law(self, entry: JointEntry, body: Body, limits: tuple[Expr, Expr] | None, pointer: str) -> JointLaw:
-        values = {}
+        values, givens = {}, {}
         for name in ("stiffness", "rest", "damping", "armature"):
             given, place = self._of_step(entry, getattr(body.joint, name), f"{pointer}/{name}", "number", 0)
+            givens[name] = in_si(given)
             # a spring or damper may depend on the state, as a load; a rotor is a constant
             values[name] = self.scope.read(given, place, None if name == "armature" else self.names)
-        return JointLaw(**values, stops=self._stops(entry, body, limits, pointer))
+        given = givens["stiffness"], givens["rest"]
+        return JointLaw(**values, given=given, stops=self._stops(entry, body, limits, pointer))
 
     def _of_step(self, entry: JointEntry, given: Any, place: str, what: str, rest: Any) -> tuple[Any, str]:
         """What is given for one coordinate of a joint, for all of them or in a list, with its place."""

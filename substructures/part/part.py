@@ -11,14 +11,16 @@ from typing import Any
 from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.operations import Output
 from substructures.expr.program import Program, program
-from substructures.part.certificate import certify_part, told_agreement
+from substructures.expr.unit_check import UnitCheck
+from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import formulas
 from substructures.part.inertia_symbols import inertia_names
-from substructures.part.loads import dead_loads, read_loads, wrench_places
+from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
+from substructures.part.parameters import described, uncounted, without_effect
 from substructures.part.topology import BASE, Topology, christoffel_entries, expected_operations, topology
-from substructures.part.units import UnitCheck, check_units, described, uncounted, without_effect
+from substructures.part.units import check_units
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))
@@ -113,6 +115,11 @@ class Part:
     def wrenches(self) -> tuple[tuple[int, bool, bool], ...]:
         """(carrier, is a moment, in world axes) of every force and torque load."""
         return wrench_places(self.definition, self.topology.carrier)
+
+    @cached_property
+    def steady_loads(self) -> tuple[bool, ...]:
+        """Of every force and torque, whether it may have a potential that is to be found."""
+        return steady_loads(self.definition, self.coordinates)
 
     @cached_property
     def dead_loads(self) -> tuple[bool, ...]:
@@ -234,11 +241,13 @@ def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float
 def recheck(part: Part) -> dict[str, Any]:
     """The certificate of a stored part made anew, of the program as it is stored.
 
-    Raises VerificationFailed when the program disagrees with the definition, InvalidDocument as :func:`derive`.
+    Raises VerificationFailed when the program disagrees with the definition, or when less can be said of it than the
+    stored certificate says, InvalidDocument as :func:`derive`.
     """
     m = mechanism(part.definition)
     m.scope.symbols.update({symbol.name: symbol for symbol in part.program.symbols})
     certificate = _certificate(m, part.program, check_units(m.definition, m.topology), 0.0)
+    require_no_less(part.certificate, certificate)
     return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
 
 

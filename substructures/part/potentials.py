@@ -1,17 +1,20 @@
 """The potential energy of what acts between the bodies of a part (notation.md, section 7).
 
 Springs have theirs in closed form. Forces that are given as formulas have the potential that is found by integration:
-V with d_a V = -Q_a exactly, of as much of them as has one. Looked at is the force at rest without inputs, less what
-depends on the time: all else is a force without potential, and so is what is no gradient.
+V with d_a V = -Q_a exactly, of as much of them as has one, and V = 0 where all coordinates are 0. Looked at is the
+force at rest without inputs, less the terms of the sum, as it is written, that depend on the time: all else is a force
+without potential, and so is what is no gradient.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from substructures.expr.differentiate import gradient
+from substructures.errors import TooLarge
+from substructures.expr.differentiate import derivative, gradient
+from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr
-from substructures.expr.integrate import filtered, potential, summands, symbols_of
+from substructures.expr.integrate import LIMIT, filtered, from_zero, needed, potential, symbols_of
 from substructures.expr.walk import transfer
 from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
@@ -34,17 +37,17 @@ def spring_potential(m: Mechanism, forces: Mapping[int, Expr], pointer: str) -> 
     if found is None:
         message = "the force of this spring depends on the state, and no potential of it was found"
         m.scope.notices.append({"pointer": pointer, "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
-    return m.graph.zero if found is None else found
+    return m.graph.zero if found is None else from_zero(found, names)
 
 
-def found_potential(m: Mechanism, forces: Sequence[Expr]) -> Expr:
-    """The potential of as much of the forces (n,) on the coordinates as is found to have one.
+def found_potential(m: Mechanism, forces: Sequence[Sequence[Expr]]) -> Expr:
+    """The potential of as much of the forces (n,) on the coordinates, terms of a sum each, as is found to have one.
 
     Of forces that depend on each other's coordinates either all of them count, or what each has of its own alone.
     """
     names = m.topology.coordinates
     fixed = frozenset(s.name for s in m.scope.symbols.values() if s.kind == "parameter")
-    held = [_at_rest(m, force, fixed.union(names)) for force in forces]
+    held = [_at_rest(m, terms, fixed.union(names)) for terms in forces]
     result = m.graph.zero
     for group in _groups(held, names):
         whole = potential([held[a] for a in group], [names[a] for a in group])
@@ -53,20 +56,30 @@ def found_potential(m: Mechanism, forces: Sequence[Expr]) -> Expr:
             on = ", ".join(f"'{names[a]}'" for a in group if not held[a].is_zero)
             message = f"no potential was found of all forces of joints and loads on {on}"
             m.scope.notices.append({"pointer": "/loads", "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
-    return result
+    return from_zero(result, names)
 
 
-def _at_rest(m: Mechanism, force: Expr, steady: frozenset[str]) -> Expr:
-    """What is left of a force at rest without inputs; terms of the sum that depend on the time are left out."""
-    result = m.graph.zero
-    for term in summands(force):
-        moving = dict.fromkeys(symbols_of([term]) - steady - {"t"}, m.graph.zero)
+def _at_rest(m: Mechanism, terms: Sequence[Expr], steady: frozenset[str]) -> Expr:
+    """What is left of a force at rest without inputs; terms that depend on the time are left out, and those without a
+    value at rest.
+    """
+    result, zero = m.graph.zero, m.graph.zero
+    for term in terms:
         try:
-            (rest,) = transfer([term], m.graph, moving) if moving else (term,)
-        except ZeroDivisionError:
+            (rest,) = transfer([term], m.graph, dict.fromkeys(symbols_of([term]) - steady - {"t"}, zero))
+            if "t" in symbols_of([rest]):
+                rest = _without_time(m, rest)
+        except (TooLarge, ZeroDivisionError):
             continue
-        result = result + rest if "t" not in symbols_of([rest]) else result
+        result = result + rest
     return result
+
+
+def _without_time(m: Mechanism, term: Expr) -> Expr:
+    """A term that names the time without depending on it, or zero. Raises TooLarge, ZeroDivisionError."""
+    if not is_zero(derivative(term, "t"), LIMIT):
+        return m.graph.zero
+    return transfer([term], m.graph, {"t": m.graph.zero})[0]
 
 
 def _own(m: Mechanism, forces: Sequence[Expr], group: Sequence[int], fixed: frozenset[str]) -> Expr:
@@ -84,7 +97,7 @@ def _groups(forces: Sequence[Expr], names: Sequence[str]) -> list[list[int]]:
     for a, force in enumerate(forces):
         if force.is_zero:
             continue
-        members, used = {a}, set(symbols_of([force]) & set(names)) | {names[a]}
+        members, used = {a}, set(needed(force) & set(names)) | {names[a]}
         for other in [g for g in groups if g[1] & used]:
             groups.remove(other)
             members, used = members | other[0], used | other[1]

@@ -11,7 +11,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
-from substructures.expr.parse import parse
+from substructures.expr.parse import parse, parse_terms
 from substructures.expr.syntax import MAX_DIGITS, ExpressionError, decimal_number
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.linear3 import Planar, Rotation
@@ -76,6 +76,18 @@ class Scope:
         except TooLarge as error:
             self.fault(pointer, "too-large", str(error))
         return self.graph.zero
+
+    def terms(self, value: Any, pointer: str, lookup: Lookup | None = None) -> list[Expr]:
+        """The terms of an expression as it is written, what names the time apart, whose sum it is; none after a fault
+        that :meth:`read` notes.
+        """
+        value = in_si(value)
+        if not isinstance(value, str):
+            return [self.read(value, pointer)]
+        try:
+            return parse_terms(self.graph, value, lookup or self.names.get, "t")
+        except (ValueError, ArithmeticError, TooLarge):
+            return []
 
     def vector(self, values: Sequence[Any], pointer: str, lookup: Lookup | None = None) -> ExprVector:
         """Three numbers or expressions."""

@@ -6,17 +6,13 @@ they may stand where they stand, and noted what was converted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from substructures.documents.fields import Quantity, in_si
-from substructures.documents.units import NUMBER, Dimension, UnknownUnitError, read_unit, si_text
-from substructures.errors import Fault, InvalidDocument
-from substructures.expr.dimensions import Dimensioned, DimensionError, Inference, Inferred
-from substructures.expr.syntax import ExpressionError, Step, read
+from substructures.documents.units import NUMBER, Dimension, read_unit
+from substructures.expr.dimensions import Dimensioned, Inferred
+from substructures.expr.unit_check import Place, UnitCheck, dimension_of
 from substructures.part.definition import (
     Definition,
     ForceLoad,
@@ -31,11 +27,6 @@ from substructures.part.definition import (
     TorqueLoad,
 )
 from substructures.part.topology import Topology
-
-#: pointer, code, message
-Notice = dict[str, str]
-#: (pointer, number of a document, dimension of the place; None where there is none)
-Place = tuple[str, Any, Dimension | None]
 
 
 def _dimension(text: str) -> Dimension:
@@ -65,73 +56,6 @@ STOP: dict[str, tuple[Dimension, Dimension]] = {
 ENERGY = _dimension("J")
 ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH, "tau": LENGTH}
 SPRING = {"stiffness": _dimension("N/m"), "damping": _dimension("N s/m"), "length": LENGTH}
-
-
-@dataclass
-class UnitCheck:
-    """Checks numbers of a document against their places; collects what is wrong, doubtful, or was converted.
-
-    ``names``: dimensions of the names that expressions may use.
-    """
-
-    names: Callable[[str], Inferred]
-    faults: list[Fault] = field(default_factory=list)
-    warnings: list[Notice] = field(default_factory=list)
-    converted: list[dict[str, Any]] = field(default_factory=list)
-
-    def require(self) -> None:
-        """Raises InvalidDocument for contradictions."""
-        if self.faults:
-            raise InvalidDocument(self.faults)
-
-    def check(self, places: Iterator[Place], tells_doubts: bool) -> None:
-        """Look at all numbers; ``tells_doubts``: also say where numbers in expressions would need a unit."""
-        for pointer, value, expected in places:
-            if isinstance(value, Quantity):
-                self._quantity(pointer, value, expected)
-            elif isinstance(value, str):
-                self._expression(pointer, value, expected, tells_doubts)
-
-    def _quantity(self, pointer: str, value: Quantity, expected: Dimension | None) -> None:
-        unit = value.measure
-        if isinstance(value.value, str) and any(step.op == "name" for step in _steps(value.value)):
-            message = f"'{value.value[:80]}': what has a unit is constant: names in it have units of their own"
-            self.faults.append(Fault(pointer, "unit-of-expression", message))
-        elif expected is not None and unit.dimension != expected:
-            message = f"{si_text(expected)} expected, found {value}"
-            self.faults.append(Fault(pointer, "unit-mismatch", message))
-        elif not unit.is_si:
-            self.converted.append({"pointer": pointer, **value.model_dump(), "si": value.si, "si_unit": unit.si})
-
-    def _expression(self, pointer: str, text: str, expected: Dimension | None, tells_doubts: bool) -> None:
-        inference = Inference(self.names)
-        try:
-            found = inference.of(_steps(text))
-            if expected is not None:
-                inference.require(found, expected)
-        except DimensionError as error:
-            self.faults.append(Fault(pointer, "unit-mismatch", f"'{text[:80]}': {error}"))
-            return
-        for doubt in inference.doubts if tells_doubts else ():
-            message = f"'{text[:80]}': {doubt}, unless numbers in it have units"
-            self.warnings.append({"pointer": pointer, "code": "unit-doubtful", "message": message})
-
-
-@lru_cache(maxsize=10_000)
-def _steps(text: str) -> tuple[Step, ...]:
-    """The steps of an expression; of one that cannot be read a number, since the fault is told elsewhere."""
-    try:
-        return read(text)
-    except ExpressionError:
-        return read("0")
-
-
-def dimension_of(unit: str) -> Inferred:
-    """What is known of a quantity by its unit: nothing where it has none, or one of old that is not known."""
-    try:
-        return Dimensioned(read_unit(unit).dimension) if unit else "unknown"
-    except UnknownUnitError:
-        return "unknown"
 
 
 def check_units(definition: Definition, topology: Topology) -> UnitCheck:
@@ -248,76 +172,3 @@ def _load(pointer: str, load: Load, kinds: Mapping[str, int]) -> Iterator[Place]
         yield f"{pointer}/potential", load.potential, ENERGY
     elif isinstance(load, JointLoad) and load.coordinate in kinds:
         yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
-
-
-def si_unit(unit: str) -> str:
-    """The SI unit of what was given in a unit; a text of old that is no unit stays as it is."""
-    try:
-        return read_unit(unit).si if unit else unit
-    except UnknownUnitError:
-        return unit
-
-
-def described(parameters: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
-    """Value and unit of parameters in SI, description; ``given`` is what was given in another unit."""
-    return {name: _described(each) for name, each in parameters.items()}
-
-
-def _described(parameter: Parameter) -> dict[str, Any]:
-    value, unit = parameter.value, parameter.unit
-    plain = {"value": in_si(value), "unit": unit, "description": parameter.description}
-    if isinstance(value, Quantity):
-        return plain if value.measure.is_si else plain | {"given": value.model_dump()}
-    written = si_unit(unit) if value is None else unit
-    return plain if written == unit else plain | {"unit": written, "given": {"unit": unit}}
-
-
-def counted(definition: dict[str, Any]) -> dict[str, Any]:
-    """A definition that was stored when units were texts, as plain data that mean the same today.
-
-    Its numbers are SI whatever their unit says, so that a unit which would change them now becomes words.
-    """
-    kinds = [kind for kind in ("parameters", "inputs") if kind in definition]
-    return definition | {kind: {name: _counted(x) for name, x in definition[kind].items()} for kind in kinds}
-
-
-def _counted(given: dict[str, Any]) -> dict[str, Any]:
-    text = given.get("unit", "")
-    if not text or isinstance(given.get("value"), Mapping):
-        return given
-    with suppress(UnknownUnitError):
-        if read_unit(text).is_si or given.get("value") is None:
-            return given
-    return given | {"unit": "", "description": f"{given.get('description', '')} [{text}]".strip()[:2000]}
-
-
-def uncounted(parameters: Mapping[str, Mapping[str, Any]]) -> list[Notice]:
-    """Warnings about units of parameters that were stored when units were texts: their numbers are taken as SI."""
-    message = "'{}' was no unit that counts when this was stored: the number is taken as SI"
-    return [
-        {"pointer": f"/parameters/{name}/unit", "code": "unit-not-counted", "message": message.format(each["unit"])}
-        for name, each in parameters.items()
-        if "unit" in _counted(dict(each)) and _counted(dict(each))["unit"] != each["unit"]
-    ]
-
-
-def without_effect(definition: Definition, used: Collection[str]) -> list[Notice]:
-    """Warnings about parameters and inputs on which neither a formula depends, ``used``: on these, nor a limit."""
-    named = names_in_limits(definition).union(used)
-    return [
-        {"pointer": f"/{kind}s/{name}", "code": "no-effect", "message": f"no formula depends on the {kind} '{name}'"}
-        for kind, names in (("parameter", definition.parameters), ("input", definition.inputs))
-        for name in names
-        if name not in named
-    ]
-
-
-def names_in_limits(definition: Definition) -> set[str]:
-    """The parameters that limits of joints depend on."""
-    limits = [x for body in definition.bodies for x in _flat(body.joint.limits) if isinstance(x, str)]
-    return {str(step.value) for text in limits for step in _steps(text) if step.op == "name"}
-
-
-def _flat(given: Any) -> Iterator[Any]:
-    for x in given or ():
-        yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)

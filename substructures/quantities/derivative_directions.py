@@ -9,6 +9,7 @@ import numpy as np
 
 from substructures.errors import InvalidArgument, InvalidInput
 from substructures.quantities.derivatives import direction
+from substructures.quantities.measured import si_values
 from substructures.quantities.states import StateInput, States, ValueInput, given_values, read_states
 from substructures.tree.model import Model
 
@@ -48,8 +49,9 @@ def _columns(model: Model, given: StateInput | None, field: str, count: int) -> 
     """A direction of the states by coordinate, read like states."""
     if given is None or not model.dof:
         return dict.fromkeys(model.coordinates, 0.0)
+    plain = si_values(given, model.state_units[field], f"/along/{field}")
     try:
-        x = read_states(model, {"q": given}, None).q
+        x = read_states(model, {"q": plain}, None).q
     except InvalidInput as error:
         raise error.moved(lambda pointer: f"/along/{field}" + pointer.removeprefix("/q")) from None
     if len(x) not in (1, count):

@@ -90,6 +90,7 @@ def evaluate(
     limit: int | None = None,
     evaluator: Evaluator = interpreted,
     sources: Sources | None = None,
+    first: int = 0,
 ) -> Evaluation:
     """Numbers of quantities, one name of QUANTITIES or several, for one state or N.
 
@@ -102,8 +103,9 @@ def evaluate(
     (:func:`substructures.mechanics.accelerations.closed_solve`); other quantities are those of the tree without them.
 
     ``limit``: most states; ``evaluator``: what computes outputs of programs; ``sources``: the programs (default: formed
-    when they are first needed, and kept). Raises InvalidArgument (pointers start with the name of the argument),
-    MissingValue (a parameter without a value), TooLarge, and InvalidDocument for closures where they are not taken.
+    when they are first needed, and kept); ``first``: the number of the first state in warnings, if they are part of
+    more. Raises InvalidArgument (pointers start with the name of the argument), MissingValue (a parameter without a
+    value), TooLarge, and InvalidDocument for closures where they are not taken.
     States without a finite result are no exceptions but ``failures``; accelerations that rounding changes noticeably,
     as the metric is nearly singular, are ``warnings`` (``condition`` is the number that tells).
 
@@ -134,7 +136,7 @@ def evaluate(
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
         (
-            *value_warnings(sources, chosen, inputs or (), states.q, others=columns.parameters if columns else ()),
+            *value_warnings(sources, chosen, inputs or (), states.q, columns.parameters if columns else (), first),
             *_warnings(results, told, states.single),
         ),
     )

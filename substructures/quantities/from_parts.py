@@ -22,13 +22,14 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
 from substructures.mechanics.linear3 import Scalar
-from substructures.part.outputs import PartOutputs, Run
+from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
 from substructures.quantities.states import default_number
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import ASKED, couple_parts
 from substructures.tree.document import TreeSpec
+from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
 from substructures.tree.model import model_outputs
 from substructures.tree.mounted_part import MountedPart
 
@@ -36,6 +37,10 @@ Scalars = list[Any]
 #: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
 PartEvaluator = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[str, Scalars]]
 EQUATIONS = ("metric", "christoffel", "gravity", "forces", "bias", "inverse_dynamics", "potential_energy")
+#: the potential of loads that is found by integration, a formula of the tree
+FOUND = "found_potential"
+#: outputs of the program of placements and bindings that only a quantity needs
+ASKED_FOR = {"limits": "limits", FOUND: "potential_energy"}
 #: states that are coupled at a time: their numbers stay in the second-level cache
 BLOCK = 2048
 
@@ -96,6 +101,11 @@ class NumericTree:
     def _constant_program(self) -> Program:
         """Placements, gravity and bindings of the tree as one small program of its parameters."""
         outputs = {"gravity": array((3,), lambda i: self.assembly.gravity[i])}
+        if has_steady_loads(self.assembly.mounted):
+            graph = self.assembly.scope.graph
+            placed = placed_parts(over_formulas(graph), self.assembly.mounted)
+            found = found_potential(graph, placed, self.coordinates)
+            outputs[FOUND] = array((), lambda: found)
         limits = list(self.assembly.limits.values())
         outputs["limits"] = array((len(limits), 2), lambda k, i: limits[k][i])
         for k, m in enumerate(self.assembly.mounted):
@@ -139,9 +149,8 @@ class NumericTree:
     ) -> None:
         """Fills a part of the batch in the results, which are made by the first one."""
         given = {**self._rest, **values}
-        found = interpret_entries(
-            self._constants, given, [x for x in self._constants.outputs if x != "limits" or x in quantities]
-        )
+        asked = [x for x in self._constants.outputs if x not in ASKED_FOR or ASKED_FOR[x] in quantities]
+        found = interpret_entries(self._constants, given, asked)
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
         mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
         pairs = numbers.get("limits", [])
@@ -149,6 +158,7 @@ class NumericTree:
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), limits=limits)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
+        coupled = replace(coupled, potential=coupled.potential + numbers.get(FOUND, [0])[0])
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
         for name in quantities:

@@ -6,11 +6,8 @@ inputs, parameters``. What is wrong with one is an InvalidArgument, whose pointe
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-from decimal import Decimal
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
@@ -20,16 +17,14 @@ from numpy.typing import ArrayLike
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.documents.fields import in_si
-from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, listed
-from substructures.expr.dimensions import Dimensioned
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
 from substructures.expr.syntax import ExpressionError
 from substructures.part.scope import no_names
-from substructures.part.units import dimension_of
+from substructures.quantities.measured import PlaceUnits, numeric, si_values
 from substructures.tree.model import Model
 
 #: states: (n,), (N, n), or by coordinate name a number or (N,) numbers
@@ -37,6 +32,7 @@ StateInput = ArrayLike | Mapping[str, ArrayLike]
 #: by name: one number, or (N,), one for every state
 ValueInput = Mapping[str, ArrayLike]
 NO_UNITS: Mapping[str, str] = {}
+STATE = ("q", "qd", "qdd")
 #: arguments by name
 ArgumentsByName = Mapping[str, Any]
 
@@ -66,7 +62,7 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
     if limit is not None and count > limit:
         raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
     others = []
-    for name in ("qd", "qdd"):
+    for name in STATE[1:]:
         found = _state(model, given.get(name), name)
         if found is not None and len(found[0]) not in (1, count):
             message = f"{len(found[0])} states where there are {count}"
@@ -76,16 +72,25 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
     return States(q[0], qd, others[1], count, q[1] and count == 1)
 
 
+def argument_units(model: Model) -> dict[str, PlaceUnits]:
+    """The SI units of arguments by name, also of a direction ``along``, for :func:`si_values`."""
+    states: dict[str, PlaceUnits] = {**model.state_units}
+    direction: dict[str, PlaceUnits] = {**states, "inputs": model.units}
+    return {**direction, "parameters": model.units, "t": "s", "along": direction}
+
+
 def longest(given: ArgumentsByName) -> int:
     """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
     lengths = [1, _entries(given.get("t"))]
-    for name in ("q", "qd", "qdd"):
+    for name in STATE:
         rows = given.get(name)
+        rows = rows.get("value") if isinstance(rows, Mapping) else rows
         if isinstance(rows, list | tuple | np.ndarray) and _entries(rows) and _entries(rows[0]):
             lengths.append(len(rows))
-    for name in ("q", "qd", "qdd", "inputs", "parameters"):
+    for name in (*STATE, "inputs", "parameters"):
         columns = given.get(name)
-        lengths += map(_entries, columns.values()) if isinstance(columns, Mapping) else ()
+        if isinstance(columns, Mapping) and (name not in STATE or "value" not in columns):
+            lengths += map(_entries, columns.values())
     return max(lengths)
 
 
@@ -100,6 +105,7 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
     """(N, n) array of a state, and whether it was (n,)."""
     if given is None:
         return None
+    given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
         given = _by_name(model, given, name)
     values = numeric(given, f"/{name}")
@@ -131,31 +137,6 @@ def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
     return np.stack(list(columns.values()), axis=-1) if columns else np.zeros((1, 0))
 
 
-def numeric(given: Any, pointer: str) -> Array:
-    """A finite array of doubles from nested lists of numbers. Raises InvalidArgument with the first fault's place."""
-    if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
-        values = given.astype(np.float64, copy=False)
-    else:
-        _check_numbers(given, pointer)
-        try:
-            values = np.asarray(given, dtype=np.float64)
-        except (ValueError, TypeError, OverflowError):
-            raise InvalidArgument.at(pointer, "wrong-length", "a rectangular array of numbers is needed") from None
-    if not np.isfinite(values).all():
-        where = "".join(f"/{int(i)}" for i in np.argwhere(~np.isfinite(values))[0])
-        raise InvalidArgument.at(pointer + where, "number-not-finite", "the number is not finite")
-    return values
-
-
-def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
-    if isinstance(given, (list, tuple)) and depth < 3:
-        for i, x in enumerate(given):
-            if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
-                _check_numbers(x, f"{pointer}/{i}", depth + 1)
-    elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
-        raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
-
-
 def symbol_values(model: Model, given: ArgumentsByName, states: States, needs: Iterable[str]) -> dict[str, Any]:
     """Values of all symbols that the needed outputs of the model depend on. Raises InvalidArgument, MissingValue."""
     values = known_values(model, given, states, model.parameters)
@@ -176,8 +157,7 @@ def known_values(
         if columns is not None:
             rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
             values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
-    t = numeric(0 if given.get("t") is None else given["t"], "/t")
-    values["t"] = _per_state(t, count, "/t")
+    values["t"] = _times(given.get("t"), count)
     if not model.coordinates:
         # nothing else says how many states there are
         values["t"] = np.broadcast_to(values["t"], (count,))
@@ -213,33 +193,13 @@ def given_values(
         if name not in known:
             message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
             raise InvalidArgument.at(pointer, f"unknown-{field[:-1]}", message)
-        plain = si_numbers(value, units.get(name, ""), pointer) if isinstance(value, Mapping) else value
-        result[name] = _per_state(numeric(plain, pointer), count, pointer)
+        result[name] = _per_state(numeric(si_values(value, units.get(name, ""), pointer), pointer), count, pointer)
     return result
 
 
-def si_numbers(given: Mapping[str, Any], unit: str, pointer: str) -> Any:
-    """Numbers in SI from ``{"value", "unit"}``; ``unit``: that of what they are for, empty where it is not known.
-
-    Raises InvalidArgument: ``number-expected``, ``unknown-unit``, ``unit-mismatch``.
-    """
-    if set(given) != {"value", "unit"} or not isinstance(given["unit"], str):
-        raise InvalidArgument.at(pointer, "number-expected", "a number is needed, or 'value' and 'unit'")
-    try:
-        found = read_unit(given["unit"])
-    except UnknownUnitError as error:
-        raise InvalidArgument.at(pointer, "unknown-unit", str(error)) from None
-    expected = dimension_of(unit)
-    if isinstance(expected, Dimensioned) and expected.dimension != found.dimension:
-        raise InvalidArgument.at(pointer, "unit-mismatch", f"{expected} expected, found {given['unit']}")
-    values = numeric(given["value"], pointer + "/value")
-    return values * found.scale if values.ndim else _scaled(given["value"], found)
-
-
-def _scaled(given: Any, unit: Unit) -> float:
-    """One number in SI, correctly rounded; a float stands for its shortest decimal text."""
-    exact = Fraction(repr(float(given)) if isinstance(given, float | np.floating) else str(given)) * unit.factor
-    return float(exact) * math.pi**unit.pi if unit.pi else float(exact)
+def _times(given: Any, count: int) -> Array:
+    """t [s], one or one for every state; 0 where nothing is given."""
+    return _per_state(numeric(si_values(0 if given is None else given, "s", "/t"), "/t"), count, "/t")
 
 
 def _per_state(values: Array, count: int, pointer: str) -> Array:

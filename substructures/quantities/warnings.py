@@ -22,10 +22,12 @@ def value_warnings(
     inputs: Collection[str],
     q: Array,
     others: Collection[str] = (),
+    first: int = 0,
 ) -> list[Notice]:
     """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
     limits left by ``q`` (N, n); gravity that nobody gave.
-    ``others``: parameters that other formulas than those of the model depend on.
+    ``others``: parameters that other formulas than those of the model depend on; ``first``: what states are counted
+    from.
 
     Pointers lead into the request, and for what is so without it into the document of the tree.
     """
@@ -36,14 +38,14 @@ def value_warnings(
         notices += [each for each in tree if each["code"] in BY_VALUE]
     elif parameters:
         known = judge.at_defaults
-        notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters)]
+        notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters, first)]
     else:
         notices += judge.at_defaults
     effective = model.effective.union(others) if judge is None else model.effective.union(others, judge.limiting)
     notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None:
-        notices += judge.left(model.coordinates, q, parameters)
+        notices += judge.left(model.coordinates, q, parameters, first)
     return notices
 
 

@@ -13,9 +13,9 @@ from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, mult
 from substructures.part.definition import Placement
 from substructures.part.frames import axis_rotation
 from substructures.part.outputs import over_formulas
+from substructures.part.parameters import described, si_unit
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
-from substructures.part.units import described, si_unit
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.mounted_part import WORLD, MountedPart

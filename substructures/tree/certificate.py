@@ -11,7 +11,7 @@ from substructures.certificate.outputs import Outputs
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.part.certificate import HOW, defaults_of, plain
+from substructures.part.certificate import HOW, defaults_of, plain, told
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
 
@@ -47,7 +47,6 @@ def certify_tree(
         outputs = tree_outputs(tree, parts, values)
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
-    errors = compare(result, kinds, expected, defaults)
-    certificate: dict[str, Any] = {**HOW, "direct_form": {"max_relative_error": errors}}
+    certificate: dict[str, Any] = {**HOW, "direct_form": told(compare(result, kinds, expected, defaults))}
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate

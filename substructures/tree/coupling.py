@@ -24,8 +24,9 @@ from substructures.mechanics.kinematics import (
     transport,
 )
 from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, dot, transpose
+from substructures.mechanics.newton_euler import Wrench
 from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
-from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart
+from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: outputs of a stored program that coupling uses
 USED = (
@@ -119,10 +120,7 @@ def _evaluated(run: Run, m: MountedPart, payload: Payload, names: Sequence[str])
     inertias = {k: own.own_inertia(k) + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
     outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, inertias)}, names)
     joints = m.part.topology.joints
-    links = tuple(
-        Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
-        for c, j in enumerate(joints)
-    )
+    links = links_of(m.part, outputs)
     momenta = tuple(joint_momentum(j.s, outputs.inertia("subtree", c)) for c, j in enumerate(joints))
     return EvaluatedPart(m, outputs, own, links, momenta)
 
@@ -191,10 +189,16 @@ def _add_gravity(here: PlacedPart, Q_gravity: list[Scalar], Q: list[Scalar]) -> 
 def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:
     """Forces and torques on bodies, for all coordinates on the path to the body."""
     for carrier, wrench in here.applied_wrenches():
-        # Q_a += f . (U_ka + s_a [a = k] e3) + (n + tau e3 x f) . Omega_ka
-        moment = add(wrench.n, cross((0, 0, carrier_link(here.links, carrier).tau), wrench.f))
-        for a, twist in fixed_columns(here.links, here.columns, carrier, here.first).items():
-            Q[a] = Q[a] + pairing(twist, wrench.f, moment)
+        for a, q in wrench_forces(here, carrier, wrench).items():
+            Q[a] = Q[a] + q
+
+
+def wrench_forces(here: PlacedPart, carrier: int, wrench: Wrench) -> dict[int, Scalar]:
+    """Q_a of a wrench about the origin of a carrier, by index in the tree."""
+    # Q_a = f . (U_ka + s_a [a = k] e3) + (n + tau e3 x f) . Omega_ka
+    moment = add(wrench.n, cross((0, 0, carrier_link(here.links, carrier).tau), wrench.f))
+    columns = fixed_columns(here.links, here.columns, carrier, here.first)
+    return {a: pairing(twist, wrench.f, moment) for a, twist in columns.items()}
 
 
 def _dead_potential(here: PlacedPart) -> Scalar:

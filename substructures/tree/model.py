@@ -43,6 +43,7 @@ from substructures.tree.closures import ClosureRows, closure_formulas
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
+from substructures.tree.load_potentials import found_potential
 from substructures.tree.mounted_part import PlacedPart
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units, tree_warnings
@@ -92,6 +93,13 @@ class Model:
         efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
         declared = {**self.parameters, **self.inputs}
         return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
+
+    @cached_property
+    def state_units(self) -> dict[str, dict[str, str]]:
+        """The SI units of coordinates, velocities and accelerations, by the fields q, qd, qdd and coordinate."""
+        rates = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "qdd": ("rad/s^2", "m/s^2")}
+        pairs = [(name, kind == "P") for name, kind in zip(self.coordinates, self.joints, strict=True)]
+        return {field: {name: units[is_slide] for name, is_slide in pairs} for field, units in rates.items()}
 
     @cached_property
     def effective(self) -> frozenset[str]:
@@ -167,8 +175,13 @@ def couple(
         raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
     if admit is not None:
         admit(expected_operations(joints_of))
+    names = [
+        f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
+    ]
     try:
         coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
+        found = found_potential(assembly.scope.graph, coupled.placed, names)
+        coupled = replace(coupled, potential=coupled.potential + found)
         outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
@@ -176,9 +189,6 @@ def couple(
     if len(result) > max_nodes:
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
-    names = [
-        f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
-    ]
     joints = "".join(m.part.joints for m in assembly.mounted)
     plausibility = Plausibility(spec, {name: part.definition for name, part in parts.items()})
     warnings = [*units.warnings, *tree_warnings(spec, parts, result, bool(names)), *plausibility.at_defaults]

@@ -45,6 +45,14 @@ class MountedPart:
     first: int
 
 
+def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
+    """The links of a part's joints, from its stored formulas."""
+    return tuple(
+        Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
+        for c, j in enumerate(part.topology.joints)
+    )
+
+
 @dataclass(frozen=True)
 class EvaluatedPart:
     """The stored formulas of a part: ``outputs`` with what is mounted on its bodies, ``own`` values without it."""

@@ -18,9 +18,10 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import value
 from substructures.expr.syntax import ExpressionError
+from substructures.expr.unit_check import Notice
 from substructures.part.definition import Body, Definition
+from substructures.part.parameters import names_in_limits
 from substructures.part.topology import topology
-from substructures.part.units import Notice, names_in_limits
 from substructures.tree.document import TreeSpec
 
 #: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
@@ -98,17 +99,17 @@ class Plausibility:
         """:meth:`limits` where no parameter is given."""
         return self.limits({})
 
-    def inertias(self, given: Mapping[str, Any]) -> list[Notice]:
+    def inertias(self, given: Mapping[str, Any], first: int = 0) -> list[Notice]:
         """Bodies and rotors that there cannot be with the parameters ``given`` (numbers, or (N,)) and defaults.
 
-        Pointers lead into the tree document, to the instance.
+        Pointers lead into the tree document, to the instance. ``first``: what states are counted from.
         """
         values, notices = _Values(self._texts, given), []
         for i, instance in enumerate(self.spec.instances):
             definition = self.definitions[instance.name]
             names = _OfInstance(values, instance.name, definition.parameters)
             for body in definition.bodies:
-                for code, message in _faults(body, names):
+                for code, message in _faults(body, names, first):
                     told = f"instance '{instance.name}', body '{body.name}': {message}"
                     notices.append({"pointer": f"/instances/{i}", "code": code, "message": told})
         return notices
@@ -127,8 +128,8 @@ class Plausibility:
                     found[f"{instance.name}.{joint.coordinate}"] = low, high, UNITS[joint.s]
         return found
 
-    def left(self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any]) -> list[Notice]:
-        """Coordinates beyond their limits in states ``q`` (N, n)."""
+    def left(self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any], first: int = 0) -> list[Notice]:
+        """Coordinates beyond their limits in states ``q`` (N, n); ``first``: what states are counted from."""
         limits = self.limits(given) if given else self.limits_at_defaults
         ends = _ends(limits, coordinates) if given else self._ends_at_defaults(coordinates)
         if ((q >= ends[0]) & (q <= ends[1])).all():
@@ -140,9 +141,9 @@ class Plausibility:
             low, high, unit = limits[name]
             bad = np.flatnonzero((q[:, a] < low) | (q[:, a] > high))
             if len(bad):
-                first = int(bad[0])
-                range_ = " to ".join(f"{np.broadcast_to(x, len(q))[first]:.6g}" for x in (low, high))
-                value = f"{q[first, a]:.6g} {unit} in state {first}{_more(len(bad))}"
+                k = int(bad[0])
+                range_ = " to ".join(f"{np.broadcast_to(x, len(q))[k]:.6g}" for x in (low, high))
+                value = f"{q[k, a]:.6g} {unit} in state {first + k}{_more(len(bad))}"
                 message = f"'{name}' is {value}; its joint has limits {range_}"
                 notices.append({"pointer": "/q", "code": "limits-left", "message": message})
         return notices
@@ -176,39 +177,41 @@ def _value(given: Any, names: Mapping[str, Any]) -> Any:
         return None
 
 
-def _faults(body: Body, names: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _faults(body: Body, names: Mapping[str, Any], first: int) -> Iterator[tuple[str, str]]:
     """Code and message of what a body cannot have; numbers alone were looked at when formulas were derived."""
     tensor = body.inertia
     inertia = [getattr(tensor, e) for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
     armature = body.joint.armature
     for given in armature if isinstance(armature, tuple) else (armature,):
         if isinstance(given, str):
-            yield from _negative("armature", _value(given, names), "kg m^2")
+            yield from _negative("armature", _value(given, names), "kg m^2", first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
         return
     numbers = [_value(x, names) for x in (body.mass, *body.com, *inertia)]
     if isinstance(body.mass, str):
-        yield from _negative("mass", numbers[0], "kg")
+        yield from _negative("mass", numbers[0], "kg", first)
     if all(x is not None for x in numbers):
         m, x, y, z, *moments = np.broadcast_arrays(*numbers)
-        yield from _impossible(moments, (m, (x, y, z)) if tensor.about == "origin" else None)
+        yield from _impossible(moments, (m, (x, y, z)) if tensor.about == "origin" else None, first)
 
 
-def _negative(what: str, given: Any, unit: str) -> Iterator[tuple[str, str]]:
+def _negative(what: str, given: Any, unit: str, first: int) -> Iterator[tuple[str, str]]:
     if given is None:
         return
     found = np.atleast_1d(given)
     bad = np.flatnonzero(~(found >= 0))
     if len(bad):
         is_what = "is negative" if found[bad[0]] < 0 else "is not a number"
-        yield f"negative-{what}", f"the {what} {found[bad[0]]:g} {unit} {is_what}{_place(found, bad)}"
+        yield f"negative-{what}", f"the {what} {found[bad[0]]:g} {unit} {is_what}{_place(found, bad, first)}"
 
 
-def _place(found: Array, bad: Indices) -> str:
-    return f", in state {bad[0]}{_more(len(bad))}" if len(found) > 1 else ""
+def _place(found: Array, bad: Indices, first: int) -> str:
+    return f", in state {first + bad[0]}{_more(len(bad))}" if len(found) > 1 else ""
 
 
-def _impossible(moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | None) -> Iterator[tuple[str, str]]:
+def _impossible(
+    moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | None, first: int
+) -> Iterator[tuple[str, str]]:
     """The tensor about the mass centre must have principal moments that obey the triangle inequality."""
     xx, yy, zz, xy, xz, yz = moments
     # what overflows is told below
@@ -226,4 +229,4 @@ def _impossible(moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | N
     if len(bad):
         shown = ", ".join(f"{x:.6g}" for x in np.sort(eigenvalues[bad[0]].sum() - eigenvalues[bad[0]]))
         message = f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre"
-        yield "impossible-inertia", f"{message} (triangle inequality){_place(J, bad)}"
+        yield "impossible-inertia", f"{message} (triangle inequality){_place(J, bad, first)}"

@@ -8,6 +8,7 @@ from typing import Any
 from substructures.documents.fields import in_si
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
+from substructures.part.certificate import require_no_less
 from substructures.part.definition import Definition
 from substructures.tree.certificate import certify_tree
 from substructures.tree.document import TreeSpec
@@ -25,6 +26,7 @@ def recheck_tree(
     Raises VerificationFailed when program or summary disagree with the documents.
     """
     certificate = certify_tree(spec, definitions, summary, program)
+    require_no_less(summary.get("certificate", {}), certificate)
     defaults = {name: in_si(p.value) for name, p in spec.parameters.items()}
     for instance, definition in definitions.items():
         defaults |= {f"{instance}.{name}": in_si(p.value) for name, p in definition.parameters.items()}

@@ -9,19 +9,10 @@ from typing import Any
 from substructures.documents.units import Dimension
 from substructures.expr.dimensions import Dimensioned
 from substructures.expr.program import Program
+from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
+from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part
-from substructures.part.units import (
-    ACCELERATION,
-    LENGTH,
-    Notice,
-    Place,
-    UnitCheck,
-    dimension_of,
-    names_in_limits,
-    parameter_places,
-    placement_places,
-    vector,
-)
+from substructures.part.units import ACCELERATION, LENGTH, parameter_places, placement_places, vector
 from substructures.tree.document import TreeSpec
 
 #: parameters of a definition by name, with their SI units

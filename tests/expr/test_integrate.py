@@ -7,7 +7,7 @@ import pytest
 from substructures.expr.differentiate import gradient
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.integrate import antiderivative, filtered, potential, summands
+from substructures.expr.integrate import antiderivative, filtered, needed, potential
 from substructures.expr.parse import parse
 
 
@@ -58,6 +58,10 @@ def test_terms_by_their_symbols() -> None:
     force, kept, other = read(graph, "(x + y)*(x - 2*a)/b", "(x^2 - 2*a*x)/b", "1/(1 + y)")
     assert filtered(force, {"x", "a", "b"}) is kept
     assert filtered(other, {"x"}) is None
-    terms = summands(read(graph, "-(x - 2*y) + sin(x + y)")[0])
-    assert graph.sum(terms) is read(graph, "2*y - x + sin(x + y)")[0]
-    assert len(terms) == 3
+
+
+def test_symbols_that_are_needed() -> None:
+    graph = Graph()
+    force, large = read(graph, "(x + y)^2 - 2*x*y - y^2 + sin(a)^2 + cos(a)^2", "(1 + x + y + a)^9")
+    assert needed(force) == {"x"}
+    assert needed(large, limit=50) == {"x", "y", "a"}

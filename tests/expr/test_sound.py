@@ -73,6 +73,18 @@ def test_numbers_and_symbols_are_literal() -> None:
     assert read("(q0+4)*(q0+9)-(q0+2)*(q0+11)", graph) is graph.number(14)
 
 
+@pytest.mark.parametrize("best", ["(q0*q1+q1)/q1", "(q0*sqrt(q1)+sqrt(q1))/sqrt(q1)", "(q0/q1+1/q1)*q1"])
+@pytest.mark.parametrize("text", ["q0^2+q0+1-q0^2", "(q0^3+q0+1)-q0^3"])
+def test_zero_adds_nothing(best: str, text: str) -> None:
+    """Also where the table of fingerprints has another node of the same value, which may not stand for this one."""
+    graph = Graph()
+    other, x = read(best, graph), read(text, graph)
+    assert graph.table[x.fp] is other is not x
+    assert (x + 0) is (graph.zero + x) is (x - 0) is x
+    assert graph.sum([x, graph.zero]) is x
+    assert (0 - x) is -x
+
+
 def test_whole_turns_are_left_out() -> None:
     graph = Graph()
     assert read("sin(q+2*pi)", graph) is read("sin(q)", graph)

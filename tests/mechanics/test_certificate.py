@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers, verified
-from random_trees import Kind, random_definition
+from random_trees import Kind, coordinates_of, random_definition
 
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.certificate.compare import TOLERANCE
@@ -272,6 +272,18 @@ def test_what_a_wrong_derivation_hands_on_is_found(monkeypatch: pytest.MonkeyPat
         derive(Definition.read(EVERYTHING))
 
 
+def dof_of(plain: dict[str, Any]) -> int:
+    return sum(len(coordinates_of(body)) for body in plain["bodies"])
+
+
+def joint_load(rng: np.random.Generator, plain: dict[str, Any]) -> dict[str, Any]:
+    """A force on one coordinate that depends on it and on another one."""
+    names = [name for body in plain["bodies"] for name in coordinates_of(body)]
+    a, b = (str(rng.choice(names)) for _ in range(2))
+    force = f"-1.3*{a}^3 + 0.7*sin(2*{a} + 1) - 0.2*{a}*{b}^2 + u1*{b} - 0.4*{a}' + 2.5 + 0.3*sin(t)"
+    return {"type": "joint", "coordinate": a, "force": force}
+
+
 @pytest.mark.deep
 def test_damage_of_twenty_mechanisms_is_found() -> None:
     """Every output of parts of the catalogue and of random ones, and every number in their programs."""
@@ -281,10 +293,11 @@ def test_damage_of_twenty_mechanisms_is_found() -> None:
     )
     definitions = [Definition.read(catalogue.load(name)) for name in names]
     for seed in range(6):
-        plain = random_definition(np.random.default_rng(seed), Kind(bodies=4, loads=3, springs=1))
-        # beside forces that are formulas V is compared by its gradient: tests/mechanics/test_certified_forces.py
-        plain["loads"] = [load for load in plain["loads"] if load["type"] != "joint"]
-        definitions.append(Definition.read(plain))
+        # with joint loads, whose potential is found by integration
+        rng = np.random.default_rng(seed)
+        plain = random_definition(rng, Kind(bodies=4, loads=3, springs=1))
+        plain["loads"] += [joint_load(rng, plain) for _ in range(2)] if dof_of(plain) else []
+        definitions.append(Definition.read(read_json(as_json(plain))))
     counts: Counter[str] = Counter()
     missed = []
     for number, definition in enumerate(definitions):

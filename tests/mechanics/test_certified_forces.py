@@ -18,8 +18,6 @@ from substructures.tree.certificate import certify_tree
 
 #: what they change
 FORCES = frozenset(("applied", "potential", "forces", "potential_energy", "limits"))
-#: laws whose potential is found by integration alone; nothing would be right, too
-ALL_FOUND = ("laws that depend on the state", "force with a potential", "force beside one in the time")
 #: parts with forces beside those above: end stops, laws that depend on the state, potentials given and found
 LAWS: dict[str, Plain] = {
     "stops": {
@@ -95,7 +93,7 @@ def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
     rng = np.random.default_rng(5)
     for kind, place, wrong in damages(part.program, rng, elements=2):
         name = place.partition("[")[0]
-        if name in FORCES and not (kind == "left out" and name == "potential" and law in ALL_FOUND):
+        if name in FORCES:
             assert found_in_part(part, wrong) is not None, (kind, place)
     for kind, place, wrong in damages(model.program, rng, elements=2):
         if place.partition("[")[0] in FORCES:
@@ -115,7 +113,7 @@ def test_what_is_told_of_a_wrong_potential() -> None:
     time = next(i for i, s in enumerate(program.symbols) if s.name == "x'")
     n = len(program.operations)
     wrong = _with_potential(program, [("sym", time), ("add", entry, n)])
-    assert "with the time, inputs and velocities is" in str(found_in_part(part, wrong))
+    assert "potential where all coordinates are zero is" in str(found_in_part(part, wrong))
 
 
 def _with_potential(program: Program, more: list[Any]) -> Program:
@@ -196,3 +194,71 @@ def test_no_random_law_is_refused(seed: int) -> None:
     loads: list[Plain] = [{"type": "joint", "coordinate": c, "force": random_law(rng)} for c in "xyx"]
     loads.append({"type": "potential", "potential": random_law(rng).replace("x'", "x")})
     part_with({"joint": {"stiffness": random_law(rng), "rest": "l"}, "loads": loads[int(rng.integers(3)) :]})
+
+
+#: factors of polynomials and trigonometric polynomials, some in disguise
+EXACT = (
+    *("@", "@^2", "k", "2", "cos(@)", "sin(2*@ - l)", "(1 + @)", "(@ - @)", "(0*@ + 1)", "sin(@)^2", "(1 - cos(@)^2)"),
+    *("u", "t", "q1'", "(@ - t)", "(sin(t)^2 + cos(t)^2)", "(t + @ - t)", "cos(@/2 + pi/7)", "1/(1 + k)", "(@ + k)^4"),
+)
+
+
+def exact_forces(rng: np.random.Generator) -> dict[str, str]:
+    """Of four coordinates, some of which are gradients, and some of which belong together."""
+    forces: dict[str, str] = {}
+    for _ in range(rng.integers(0, 3)):
+        a, b = (f"q{i}" for i in rng.choice([1, 2, 3, 4], 2, replace=False))
+        # V = k a^2 cos(b)
+        for q, force in ((a, f" - 2*k*{a}*cos({b})"), (b, f" + k*{a}^2*sin({b})")):
+            forces[q] = forces.get(q, "0") + force
+    for _ in range(rng.integers(1, 3)):
+        term = "*".join(rng.choice(EXACT, rng.integers(1, 4)))
+        while "@" in term:
+            term = term.replace("@", f"q{rng.integers(1, 5)}", 1)
+        q = f"q{rng.integers(1, 5)}"
+        forces[q] = f"{forces.get(q, '0')} {rng.choice(('+', '-'))} {term}"
+    return forces
+
+
+@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.deep) for s in range(10, 400))])
+def test_potentials_of_trigonometric_polynomials_are_decided(seed: int) -> None:
+    """Right ones are certified, whatever is a gradient of them; one that is zero or off by a constant is not."""
+    rng = np.random.default_rng(seed)
+    loads = [{"type": "joint", "coordinate": q, "force": force} for q, force in exact_forces(rng).items()]
+    bodies = [
+        {"name": f"b{i}", "parent": f"b{i - 1}" if i > 1 else "base", "mass": 1,
+         "joint": {"type": "prismatic" if i % 2 else "revolute", "coordinate": f"q{i}", "theta": f"0.{i}"}}
+        for i in range(1, 5)
+    ]  # fmt: skip
+    parameters = {"k": {"value": 1.7}, "l": {"value": 0.6}}
+    plain = {"name": "a", "parameters": parameters, "inputs": {"u": {}}, "bodies": bodies, "loads": loads}
+    part = derive(Definition.read(read_json(as_json(plain))))
+    assert errors_of(part.certificate)["potential"] is not None
+    assert "potential_left_out" not in part.certificate["direct_form"]
+    output = part.program.outputs["potential"]
+    if not output.entries:
+        return
+    n = len(part.program.operations)
+    shifted = _with_potential(part.program, [("rat", "1", "1000000"), ("add", output.entries[0], n)])
+    assert "where all coordinates are zero" in str(found_in_part(part, shifted))
+    nothing = {**part.program.outputs, "potential": replace(output, entries=(), index=())}
+    assert "the change of potential with" in str(found_in_part(part, replace(part.program, outputs=nothing)))
+
+
+@pytest.mark.parametrize(
+    "loads",
+    [
+        [{"type": "joint", "coordinate": "x", "force": "x/sqrt(1 + x^2)"}],
+        [{"type": "spring", "stiffness": "1 + x^2", "length": "l", "from": {"body": "base", "at": [0, 0, 1]},
+          "to": {"body": "a"}}],
+    ],
+)  # fmt: skip
+def test_what_is_left_out_is_told(loads: list[Plain]) -> None:
+    """A gradient beyond what is integrated; and one that was found, beside it, is not left out unseen."""
+    part = part_with({"loads": loads})
+    assert part.certificate["direct_form"]["potential_left_out"] == ["x"]
+    assert part.certificate["warnings"][-1]["code"] == "no-potential"
+    springs = part_with(LAWS["spring that depends on the state"])
+    assert "potential_left_out" not in springs.certificate["direct_form"]
+    *_, model = two_of(part)
+    assert model.certificate["direct_form"]["potential_left_out"] == ["x.x", "y.x"]

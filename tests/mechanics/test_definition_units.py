@@ -10,8 +10,8 @@ import pytest
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate
 from substructures.documents import read_json
+from substructures.part.parameters import counted, uncounted
 from substructures.part.part import Part, recheck
-from substructures.part.units import counted, uncounted
 from tests.bad_documents import GOOD, TREE, Path, changed
 
 METRES: dict[str, Any] = {

@@ -106,6 +106,33 @@ def test_what_varies_in_time_is_left_out() -> None:
     np.testing.assert_allclose(V, 0.5)
 
 
+@pytest.mark.parametrize(
+    ("text", "energy"),
+    [
+        ("-2*x + 2*sin(t)", lambda x: x**2),
+        ("-2*(x + sin(t))", lambda x: x**2),
+        ("-(x + t)^2", lambda x: x**3 / 3),
+        ("-(x + sin(t))*(1 + x^2)/2", lambda x: x**2 / 4 + x**4 / 8),
+        ("3*(t - 2*(x + u*t) - 2)", lambda x: 3 * x**2 + 6 * x),
+        ("-x*(sin(t)^2 + cos(t)^2)", lambda x: x**2 / 2),
+        ("-x/(2 + sin(t))", lambda x: 0 * x),
+    ],
+)
+def test_what_varies_in_time_takes_nothing_else_with_it(text: str, energy: Any) -> None:
+    """However the sum is written, also inside of a product; the certificate agrees, as there would be no model else."""
+    x = np.array([0.7, -1.2])
+    model = slide(law("x", text)) if "u" not in text else plane(law("x", text), inputs={"u": {}})
+    q = x[:, None] if model.dof == 1 else np.stack([x, 0 * x], axis=-1)
+    np.testing.assert_allclose(energy_and_forces(model, q, t=0.4)[0], energy(x), atol=1e-12)
+
+
+def test_a_stiffness_that_depends_on_place_and_time() -> None:
+    """-(4 x + sin t) (x - 0.1) has the potential of -4 x (x - 0.1)."""
+    x = np.array([0.7, -1.2])
+    V, _ = energy_and_forces(slide(stiffness="4*x + sin(t)", rest="0.1"), x[:, None], t=0.4)
+    np.testing.assert_allclose(V, 4 * x**3 / 3 - 0.2 * x**2, atol=1e-12)
+
+
 def test_a_law_of_a_joint() -> None:
     """Duffing's spring -4 x (1 + x^2), given as a load, as a stiffness, as a potential."""
     ways = [
@@ -192,7 +219,11 @@ def test_constant_forces_in_the_world_have_a_potential_on_any_host() -> None:
     values = {"a.q": q[:, 0], "b.q": q[:, 1], "b.F": 0.7, "tau.a.q": 0.0, "tau.b.q": 0.0}
     direct = NumericTree(spec, parts).evaluate(values, ["potential_energy"])
     np.testing.assert_allclose(direct["potential_energy"], V, rtol=1e-13)
-    assert energy_and_forces(model_of(follower, NONE), [[0.3]])[0][0] == 0
+    # on two joints it is no gradient; on one alone -Q q is its potential
+    turning = couple(spec, parts | {"b": derive(Definition.read(follower))})
+    assert energy_and_forces(turning, [[0.3, 0.4]])[0][0] == 0
+    V, Q = energy_and_forces(model_of(follower, NONE), [[0.3]])
+    np.testing.assert_allclose(V, -0.3 * Q[0])
 
 
 def test_a_potential_has_no_velocities() -> None:

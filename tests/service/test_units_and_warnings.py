@@ -16,13 +16,15 @@ from sqlalchemy import select, update
 
 from service.cli.main import main
 from service.database.tables import trees
-from service.operations import catalogue
+from service.operations import batches, catalogue
 from service.store import Store
 from service.summaries import part_content
 from substructures import Definition, Part, derive
 from substructures.formats.arrays import as_answer, read_npz
+from substructures.formats.arrow import read_tables
 
 from .conftest import HAND, PENDULUM, TREE
+from .test_arrow import lists, post, stream
 
 Plain = dict[str, Any]
 
@@ -216,6 +218,29 @@ def test_warnings_are_in_npz_too(filled: TestClient) -> None:
     answer = filled.post("/v1/trees/cell/evaluations", json=body, headers={"Accept": "application/x-npz"})
     found = as_answer(read_npz(BytesIO(answer.content), 10**6))
     assert [warning["code"] for warning in found["warnings"]] == ["negative-mass", "impossible-inertia"]
+
+
+def test_warnings_of_all_batches_are_in_streams(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Impossible bodies and limits that only the last batch has, with their places in the whole."""
+    limited = {"type": "revolute", "coordinate": "q", "limits": [-1, 1]}
+    _posted(filled, "substructures", _pendulum(rod={"joint": limited}))
+    _posted(filled, "trees", {"name": "cell", "instances": [{"name": "arm", "substructure": "other"}]})
+    columns = (([0, 0.5], [1, 1]), ([0.1, 0.2], [1, 1]), ([0, 2], [1, -1]))
+    parts = [{"q": lists(np.array(q, float)[:, None]), "parameters.arm.m": np.array(m, float)} for q, m in columns]
+    body = stream(parts, {"quantities": ["metric"]})
+    whole = post(filled, body, "application/json").json()["warnings"]
+    codes = ["gravity-not-given", "negative-mass", "impossible-inertia", "limits-left"]
+    assert [each["code"] for each in whole] == codes
+    for size in (10**9, 1):
+        monkeypatch.setattr(batches, "PART", size)
+        tables = list(read_tables(BytesIO(post(filled, body).content)))
+        told = [each for table in tables for each in table["warnings"]]
+        assert told[0] == whole[0]  # said once
+        assert [each["code"] for each in told] == codes
+        assert [each["pointer"] for each in told] == [each["pointer"] for each in whole]
+        assert tables[0]["warnings"] == told[:1]
+        # a part of one state has no number, and stands in its row
+        assert size == 1 or told == whole
 
 
 def test_what_was_stored_when_units_were_texts_keeps_its_meaning(client: TestClient, store: Store) -> None:

@@ -16,8 +16,8 @@ from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
+from substructures.part.parameters import described
 from substructures.part.part import Part, derive
-from substructures.part.units import described
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
 from substructures.tree.units import check_tree_units

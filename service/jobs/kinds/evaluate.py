@@ -25,7 +25,7 @@ from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, ins
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, sources_of
-from service.jobs.kinds.values import check_described, check_states
+from service.jobs.kinds.values import check_described, check_states, without_formulas
 from service.schemas.jobs import ItemDocument
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
@@ -64,7 +64,7 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
     tree = known_tree(item, library)
     summary = summary_of(tree.summary)
-    request = _request(item)
+    request = _request(item, without_formulas(summary))
     chunk = states_per_item(request.quantities, len(summary["coordinates"]), len(summary["frames"]), limits)
     described = _described(item, request, tree, summary, library)
     with inside("/request"):
@@ -91,7 +91,8 @@ def states_per_item(quantities: Sequence[str], dof: int, frames: int, limits: Li
     return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
-def _request(item: ItemDocument) -> EvaluationRequest:
+def _request(item: ItemDocument, model: Model) -> EvaluationRequest:
+    """The request of an item, numbers in SI; ``model``: without formulas. Raises InvalidInput."""
     request = item["request"]
     if not isinstance(request, dict):
         raise InvalidDocument.at("/request", "object-expected", "an object is needed")
@@ -107,16 +108,15 @@ def _request(item: ItemDocument) -> EvaluationRequest:
     with inside("/request"):
         read = EvaluationRequest.read(request)
         read_quantities(read.quantities)
-        return read
+        return read.in_si(model)
 
 
 def _described(
     item: ItemDocument, request: EvaluationRequest, tree: StoredTree, summary: Mapping[str, Any], library: Library
 ) -> ItemDocument:
     """The grid or sample, complete; empty when the states are listed."""
-    coordinates = summary["coordinates"]
-    known = {*coordinates, *summary["parameters"]}
-    known |= {f"{c}'" for c in coordinates} | {f"tau.{c}" for c in coordinates} | summary.get("inputs", {}).keys()
+    model = without_formulas(summary)
+    known = model.units | model.state_units["q"] | {f"{c}'": unit for c, unit in model.state_units["qd"].items()}
     if "grid" in item:
         grid = read_grid(item["grid"], known)
         _check_once(request, "/grid", [name for name, _ in grid])
@@ -188,7 +188,9 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     progress(0.1)
     columns = _columns(item)
     request = EvaluationRequest.read(_with_columns(model, _uploaded(item, blobs), columns))
-    answer = evaluate(model, **request.arguments(), evaluator=_evaluator, sources=sources).plain()
+    first = item["range"][0] if "range" in item else 0
+    found = evaluate(model, **request.arguments(), evaluator=_evaluator, sources=sources, first=first)
+    answer = found.plain()
     progress(0.9)
     data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)
     summary = {

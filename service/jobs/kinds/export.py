@@ -12,10 +12,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
+from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.printing import (
     Style,
-    bound,
     check_quantity,
     described,
     made_text,
@@ -34,6 +34,7 @@ from service.refusals import Refused
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step
+from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
@@ -88,21 +89,24 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
 
 
 def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
-    """What is no ``name:value``, and unknown parameters; the regressor has more of them than the other formulas."""
+    """What is no ``name:value``, unknown parameters, and units that do not fit; the regressor has more parameters than
+    the other formulas."""
     known = summary["parameters"]
-    for given in filter(None, (each.strip() for each in item["bind"].split(","))):
-        name, colon, value = given.partition(":")
-        if given == "defaults":
+    for name, given in bindings(item["bind"]):
+        if given is None and name == DEFAULTS:
             continue
-        if not colon or not _is_expression(value):
-            yield Fault("/bind", "bind", f"'{given[:80]}' is not name:value")
+        value = "" if given is None else quantity_of(given)
+        if not _is_expression(value.value if isinstance(value, Quantity) else value):
+            yield Fault("/bind", "bind", f"'{(name if given is None else f'{name}:{given}')[:80]}' is not name:value")
         elif name not in known and item["quantity"] not in OUTPUTS:
             message = f"there is no parameter '{name[:80]}'; there are {listed(known)}"
             yield Fault("/bind", "unknown-parameter", message)
+        else:
+            yield from (replace(fault, pointer="/bind") for fault in unit_faults(name, value, known))
 
 
 @lru_cache(maxsize=10_000)
-def _is_expression(text: str) -> bool:
+def _is_expression(text: Any) -> bool:
     """Whether this is a number or an expression in any names."""
     graph = Graph()
     try:

@@ -6,7 +6,7 @@ Columns are named as in a tree: coordinates, velocities (``arm.q1'``), parameter
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,22 +16,29 @@ from service.schemas.state_sets import Grid, Sample
 from substructures.array import Array
 from substructures.documents import pointer_step, read_model
 from substructures.errors import Fault, InvalidDocument
+from substructures.quantities.measured import PlaceUnits, si_values
 
 NamedAxis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
 DRAWS = 4
 
 
-def read_grid(given: Any, known: set[str]) -> list[NamedAxis]:
-    """Name and values of every axis of a :class:`Grid`. Raises InvalidDocument."""
+def read_grid(given: Any, known: Mapping[str, str]) -> list[NamedAxis]:
+    """Name and values in SI of every axis of a :class:`Grid`; ``known``: SI units by name. Raises InvalidInput."""
     if not isinstance(given, Mapping) or not given:
         raise InvalidDocument.at("/grid", "object-expected", "an object of axes by name is needed")
     _check_names("/grid", given, known)
     with inside("/grid"):
-        return read_model(Grid, given).axes()
+        return read_model(Grid, si_values(given, axis_units(given, known), "")).axes()
 
 
-def _check_names(pointer: str, given: Mapping[str, Any], known: set[str]) -> None:
+def axis_units(given: Mapping[str, Any], known: Mapping[str, str]) -> PlaceUnits:
+    """What stands in a grid: values, or the ends of a span of them."""
+    spans = {name for name, axis in given.items() if isinstance(axis, Mapping) and "from" in axis}
+    return {name: dict.fromkeys(("from", "to"), unit) if name in spans else unit for name, unit in known.items()}
+
+
+def _check_names(pointer: str, given: Mapping[str, Any], known: Collection[str]) -> None:
     faults = [
         Fault(pointer + pointer_step(name), "unknown-name", f"the tree has no coordinate, parameter or input '{name}'")
         for name in given
@@ -54,15 +61,18 @@ def grid_states(axes: Sequence[NamedAxis], start: int, stop: int) -> dict[str, A
     }
 
 
-def read_sample(given: Any, known: set[str], limits: Mapping[str, tuple[float, float] | None]) -> dict[str, Any]:
+def read_sample(
+    given: Any, known: Mapping[str, str], limits: Mapping[str, tuple[float, float] | None]
+) -> dict[str, Any]:
     """A :class:`Sample` as plain data, with a range for every coordinate: the one given, or its joint limits.
 
-    ``limits``: by coordinate; None where the joint has none that are numbers. Raises InvalidDocument.
+    ``known``: SI units by name; ``limits``: by coordinate; None where the joint has none that are numbers. Raises
+    InvalidInput.
     """
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("/sample", "sample", "a sample has 'count', 'seed' and 'ranges'")
     with inside("/sample"):
-        sample = read_model(Sample, {"count": None, **given})
+        sample = read_model(Sample, {"count": None, **si_values(given, {"ranges": known}, "")})
     _check_names("/sample/ranges", sample.ranges, known)
     missing = [name for name, limit in limits.items() if limit is None and name not in sample.ranges]
     if missing:

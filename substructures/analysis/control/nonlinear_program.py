@@ -20,7 +20,7 @@ from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument
-from substructures.quantities.states import numeric
+from substructures.quantities.measured import numeric
 from substructures.tree.model import Model
 
 #: variables and conditions: the solver's time grows with their third power

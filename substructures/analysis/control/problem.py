@@ -24,7 +24,8 @@ from substructures.errors import Fault, InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.part.scope import Scope
-from substructures.quantities.states import numeric, read_states
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states
 from substructures.tree.model import Model, require_open
 
 MAX_INTERVALS = 10_000

@@ -29,7 +29,8 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.evaluation import evaluate
-from substructures.quantities.states import numeric, read_states, symbol_values
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: a scaled regressor of a larger condition number is badly excited

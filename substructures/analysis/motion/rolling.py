@@ -29,7 +29,7 @@ from substructures.compile import compile_program
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.quantities.limits import reached
-from substructures.quantities.states import numeric
+from substructures.quantities.measured import numeric
 
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
 NEEDS = ("metric", "forces", "potential_energy")

@@ -18,7 +18,8 @@ from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import numbers
 from substructures.array import Array
 from substructures.errors import InvalidArgument
-from substructures.quantities.states import numeric, read_states, symbol_values
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: two places closer than this are one [rad, m]

@@ -15,7 +15,8 @@ from substructures.analysis.given import StateArray, numbers
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, listed
-from substructures.quantities.states import numeric, read_states
+from substructures.quantities.measured import numeric
+from substructures.quantities.states import read_states
 from substructures.tree.model import Model
 
 #: of a parameter

@@ -1,0 +1,85 @@
+"""What is told of parameters: in SI, as they were given, as older versions meant them, without effect."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from substructures.documents.fields import Quantity, in_si
+from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.expr.unit_check import Notice, steps_of
+from substructures.part.definition import Definition, Parameter
+
+
+def si_unit(unit: str) -> str:
+    """The SI unit of what was given in a unit; a text of old that is no unit stays as it is."""
+    try:
+        return read_unit(unit).si if unit else unit
+    except UnknownUnitError:
+        return unit
+
+
+def described(parameters: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
+    """Value and unit of parameters in SI, description; ``given`` is what was given in another unit."""
+    return {name: _described(each) for name, each in parameters.items()}
+
+
+def _described(parameter: Parameter) -> dict[str, Any]:
+    value, unit = parameter.value, parameter.unit
+    plain = {"value": in_si(value), "unit": unit, "description": parameter.description}
+    if isinstance(value, Quantity):
+        return plain if value.measure.is_si else plain | {"given": value.model_dump()}
+    written = si_unit(unit) if value is None else unit
+    return plain if written == unit else plain | {"unit": written, "given": {"unit": unit}}
+
+
+def counted(definition: dict[str, Any]) -> dict[str, Any]:
+    """A definition that was stored when units were texts, as plain data that mean the same today.
+
+    Its numbers are SI whatever their unit says, so that a unit which would change them now becomes words.
+    """
+    kinds = [kind for kind in ("parameters", "inputs") if kind in definition]
+    return definition | {kind: {name: _counted(x) for name, x in definition[kind].items()} for kind in kinds}
+
+
+def _counted(given: dict[str, Any]) -> dict[str, Any]:
+    text = given.get("unit", "")
+    if not text or isinstance(given.get("value"), Mapping):
+        return given
+    with suppress(UnknownUnitError):
+        if read_unit(text).is_si or given.get("value") is None:
+            return given
+    return given | {"unit": "", "description": f"{given.get('description', '')} [{text}]".strip()[:2000]}
+
+
+def uncounted(parameters: Mapping[str, Mapping[str, Any]]) -> list[Notice]:
+    """Warnings about units of parameters that were stored when units were texts: their numbers are taken as SI."""
+    message = "'{}' was no unit that counts when this was stored: the number is taken as SI"
+    return [
+        {"pointer": f"/parameters/{name}/unit", "code": "unit-not-counted", "message": message.format(each["unit"])}
+        for name, each in parameters.items()
+        if "unit" in _counted(dict(each)) and _counted(dict(each))["unit"] != each["unit"]
+    ]
+
+
+def without_effect(definition: Definition, used: Collection[str]) -> list[Notice]:
+    """Warnings about parameters and inputs on which neither a formula depends, ``used``: on these, nor a limit."""
+    named = names_in_limits(definition).union(used)
+    return [
+        {"pointer": f"/{kind}s/{name}", "code": "no-effect", "message": f"no formula depends on the {kind} '{name}'"}
+        for kind, names in (("parameter", definition.parameters), ("input", definition.inputs))
+        for name in names
+        if name not in named
+    ]
+
+
+def names_in_limits(definition: Definition) -> set[str]:
+    """The parameters that limits of joints depend on."""
+    limits = [x for body in definition.bodies for x in _flat(body.joint.limits) if isinstance(x, str)]
+    return {str(step.value) for text in limits for step in steps_of(text) if step.op == "name"}
+
+
+def _flat(given: Any) -> Iterator[Any]:
+    for x in given or ():
+        yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)

@@ -1,0 +1,400 @@
+"""Every number of a request that has a dimension may have a unit, which is converted and checked: one table of them.
+
+The table is walked in two ways: the schemas of all requests say which numbers have a dimension, and none of these may
+be missing here; and every place is read with a unit, without one, and with a wrong one.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from decimal import Decimal
+from math import pi
+from typing import Any, get_args
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from fastapi.testclient import TestClient
+from pydantic import BaseModel
+
+from service.analyses.numbers import ANALYSES
+from service.analyses.requests import arguments, read_request
+from service.schemas.measured import WithUnits
+from service.schemas.numbers import EvaluationRequest
+from service.schemas.state_sets import Grid, Sample
+from service.settings import Limits
+from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
+from substructures.documents import escape
+from substructures.quantities.evaluation import evaluate
+
+from .conftest import PENDULUM, SLIDER
+from .job_outcomes import joined, known_library, outcomes
+from .test_arrow import lists, post, stream
+
+Plain = dict[str, Any]
+ARM, SLIDE = "arm.q", "slide.x"
+SPAN: Plain = {"q": [0.1, 0.2], "span": [0, 1]}
+CONTROL: Plain = {"controls": ["tau.arm.q"], "horizon": 1, "intervals": 2, "q": [0, 0]}
+
+
+def measured(value: Any, unit: str) -> Plain:
+    return {"value": value, "unit": unit}
+
+
+#: request, a body that is right, the place in it, what stands there with a unit and in SI, and a wrong unit
+Row = tuple[str, Plain, str, Any, Any, str]
+MM, DEG = measured(250, "mm"), measured(90, "deg")
+HANDS: tuple[Any, Any] = ([DEG, MM], [pi / 2, 0.25])
+MOTION: list[Row] = [
+    ("simulations", SPAN, "/q/0", DEG, pi / 2, "m"),
+    ("simulations", SPAN, "/q/1", MM, 0.25, "rad"),
+    ("simulations", SPAN, "/q", {ARM: DEG, SLIDE: MM}, {ARM: pi / 2, SLIDE: 0.25}, "s"),
+    ("simulations", SPAN, "/qd", [measured(60, "rpm"), 2], [2 * pi, 2], "rad"),
+    ("simulations", SPAN, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("simulations", SPAN, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("simulations", SPAN, "/inputs/tau.slide.x", measured(2, "kN"), 2000.0, "N m"),
+    ("simulations", SPAN | {"inputs": {"tau.arm.q": {"values": [0, 1]}}}, "/inputs/tau.arm.q/times",
+     measured([0, 60000], "ms"), [0.0, 60.0], "m"),
+    ("simulations", SPAN | {"inputs": {"tau.arm.q": {"times": [0, 1]}}}, "/inputs/tau.arm.q/values",
+     [measured(2, "kN m"), 3], [2000.0, 3], "N"),
+    ("simulations", SPAN, "/span", [0, measured(1, "min")], [0, 60.0], "m"),
+    ("simulations", SPAN, "/times", measured([0, 500], "ms"), [0.0, 0.5], "m"),
+    ("simulations", SPAN, "/step", measured(100, "ms"), 0.1, "m"),
+    ("simulations", SPAN, "/max_step", measured(100, "ms"), 0.1, "Hz"),
+    ("simulations", SPAN, "/fixed_step/step", measured(1, "ms"), 0.001, "m"),
+    ("simulations", SPAN | {"events": [{"name": "a", "quantity": "2*arm.l"}]}, "/events/0/level", MM, 0.25, "rad"),
+    ("simulations", SPAN | {"events": [{"name": "a", "quantity": "arm.q'"}]}, "/events/0/level",
+     measured(60, "rpm"), 2 * pi, "m"),
+    ("loop-states", {"q": [0, 0]}, "/t", measured(1, "min"), 60.0, "m"),
+    ("loop-states", {"q": [0, 0]}, "/prescribed/slide.x", MM, 0.25, "rad"),
+    ("loop-states", {"prescribed": {"arm.q": {"values": [0, 1]}}}, "/prescribed/arm.q/times",
+     measured([0, 60000], "ms"), [0.0, 60.0], "rad"),
+    ("loop-states", {"prescribed": {"arm.q": {"times": [0, 1]}}}, "/prescribed/arm.q/values",
+     measured([0, 90], "deg"), [0.0, pi / 2], "m"),
+    ("simulations", SPAN | {"constraints": [{"type": "linear", "name": "a", "expression": "arm.q'"}],
+     "velocities": {"w": "arm.l*arm.q'"}}, "/v/w", measured(36, "km/h"), 10.0, "rad/s"),
+    ("simulations", SPAN | {"constraints": [{"type": "linear", "name": "a", "expression": "arm.q'"}],
+     "independent": [SLIDE]}, "/v", {SLIDE: measured(36, "km/h")}, {SLIDE: 10.0}, "rad/s"),
+    ("simulations", SPAN | {"constraints": [{"type": "rolling", "name": "a", "frame": "arm.tip"}]},
+     "/constraints/0/radius", MM, 0.25, "rad"),
+]  # fmt: skip
+LOCUS: Plain = {"parameter": "arm.l", "values": [1], "q": [0, 0]}
+QUESTIONS: list[Row] = [
+    ("linearisations", {"q": [0, 0]}, "/q", *HANDS, "s"),
+    ("linearisations", {"q": [0, 0]}, "/qd", [measured(60, "rpm"), 0], [2 * pi, 0], "m"),
+    ("linearisations", {"q": [0, 0]}, "/qdd", [0, measured(250, "mm/s^2")], [0, 0.25], "m"),
+    ("linearisations", {"q": [0, 0]}, "/t", measured([1, 2], "min"), [60.0, 120.0], "m"),
+    ("linearisations", {"q": [0, 0]}, "/parameters/arm.m", measured([250, 500], "g"), [0.25, 0.5], "m"),
+    ("linearisations", {"q": [0, 0]}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("equilibria", {}, "/starts", [HANDS[0]], [HANDS[1]], "s"),
+    ("equilibria", {}, "/reach", MM, 0.25, "rad"),
+    ("equilibria", {}, "/t", measured(1, "min"), 60.0, "m"),
+    ("equilibria", {}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("equilibria", {}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("steady-motions", {}, "/rates/arm.q", measured(60, "rpm"), 2 * pi, "m/s"),
+    ("steady-motions", {}, "/momenta/slide.x", measured(2, "kN s"), 2000.0, "N m s"),
+    ("steady-motions", {"rates": {}}, "/starts", [HANDS[0]], [HANDS[1]], "s"),
+    ("steady-motions", {"rates": {}}, "/reach", MM, 0.25, "rad"),
+    ("steady-motions", {"rates": {}}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("steady-motions", {"rates": {}}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("root-loci", {"parameter": "arm.l", "q": [0, 0]}, "/values", measured([250, 500], "mm"), [0.25, 0.5], "kg"),
+    ("root-loci", {"parameter": "arm.l", "q": [0, 0]}, "/values", [MM, 1], [0.25, 1], "kg"),
+    ("root-loci", {"parameter": "arm.l", "values": [1]}, "/q", *HANDS, "s"),
+    ("root-loci", LOCUS, "/parameters/g", measured(981, "cm/s^2"), 9.81, "m"),
+    ("root-loci", LOCUS, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("curvatures", {}, "/q", *HANDS, "s"),
+    ("curvatures", {"q": [0, 0]}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("excitations", {"qdd": [[0, 0]]}, "/q", [HANDS[0]], [HANDS[1]], "s"),
+    ("excitations", {"q": [[0, 0]], "qdd": [[0, 0]]}, "/qd", [[measured(60, "rpm"), 0]], [[2 * pi, 0]], "m"),
+    ("excitations", {"q": [[0, 0]]}, "/qdd", [[0, measured(250, "mm/s^2")]], [[0, 0.25]], "m"),
+    ("excitations", {"q": [[0, 0]], "qdd": [[0, 0]]}, "/parameters/arm.l", MM, 0.25, "kg"),
+    ("identifications", {"q": [[0, 0]], "qdd": [[0, 0]]}, "/tau", [[measured(25, "N cm"), measured(2, "kN")]],
+     [[0.25, 2000.0]], "m"),
+]  # fmt: skip
+CONTROLS: list[Row] = [
+    ("optimal-controls", CONTROL, "/horizon", measured(1, "min"), 60.0, "m"),
+    ("optimal-controls", CONTROL, "/q", *HANDS, "s"),
+    ("optimal-controls", CONTROL, "/qd", [measured(60, "rpm"), 0], [2 * pi, 0], "m"),
+    ("optimal-controls", CONTROL, "/t", measured(1, "min"), 60.0, "m"),
+    ("optimal-controls", CONTROL, "/inputs/tau.slide.x", measured(2, "kN"), 2000.0, "N m"),
+    ("optimal-controls", CONTROL, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("optimal-controls", CONTROL, "/end/q", [DEG, None], [pi / 2, None], "m"),
+    ("optimal-controls", CONTROL, "/end/qd", {SLIDE: measured(36, "km/h")}, {SLIDE: 10.0}, "rad/s"),
+    ("optimal-controls", CONTROL, "/bounds/tau.arm.q", [None, measured(25, "N cm")], [None, 0.25], "N"),
+    ("optimal-controls", CONTROL, "/bounds/tau.arm.q", measured([-25, 25], "N cm"), [-0.25, 0.25], "N"),
+    ("optimal-controls", CONTROL, "/guess/tau.arm.q", measured([25, 50], "N cm"), [0.25, 0.5], "N"),
+    ("cost-gradients", CONTROL, "/values/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+]
+TABLE = [*MOTION, *QUESTIONS, *CONTROLS]
+#: numbers without a dimension, or with one that changes from coordinate to coordinate
+PURE = {
+    *("absolute_tolerance", "relative_tolerance", "drift_limit", "error_limit", "tolerance", "constraints.normal"),
+}
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    """A pendulum with a slider at its tip."""
+    parts = {each["name"]: derive(Definition.read(each)) for each in (PENDULUM, SLIDER)}
+    slide = {"name": "slide", "substructure": "slider", "at": "arm.tip", "parameters": {"k": 3}}
+    arm = {"name": "arm", "substructure": "pendulum"}
+    tree: Plain = {"name": "both", "gravity": [0, "-g", 0], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
+    return couple(
+        TreeSpec.read(tree | {"instances": [arm, slide]}), {"arm": parts["pendulum"], "slide": parts["slider"]}
+    )
+
+
+def put(body: Plain, pointer: str, value: Any) -> Plain:
+    """A copy of a body with something in a place."""
+    result: Any = copy.deepcopy(body)
+    *steps, last = pointer.split("/")[1:]
+    here = result
+    for step in steps:
+        here = here[int(step)] if isinstance(here, list) else here.setdefault(step, {})
+    here[int(last) if isinstance(here, list) else last] = value
+    return result  # type: ignore[no-any-return]
+
+
+def units_in(given: Any, pointer: str = "") -> Iterator[str]:
+    """Where something with a unit stands."""
+    if isinstance(given, dict) and "unit" in given:
+        yield pointer
+    elif isinstance(given, dict | list):
+        for step, x in given.items() if isinstance(given, dict) else enumerate(given):
+            yield from units_in(x, f"{pointer}/{escape(step)}")
+
+
+def with_unit(given: Any, unit: str) -> tuple[Any, str]:
+    """The same with another unit in the first place that has one, and where that is."""
+    place = next(units_in(given))
+    return put({"x": given}, f"/x{place}/unit", unit)["x"], place
+
+
+def same(found: Any, expected: Any) -> None:
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys()
+        for name in expected:
+            same(found[name], expected[name])
+    elif hasattr(expected, "__dict__"):
+        assert type(found) is type(expected)
+        same(vars(found), vars(expected))
+    elif isinstance(expected, list | tuple):
+        assert len(found) == len(expected)
+        for one, other in zip(found, expected, strict=True):
+            same(one, other)
+    else:
+        assert found == (pytest.approx(expected, rel=1e-15) if isinstance(expected, float) else expected)
+
+
+@pytest.mark.parametrize("row", TABLE, ids=lambda row: row[0] + row[2])
+def test_numbers_of_analyses_have_units(model: Model, row: Row) -> None:
+    name, body, place, given, plain, wrong = row
+    read = {
+        kind: arguments(ANALYSES[name].read(put(body, place, x), model)) for kind, x in (("g", given), ("p", plain))
+    }
+    same(read["g"], read["p"])
+    for unit, code in ((wrong, "unit-mismatch"), ("furlog", "unknown-unit")):
+        changed, below = with_unit(given, unit)
+        with pytest.raises(InvalidInput) as caught:
+            ANALYSES[name].read(put(body, place, changed), model)
+        assert [(f.pointer, f.code) for f in caught.value.faults] == [(place + below, code)]
+
+
+def numbers_of(annotation: Any, metadata: tuple[Any, ...] = (), path: str = "") -> Iterator[tuple[str, bool]]:
+    """Paths of the fields with numbers in a schema, and whether these may have units."""
+    args = get_args(annotation)
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        for name, field in annotation.model_fields.items():
+            below = f"{path}.{name}".removeprefix(".root").lstrip(".")
+            yield from numbers_of(field.annotation, tuple(field.metadata), below)
+    elif any(isinstance(x, WithUnits) for x in (*metadata, *args)):
+        yield path, True
+        for each in args:
+            yield from ((p, has) for p, has in numbers_of(each, (), path) if p != path)
+    elif annotation in (float, Decimal, Any):
+        yield path, False
+    else:
+        for each in args:
+            if isinstance(each, type) or get_args(each) or each is Any:
+                yield from numbers_of(each, (), path)
+
+
+def test_the_table_has_all_numbers_of_all_requests() -> None:
+    """So that whoever adds a field has to say what stands there."""
+    has_units, without = set(), set()
+    for analysis in ANALYSES.values():
+        for path, has in numbers_of(analysis.schema):
+            (has_units if has else without).add(path)
+    assert without == PURE
+    steps = [[step for step in row[2].split("/")[1:] if not step.isdigit()] for row in TABLE]
+    listed = {".".join(path) for path in steps} | {f"{path[0]}.{path[-1]}" for path in steps}
+    # what stands below of values by name belongs to the field
+    texts = {"series", "outputs", "events.quantity"}
+    missing = [p for p in has_units - texts if not any(f"{x}.".startswith(f"{p}.") for x in listed)]
+    assert not missing
+
+
+def test_a_fault_of_many_numbers_names_the_coordinate(model: Model) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        read_request(ANALYSES["linearisations"].schema, {"q": measured([[0, 0]], "deg")}, model)
+    assert str(caught.value) == "/q: m expected for 'slide.x', found deg"
+
+
+@pytest.mark.parametrize(
+    ("name", "body", "pointer"),
+    [
+        ("simulations", SPAN | {"inputs": {"tau.arm.q": "-2*(arm.m + arm.l)"}}, "/inputs/tau.arm.q"),
+        ("simulations", SPAN | {"inputs": {"tau.arm.q": "arm.m*g"}}, "/inputs/tau.arm.q"),
+        ("simulations", SPAN | {"series": {"x": "sin(arm.l)"}}, "/series/x"),
+        ("simulations", SPAN | {"events": [{"name": "a", "quantity": "arm.m + g"}]}, "/events/0/quantity"),
+        ("loop-states", {"prescribed": {SLIDE: "arm.m"}}, "/prescribed/slide.x"),
+        ("linearisations", {"q": [0, 0], "outputs": {"y": "arm.m - arm.l"}}, "/outputs/y"),
+    ],
+)
+def test_contradictions_in_expressions_are_refused(model: Model, name: str, body: Plain, pointer: str) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        ANALYSES[name].read(body, model)
+    assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, "unit-mismatch")]
+
+
+#: place in an evaluation, with a unit, in SI, a wrong unit
+EVALUATIONS: list[tuple[str, Any, Any, str]] = [
+    ("/q", measured([[90], [0]], "deg"), [[pi / 2], [0]], "m"),
+    ("/q", measured([90], "deg"), [pi / 2], "m"),
+    ("/q", [[DEG], [0]], [[pi / 2], [0]], "m"),
+    ("/q", {ARM: measured([90, 45], "deg")}, {ARM: [pi / 2, pi / 4]}, "m"),
+    ("/qd", [measured(60, "rpm")], [2 * pi], "rad"),
+    ("/qdd", [measured(90, "deg/s^2")], [pi / 2], "rad"),
+    ("/t", measured(1, "min"), 60.0, "m"),
+    ("/t", [measured(1, "min"), 0], [60.0, 0], "m"),
+    ("/parameters/arm.m", measured([250, 500], "g"), [0.25, 0.5], "m"),
+    ("/parameters/arm.m", [measured(250, "g"), 1], [0.25, 1], "m"),
+    ("/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("/along/q", [DEG], [pi / 2], "m"),
+    ("/along/qd", [measured(60, "rpm")], [2 * pi], "rad"),
+    ("/along/qdd", [measured(90, "deg/s^2")], [pi / 2], "rad"),
+    ("/along/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+]
+
+
+def request_of(place: str, value: Any) -> Plain:
+    quantities = ["forces", "inverse_dynamics", "inverse_dynamics_derivative", "kinematics"]
+    whole = {"quantities": quantities, "q": [0.1], "qd": [0.2], "qdd": [0.3], "along": {"q": [1]}}
+    return put(whole, place, value)
+
+
+@pytest.mark.parametrize("row", EVALUATIONS, ids=lambda row: row[0])
+def test_numbers_of_evaluations_have_units(filled: TestClient, row: tuple[str, Any, Any, str]) -> None:
+    place, given, plain, wrong = row
+    answers = [filled.post("/v1/trees/cell/evaluations", json=request_of(place, x)) for x in (given, plain)]
+    assert [answer.status_code for answer in answers] == [200, 200], answers[0].text
+    same(answers[0].json(), answers[1].json())
+    changed, below = with_unit(given, wrong)
+    answer = filled.post("/v1/trees/cell/evaluations", json=request_of(place, changed))
+    assert answer.status_code == 422
+    assert [(e["pointer"], e["code"]) for e in answer.json()["errors"]] == [(place + below, "unit-mismatch")]
+
+
+def test_evaluations_list_no_further_numbers() -> None:
+    listed = {place.replace("/", ".")[1:] for place, *_ in EVALUATIONS}
+    found = {path for path, has in numbers_of(EvaluationRequest) if has}
+    assert {p for p in found if not any(f"{x}.".startswith(f"{p}.") for x in listed)} == set()
+    assert [path for path, has in numbers_of(EvaluationRequest) if not has] == []
+
+
+def test_the_science_takes_units_too(model: Model) -> None:
+    q = [measured(90, "deg"), measured(250, "mm")]
+    given, plain = (evaluate(model, ["forces"], q=x)["forces"] for x in (q, [pi / 2, 0.25]))
+    assert np.array_equal(given, plain)
+
+
+#: fields of an item, with units and in SI
+ITEMS: list[tuple[Plain, Plain, str, str]] = [
+    ({"grid": {ARM: {"from": measured(0, "deg"), "to": DEG, "count": 3}}},
+     {"grid": {ARM: {"from": 0, "to": pi / 2, "count": 3}}}, "m", "/grid/arm.q/from"),
+    ({"grid": {ARM: measured([0, 90], "deg"), "arm.q'": [measured(60, "rpm")]}},
+     {"grid": {ARM: [0, pi / 2], "arm.q'": [2 * pi]}}, "m", "/grid/arm.q"),
+    ({"grid": {"arm.m": measured(250, "g"), ARM: [0, 1]}}, {"grid": {"arm.m": 0.25, ARM: [0, 1]}}, "m", "/grid/arm.m"),
+    ({"grid": {"tau.arm.q": [measured(25, "N cm"), 1]}}, {"grid": {"tau.arm.q": [0.25, 1]}}, "N", "/grid/tau.arm.q/0"),
+    ({"sample": {"count": 4, "ranges": {ARM: measured([0, 90], "deg"), "arm.m": [MM | {"unit": "g"}, 1]}}},
+     {"sample": {"count": 4, "ranges": {ARM: [0, pi / 2], "arm.m": [0.25, 1]}}}, "m", "/sample/ranges/arm.q"),
+    ({"request": {"quantities": ["forces"], "q": measured([[90], [45], [0]], "deg")}},
+     {"request": {"quantities": ["forces"], "q": [[pi / 2], [pi / 4], [0]]}}, "m", "/request/q"),
+    ({"request": {"quantities": ["forces"], "q": [0.1], "parameters": {"arm.m": measured([1, 2, 3], "g")}}},
+     {"request": {"quantities": ["forces"], "q": [0.1], "parameters": {"arm.m": [0.001, 0.002, 0.003]}}},
+     "m", "/request/parameters/arm.m"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ITEMS, ids=lambda row: row[3])
+def test_items_of_jobs_have_units(row: tuple[Plain, Plain, str, str]) -> None:
+    given, plain, wrong, place = row
+    library = known_library()
+    common: Plain = {"tree": "cell", "request": {"quantities": ["forces"]}}
+    made = [
+        joined(outcomes(library, "evaluate", {"items": [common | x]}, Limits(job_states=2)), "forces")
+        for x in (given, plain)
+    ]
+    np.testing.assert_allclose(made[0], made[1], rtol=1e-15)
+    changed, below = with_unit(given, wrong)
+    with pytest.raises(InvalidInput) as caught:
+        outcomes(library, "evaluate", {"items": [common | changed]})
+    assert below == place
+    assert [(f.pointer.removeprefix("/items/0"), f.code) for f in caught.value.faults] == [(place, "unit-mismatch")]
+
+
+def test_grids_and_samples_have_no_further_numbers() -> None:
+    found = {path for schema in (Grid, Sample) for path, _ in numbers_of(schema)}
+    assert found == {"", "start", "stop", "ranges"}
+
+
+def test_bound_numbers_have_units(filled: TestClient) -> None:
+    def metric(bind: str) -> Any:
+        return filled.get("/v1/trees/cell/metric", params={"format": "text", "bind": bind})
+
+    plain = metric("arm.l:1.2,arm.m:0.25").text
+    for text in ("arm.l:1200 mm,arm.m:250 g", "arm.l:6/5 m, arm.m:0.25", "arm.m:1/4 kg,arm.l:12e-1 m"):
+        assert metric(text).text == plain
+    # an angle stays exact, and expressions keep their names
+    assert metric("arm.l:2*arm.m,arm.m:1 kg").status_code == 200
+    for text, code in (
+        ("arm.l:3 kg", "unit-mismatch"),
+        ("arm.l:3 furlog", "unknown-unit"),
+        ("arm.l:arm.m", "unit-mismatch"),
+        ("arm.l:arm.m mm", "bind"),
+    ):
+        answer = metric(text)
+        assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, code), text
+        assert "arm.l" in answer.json()["detail"] or code == "bind"
+        assert answer.json()["errors"][0]["pointer"] == "/query/bind"
+    part = filled.get("/v1/substructures/pendulum/formulas/metric", params={"format": "text", "bind": "l:1200 mm"})
+    assert part.status_code == 200
+    item = {"tree": "cell", "quantity": "metric", "format": "text"}
+    library = known_library()
+    both = [outcomes(library, "export", {"items": [item | {"bind": x}]}) for x in ("arm.l:1200 mm", "arm.l:1.2")]
+    assert both[0][0].files["text"] == both[1][0].files["text"]
+    for text, code in (("arm.l:3 kg", "unit-mismatch"), ("arm.l:arm.m mm", "bind")):
+        with pytest.raises(InvalidInput) as caught:
+            outcomes(library, "export", {"items": [item | {"bind": text}]})
+        assert [(f.pointer.removeprefix("/items/0"), f.code) for f in caught.value.faults] == [("/bind", code)]
+
+
+def test_poses_of_pictures_have_units(filled: TestClient) -> None:
+    def picture(q: str) -> Any:
+        return filled.get("/v1/trees/cell/picture", params={"q": q})
+
+    assert picture("90 deg").text == picture(str(pi / 2)).text
+    assert picture("90 mm").json()["errors"][0]["code"] == "unit-mismatch"
+    assert picture("9e9 deg").json()["errors"][0]["code"] == "q"
+
+
+def test_what_is_alike_for_all_states_of_a_stream_has_units(filled: TestClient) -> None:
+    batches = [{"q": lists(np.zeros((3, 1)))}, {"q": lists(np.ones((3, 1)))}]
+    answers = []
+    for mass, t in ((measured(250, "g"), measured(1, "min")), (0.25, 60)):
+        body = stream(batches, {"quantities": ["forces"], "parameters": {"arm.m": mass}, "t": t})
+        answers.append([post(filled, body), post(filled, body, "application/json")])
+    tables = [pa.ipc.open_stream(answer[0].content).read_all() for answer in answers]
+    assert tables[0].equals(tables[1])
+    assert answers[0][1].json() == answers[1][1].json()
