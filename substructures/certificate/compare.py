@@ -36,20 +36,21 @@ Elements = dict[str, set[Index]]
 
 
 def compare(
-    program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any]
+    program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any], states: int
 ) -> dict[str, float | None]:
     """Of every output of a program the largest relative difference from ``expected`` that enclosures leave open; None
     where an element has no finite value at any state.
 
-    ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain.
+    ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain;
+    ``states``: how many are needed (:func:`substructures.certificate.states.states_needed`).
     Raises VerificationFailed, which names output and element.
     """
     for symbol in program.symbols:
         if kinds.get(symbol.name) != symbol.kind:
             raise VerificationFailed(f"the symbol '{symbol.name[:80]}' ({symbol.kind}) is none of the documents")
     comparison = _Comparison(program, expected)
-    for states in draws(kinds, defaults):
-        comparison.at(states)
+    for some in draws(kinds, defaults, states):
+        comparison.at(some)
         if not comparison.open:
             break
     return comparison.result()

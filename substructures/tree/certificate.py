@@ -8,6 +8,7 @@ from typing import Any
 
 from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.states import states_needed
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
@@ -47,7 +48,8 @@ def certify_tree(
         outputs = tree_outputs(tree, parts, values)
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
-    errors = compare(result, kinds, expected, defaults)
-    certificate: dict[str, Any] = {**HOW, "direct_form": {"max_relative_error": errors}}
+    states = states_needed(result.operations, [tree, *parts.values()])
+    errors = compare(result, kinds, expected, defaults, states)
+    certificate: dict[str, Any] = {**HOW, "states": states, "direct_form": {"max_relative_error": errors}}
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate
