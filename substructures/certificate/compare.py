@@ -27,7 +27,7 @@ PRECISIONS = (128, 1024)
 #: how far an enclosure may reach, relative to its value
 TOLERANCE = 2.0**-40
 #: what needs no closer look
-PRECISE, SMALL = 2.0**-80, 1e-200
+PRECISE, SMALL, LARGE = 2.0**-80, 1e-200, 1e200
 
 Expected = Callable[[State], Outputs]
 Index = tuple[int, ...]
@@ -115,14 +115,15 @@ class _Comparison:
         last: bool,
     ) -> None:
         """Compare elements of one output; notes those that are too wide, and those that are not finite."""
-        zero, worst = arb(0), self.errors.get(name, 0.0)
+        zero, worst, entries, others = arb(0), self.errors.get(name, 0.0), values.entries, values.others
         for index in some:
             a = stored.get(index, zero)
-            b = values.like(index, a) if index in values.others else values.entries.get(index, zero)
+            b = values.like(index, a) if index in others else entries.get(index, zero)
             difference, size = float((a - b).abs_upper()), abs(float(b))
             # most are precise; what is not finite, zero, or beyond the range of doubles is looked at below
-            if difference <= size * PRECISE and SMALL < size < 1 / SMALL:
-                worst = max(worst, difference / size)
+            if difference <= size * PRECISE and SMALL < size < LARGE:
+                if difference > worst * size:
+                    worst = difference / size
             elif size or difference or not (a.is_zero() and b.is_zero()):
                 worst = max(worst, self._element(name, index, a, b, values, unsure, last))
         self.errors[name] = worst

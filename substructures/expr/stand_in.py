@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Generic
 
 from substructures.expr import bounds
-from substructures.expr.bounds import ZERO, Values, is_as_accurate, larger
+from substructures.expr.bounds import ZERO, Values, is_as_accurate, larger, product
 from substructures.expr.exact import nearest_float
 from substructures.expr.fingerprint import PRIME
 from substructures.expr.patterns import N, is_combination
@@ -74,7 +74,7 @@ class StandIns(Generic[N]):
     def _made(self, op: str, args: tuple[N, ...], a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
         """Asks and size of an operation, from those of its first and last operand."""
         if op == "mul":
-            return a[0] | b[0], bounds.product(a[1], b[1])
+            return a[0] | b[0], product(a[1], b[1])
         if op in _ARITHMETIC:
             return a[0] | b[0], larger(a[1], b[1])
         return self._asked(op, args, a[0] | b[0]), self._size(op, args, a[1], b[1])
