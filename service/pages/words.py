@@ -83,7 +83,8 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
     if not errors:
         return ["There are no coordinates, so there is no metric to be checked."]
     known = {name: error for name, error in errors.items() if error is not None}
-    states, allowed = report["states"], f"{float(report['tolerance']):g}".replace("e-0", "e-")
+    states = "a random state" if report["states"] == 1 else f"{report['states']} random states"
+    allowed = f"{float(report['tolerance']):g}".replace("e-0", "e-")
     sentences = [
         f"The {_NAMES.get(name, name)} could not be compared: a formula is singular at the random values."
         for name in errors
@@ -93,7 +94,7 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
         worst = max(known, key=lambda name: float(known[name]))
         sentences.insert(
             0,
-            f"{len(known)} quantities compared with {_yardstick(report)} at {states} random states; largest deviation"
+            f"{len(known)} quantities compared with {_yardstick(report)} at {states}; largest deviation"
             f" {float(known[worst]):.1e}, of the {_NAMES.get(worst, worst)}"
             f" (refused beyond {allowed}).",
         )

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 
 from substructures.certificate.linear import (
     Ball,
@@ -226,12 +226,8 @@ def _mass(body: Plain, numbers: Numbers) -> Moments:
     m, c = numbers.read(body.get("mass", 0)), numbers.vector(body.get("com", NONE))
     tensor = body.get("inertia", {})
     xx, yy, zz, xy, xz, yz = (numbers.read(tensor.get(e, 0)) for e in ("xx", "yy", "zz", "xy", "xz", "yz"))
-    theta = vector(xx, xy, xz), vector(xy, yy, yz), vector(xz, yz, zz)
     half = (xx + yy + zz) * arb(fmpq(1, 2))
-    J = zeros(3, 3)
-    for i in range(3):
-        for j in range(3):
-            J[i, j] = (half if i == j else arb(0)) - theta[i][j, 0]
+    J = arb_mat(3, 3, [half - xx, -xy, -xz, -xy, half - yy, -yz, -xz, -yz, half - zz])
     if tensor.get("about", "com") == "com":
         J = J + outer(c, c) * m
     return Moments(m, c * m, J)
@@ -268,10 +264,7 @@ def in_order(definition: Plain) -> list[Plain]:
 def inertia_of_symbols(name: str, values: Mapping[str, Ball]) -> Moments:
     """The ten inertia symbols of a body, about the origin of its carrier's body frame, in its axes."""
     m, sx, sy, sz, xx, yy, zz, xy, xz, yz = (values[symbol] for symbol in inertia_names(name))
-    J = zeros(3, 3)
-    for i, row in enumerate(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))):
-        for j, x in enumerate(row):
-            J[i, j] = x
+    J = arb_mat(3, 3, [xx, xy, xz, xy, yy, yz, xz, yz, zz])
     return Moments(m, vector(sx, sy, sz), J)
 
 

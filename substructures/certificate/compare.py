@@ -27,7 +27,7 @@ PRECISIONS = (128, 1024)
 #: how far an enclosure may reach, relative to its value
 TOLERANCE = 2.0**-40
 #: what needs no closer look
-PRECISE, SMALL = 2.0**-80, 1e-200
+PRECISE, SMALL, LARGE = 2.0**-80, 1e-200, 1e200
 
 Expected = Callable[[State], Outputs]
 Index = tuple[int, ...]
@@ -45,18 +45,21 @@ class Compared(NamedTuple):
     left_out: list[str]
 
 
-def compare(program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any]) -> Compared:
+def compare(
+    program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any], states: int
+) -> Compared:
     """Every output of a program beside what is ``expected``.
 
-    ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain.
+    ``kinds``: of the symbols that it may have; ``defaults``: of parameters, where random values lead out of a domain;
+    ``states``: how many are needed (:func:`substructures.certificate.states.states_needed`).
     Raises VerificationFailed, which names output and element.
     """
     for symbol in program.symbols:
         if kinds.get(symbol.name) != symbol.kind:
             raise VerificationFailed(f"the symbol '{symbol.name[:80]}' ({symbol.kind}) is none of the documents")
     comparison = _Comparison(program, expected)
-    for states in draws(kinds, defaults):
-        comparison.at(states)
+    for some in draws(kinds, defaults, states):
+        comparison.at(some)
         if not comparison.open:
             break
     return Compared(comparison.result(), sorted(comparison.left_out))
@@ -122,14 +125,15 @@ class _Comparison:
         last: bool,
     ) -> None:
         """Compare elements of one output; notes those that are too wide, and those that are not finite."""
-        zero, worst = arb(0), self.errors.get(name, 0.0)
+        zero, worst, entries, others = arb(0), self.errors.get(name, 0.0), values.entries, values.others
         for index in some:
             a = stored.get(index, zero)
-            b = self._like(values, index, a) if index in values.others else values.entries.get(index, zero)
+            b = self._like(values, index, a) if index in others else entries.get(index, zero)
             difference, size = float((a - b).abs_upper()), abs(float(b))
             # most are precise; what is not finite, zero, or beyond the range of doubles is looked at below
-            if difference <= size * PRECISE and SMALL < size < 1 / SMALL:
-                worst = max(worst, difference / size)
+            if difference <= size * PRECISE and SMALL < size < LARGE:
+                if difference > worst * size:
+                    worst = difference / size
             elif size or difference or not (a.is_zero() and b.is_zero()):
                 worst = max(worst, self._element(name, index, a, b, values, unsure, last))
         self.errors[name] = worst

@@ -13,6 +13,8 @@ from substructures.expr.direct import ball
 
 #: a document as plain data
 Plain = Mapping[str, Any]
+#: most numbers of a document
+_ZERO = arb(0)
 
 
 class Numbers:
@@ -24,7 +26,7 @@ class Numbers:
     def read(self, given: Any) -> Ball:
         """A number or an expression."""
         if isinstance(given, (int, Decimal)):
-            return arb(fmpq(*given.as_integer_ratio()))
+            return arb(fmpq(*given.as_integer_ratio())) if given else _ZERO
         # most texts are one name
         return self.names[given] if given in self.names else ball(given, self.names, ctx.prec)
 

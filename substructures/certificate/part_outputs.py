@@ -82,9 +82,8 @@ def metric_alone(definition: Plain, values: Mapping[str, Ball]) -> list[list[Bal
     """The metric of the part with nothing mounted on it; ``values``: of parameters and coordinates."""
     bodies = Bodies()
     bodies.add(definition, Numbers(values), Frame(GROUND, identity(), zeros(3, 1)))
-    result = Outputs()
-    equations(result, bodies, carried_by_joints(bodies, bodies.own))
-    n, g = len(bodies.joints), result["metric"].entries
+    g = _metric(bodies, carried_by_joints(bodies, bodies.own))
+    n = len(bodies.joints)
     return [[g.get((min(a, b), max(a, b)), 0) for b in range(n)] for a in range(n)]
 
 
@@ -169,16 +168,24 @@ def _interface(result: Outputs, carried: list[Carried]) -> None:
 
 
 def equations(result: Outputs, bodies: Bodies, carried: list[Carried]) -> None:
-    """Metric with the rotors of the joints, and the independent Christoffel symbols: a < c, b <= c."""
+    """Metric, and the independent Christoffel symbols: a < c, b <= c."""
     n = len(carried)
-    g, gamma = result.array("metric", (n, n), "symmetric"), result.array("christoffel", (n, n, n), "christoffel")
+    result.array("metric", (n, n), "symmetric").update(_metric(bodies, carried))
+    gamma = result.array("christoffel", (n, n, n), "christoffel")
     for c, some in enumerate(carried):
-        row, block = some.metric(), some.christoffel()
-        for i, a in enumerate(some.path):
-            g[a, c] = row[0, i]
-            if a < c:
-                gamma.update({(a, b, c): block[i, j] for j, b in enumerate(some.path)})
+        block = some.christoffel()
+        for i, a in enumerate(some.path[:-1]):
+            gamma.update({(a, b, c): block[i, j] for j, b in enumerate(some.path)})
+
+
+def _metric(bodies: Bodies, carried: list[Carried]) -> dict[tuple[int, ...], Ball]:
+    """g_ac for a <= c, with the rotors of the joints."""
+    g: dict[tuple[int, ...], Ball] = {}
+    for c, some in enumerate(carried):
+        row = some.metric()
+        g |= {(a, c): row[0, i] for i, a in enumerate(some.path)}
         g[c, c] += bodies.joints[c].armature
+    return g
 
 
 def _frames(result: Outputs, bodies: Bodies, definition: Plain) -> None:

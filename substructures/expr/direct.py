@@ -11,7 +11,6 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import flint
@@ -80,7 +79,6 @@ def _run(
     return carried_out(steps_of(given), names, number, named, pi, functions, power)
 
 
-@lru_cache(maxsize=4096)
 def steps_of(given: Given) -> tuple[Step, ...]:
     """The steps of a text; of a number the one that is the number itself. Raises as :func:`value`."""
     if isinstance(given, str):
@@ -91,7 +89,7 @@ def steps_of(given: Given) -> tuple[Step, ...]:
 def carried_out(
     steps: Sequence[Step],
     names: Mapping[str, Any],
-    number: Callable[[Fraction], Any],
+    number: Callable[[Any], Any],
     named: Callable[[Any], Any],
     pi: Callable[[], Any],
     functions: Mapping[str, Callable[[Any], Any]],
@@ -101,7 +99,7 @@ def carried_out(
     stack: list[Any] = []
     for step in steps:
         if step.op == "number":
-            stack.append(number(Fraction(step.value or 0)))
+            stack.append(number(step.value))
         elif step.op == "pi":
             stack.append(pi())
         elif step.op == "name":

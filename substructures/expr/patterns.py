@@ -21,6 +21,10 @@ class Node(Protocol):
         """Of a number or symbol."""
 
     @property
+    def fp(self) -> int:
+        """Fingerprint."""
+
+    @property
     def is_number(self) -> bool:
         """Whether it is an exact number."""
 

@@ -21,9 +21,12 @@ import re
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import lru_cache
 
 from substructures.expr.exact import MAX_EXPONENT
 
+#: longest text of which the steps are kept
+SHORT = 100
 MAX_LENGTH = 10_000
 MAX_DEPTH = 64
 MAX_DIGITS = 400
@@ -203,8 +206,16 @@ def read(text: str) -> tuple[Step, ...]:
     """
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"expression has more than {MAX_LENGTH} characters", MAX_LENGTH + 1)
+    return _steps_of_short(text) if len(text) <= SHORT else _steps(text)
+
+
+def _steps(text: str) -> tuple[Step, ...]:
     reader = _Reader(text)
     reader.sum()
     if reader.tokens[reader.at][0] != "end":
         raise reader.fail("an operator or the end")
     return tuple(reader.steps)
+
+
+#: a text is read for its units, its formula and its certificate, and often again
+_steps_of_short = lru_cache(maxsize=4096)(_steps)

@@ -102,7 +102,10 @@ class Vanishing:
         self, node: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]
     ) -> tuple[Any, Any]:
         if node.is_number or node.op == "sym":
-            x = Fraction(node.value) if node.is_number else symbols.setdefault(node, self._drawn())
+            if node.op == "sym" and node not in symbols:
+                for point, x in zip(self.symbols, self._drawn(), strict=True):
+                    point[node] = x
+            x = Fraction(node.value) if node.is_number else symbols[node]
             value = flint.arb(flint.fmpq(x.numerator, x.denominator))
             return value, abs(value)
         args = [known[a][0] for a in node.args]
@@ -114,11 +117,18 @@ class Vanishing:
             return value, known[node.args[0]][1] * known[node.args[1]][1]
         return value, known[node.args[0]][1] if node.op == "neg" else abs(value)
 
-    def _drawn(self) -> Fraction:
-        """A random number of either sign, its magnitude between 10^-6 and 10^6."""
-        power = self.random.randrange(-DECADES, DECADES)
-        size = Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
-        return size if self.random.randrange(2) else -size
+    def _drawn(self) -> list[Fraction]:
+        """A random number for every point: of every two decades between 10^-6 and 10^6 one of either sign.
+
+        Left to chance, one in thirty times no point would lie at x < -1, say, where sqrt((x + 1)^2) is not x + 1.
+        """
+        half = POINTS // 2
+        signs = [self.random.choice((-1, 1)) for _ in range(half)]
+        orders = [(k, sign * signs[k]) for sign in (1, -1) for k in self.random.sample(range(half), half)]
+        return [sign * self._size(2 * k - DECADES + self.random.randrange(2)) for k, sign in orders]
+
+    def _size(self, power: int) -> Fraction:
+        return Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
 
 
 def _bits(number: Expr) -> int:

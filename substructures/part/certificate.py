@@ -12,7 +12,7 @@ from flint import arb
 from substructures.certificate.compare import TOLERANCE, Compared, compare
 from substructures.certificate.numbers import Plain
 from substructures.certificate.part_outputs import metric_alone, part_outputs, part_symbols
-from substructures.certificate.states import STATES, draws
+from substructures.certificate.states import draws, states_needed
 from substructures.documents import Document
 from substructures.documents.units import read_unit
 from substructures.errors import VerificationFailed, listed
@@ -22,7 +22,7 @@ from substructures.part.mechanism import Mechanism
 from substructures.part.physics import physical_warnings
 
 #: how formulas are compared, in every certificate; those of older versions say less
-HOW = {"compared_with": "documents", "states": STATES, "tolerance": TOLERANCE}
+HOW = {"compared_with": "documents", "tolerance": TOLERANCE}
 
 
 def plain(document: Document) -> Plain:
@@ -65,12 +65,19 @@ def certify_part(m: Mechanism, result: Program, derive_seconds: float) -> dict[s
     start = perf_counter()
     warnings = physical_warnings(m)
     definition = plain(m.definition)
-    certificate: dict[str, Any] = {**HOW, "warnings": warnings}
+    states = states_needed(result.operations, [definition])
+    certificate: dict[str, Any] = {**HOW, "states": states, "warnings": warnings}
     if m.joints:
         certificate["positive_definite"] = _positive_definite(definition)
     kinds = part_symbols(definition)
     certificate["direct_form"] = told(
-        compare(result, kinds, lambda values: part_outputs(definition, values, result.outputs), defaults_of(definition))
+        compare(
+            result,
+            kinds,
+            lambda values: part_outputs(definition, values, result.outputs),
+            defaults_of(definition),
+            states,
+        )
     )
     certificate["seconds"] = {"derive": round(derive_seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate
@@ -107,7 +114,7 @@ def _positive_definite(definition: Plain) -> bool | None:
     defaults = defaults_of(definition)
     if len(defaults) < len(definition.get("parameters", ())):
         return None
-    states = next(draws(part_symbols(definition), defaults))[:1]
+    states = next(draws(part_symbols(definition), defaults, 1))
     balls = [metric_alone(definition, {**{n: arb(x) for n, x in s.items()}, **defaults}) for s in states]
     metric = np.array([[[float(x) for x in row] for row in g] for g in balls])
     if not np.isfinite(metric).all():

@@ -9,6 +9,7 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Program, program
 from substructures.expr.unit_check import UnitCheck
@@ -199,6 +200,7 @@ def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
     return groups
 
 
+@without_collections
 def derive(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[int], None] | None = None) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.expr.exact import nearest_float
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.mechanics.linear3 import dense
@@ -68,8 +69,10 @@ def default_values(m: Mechanism) -> dict[str, float]:
 def constants(scope: Scope, given: Mapping[str, Any]) -> dict[str, float]:
     """Numbers and constant expressions as doubles; None is left out."""
     read = {n: scope.read(v, f"/parameters/{n}/value", no_names) for n, v in given.items() if v is not None}
-    numbers = interpret(program(scope.graph, {n: array((), lambda v=v: v) for n, v in read.items()}, {}), {})
-    return {name: float(v) for name, v in numbers.items()}
+    found = {n: nearest_float(v.value) for n, v in read.items() if v.is_number}
+    others = {n: array((), lambda v=v: v) for n, v in read.items() if n not in found}
+    numbers = interpret(program(scope.graph, others, {}), {}) if others else {}
+    return found | {name: float(v) for name, v in numbers.items()}
 
 
 def _problem(field: str, value: Array) -> PhysicsFault | None:

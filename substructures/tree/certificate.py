@@ -8,6 +8,7 @@ from typing import Any
 
 from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.states import states_needed
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
@@ -47,6 +48,8 @@ def certify_tree(
         outputs = tree_outputs(tree, parts, values)
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
-    certificate: dict[str, Any] = {**HOW, "direct_form": told(compare(result, kinds, expected, defaults))}
+    states = states_needed(result.operations, [tree, *parts.values()])
+    compared = compare(result, kinds, expected, defaults, states)
+    certificate: dict[str, Any] = {**HOW, "states": states, "direct_form": told(compared)}
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate

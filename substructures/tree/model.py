@@ -29,6 +29,7 @@ from time import perf_counter
 from typing import Any
 
 from substructures.errors import Fault, InvalidDocument, TooLarge, VerificationFailed, listed
+from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.syntax import RESERVED
@@ -152,6 +153,7 @@ def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
         raise InvalidDocument.at("", "has-closures", message)
 
 
+@without_collections
 def couple(
     spec: TreeSpec,
     parts: Mapping[str, Part],

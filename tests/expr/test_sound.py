@@ -85,6 +85,26 @@ def test_zero_adds_nothing(best: str, text: str) -> None:
     assert (0 - x) is -x
 
 
+def test_arithmetic_of_numbers_is_a_number() -> None:
+    """Also beside a node whose value is that number, or its negative."""
+    graph = Graph()
+    assert read("(sqrt(2)-10)*(sqrt(2)+10)", graph).op == "mul"
+    assert graph.number(49) + graph.number(49) is graph.number(98)
+    graph = Graph()
+    read("(sqrt(2)-10)*(sqrt(2)+10)", graph)
+    for x in (graph.number(7) * 14, graph.number(100) - 2, 2 - graph.number(-96), graph.number(-49) * -2):
+        assert x is graph.number(98)
+    assert graph.number(-95) - 3 is graph.number(-98)
+
+
+def test_the_same_with_operands_exchanged() -> None:
+    """One node, also where no bound of the rounding errors is known: the root has no value at most points."""
+    graph = Graph()
+    assert read("a*a+sqrt(cos(b)-2)", graph) is read("sqrt(cos(b)-2)+a*a", graph)
+    assert read("a*sqrt(cos(b)-2)", graph) is -read("-sqrt(cos(b)-2)*a", graph)
+    assert read("a-sqrt(cos(b)-2)", graph) is -read("sqrt(cos(b)-2)-a", graph)
+
+
 def test_whole_turns_are_left_out() -> None:
     graph = Graph()
     assert read("sin(q+2*pi)", graph) is read("sin(q)", graph)

@@ -46,6 +46,16 @@ def test_not_zero(text: str) -> None:
     assert Vanishing(graph)(read(graph, text)) is False
 
 
+@pytest.mark.parametrize(
+    "text", ["sqrt(x^2 + 2*x + 1) - x - 1", "sqrt((x-9e3)^2) + x - 9e3", "sqrt((x+1e-4)^2) - x - 1e-4"]
+)
+def test_no_side_is_missed(text: str) -> None:
+    """Points are random; that some lie where x < -1 is not left to chance."""
+    for _ in range(200):
+        graph = Graph()
+        assert Vanishing(graph)(read(graph, text)) is False
+
+
 @pytest.mark.parametrize("text", ["sqrt(-1 - x^2)", "sqrt(-1 - x^2) - sqrt(-2 - 2*x^2)*sqrt(1/2)"])
 def test_unknown(text: str) -> None:
     """What has no value anywhere is neither zero nor not zero."""

@@ -216,6 +216,50 @@ def test_formulas_that_exist_on_one_side_only() -> None:
     assert "no finite value" in str(found_in_part(part, wrong))
 
 
+def slider(**more: Any) -> dict[str, Any]:
+    """A body on a rail; what else is given of its joint, and of the definition."""
+    joint = {"type": "prismatic", "coordinate": "x"} | more.pop("joint", {})
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": joint}
+    return {"name": "s", "parameters": {"k": {"value": 2}}, "bodies": [body], **more}
+
+
+def pushed(force: str) -> dict[str, Any]:
+    return slider(loads=[{"type": "joint", "coordinate": "x", "force": force}])
+
+
+SPRING = {"type": "spring", "from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "b"}, "stiffness": 1}
+
+
+@pytest.mark.parametrize(
+    ("definition", "states"),
+    [
+        (pushed("-k*x' + sin(x)/(1 + tan(x)) + (x-1)^3*pi"), 1),
+        (slider(joint={"axis": [1, 2, 0.5], "placement": {"rpy": [0.1, "k", "pi/4"]}, "limits": [0, 1]}), 1),
+        (slider(joint={"theta": "pi/3", "damping": "k", "stiffness": 1, "rest": "k*x", "armature": 1}), 1),
+        (slider(loads=[{"type": "force", "body": "b", "vector": [0, "k", "x"], "frame": "world"}]), 1),
+        (slider(loads=[{"type": "potential", "potential": "cos(x)"}]), 1),
+        (pushed("sqrt(x^2 + 1)"), 2),
+        (slider(joint={"limits": [0, 1], "limits_act": {"stiffness": 1}}), 2),
+        (slider(loads=[SPRING]), 2),
+    ],
+)
+def test_states_that_are_needed(definition: dict[str, Any], states: int) -> None:
+    """One where everything is analytic, two where there are branches."""
+    part = derive(Definition.read(definition))
+    assert part.certificate["states"] == states
+    one = {"name": "t", "instances": [{"name": "a", "substructure": "s"}]}
+    assert couple(TreeSpec.read(one), {"a": part}).certificate["states"] == states
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_one_side_of_a_branch_does_not_suffice(sign: str) -> None:
+    """sqrt(x'^2) is x' or -x' at any one state; whichever of the two the documents have, and whatever is stored."""
+    plain, root = (derive(Definition.read(pushed(force))) for force in (f"{sign}x'", "sqrt(x'^2)"))
+    assert found_in_part(plain, root.program) is not None
+    assert found_in_part(root, plain.program) is not None
+    assert found_in_part(plain, plain.program) is found_in_part(root, root.program) is None
+
+
 def test_roots_of_squares_of_parameters() -> None:
     """sqrt(l^2) is not l where a length is negative."""
     joints = [{"type": "revolute", "d": f"sqrt({x}^2)"} for x in "abcdef"]

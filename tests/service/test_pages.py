@@ -91,7 +91,7 @@ def test_the_page_of_a_part(filled: TestClient) -> None:
     filled.post("/v1/substructures/pendulum@1/yank", json={"reason": "wrong mass"})
     page = read(filled, "/substructures/pendulum@1")
     for words in (
-        *("pendulum@best", "revolute", "random states; largest deviation", "positive definite", "metric[1, 1] = "),
+        *("pendulum@best", "revolute", "at a random state; largest deviation", "positive definite", "metric[1, 1] = "),
         *("Withdrawn on", "wrong mass", "kg", "quantities compared"),
     ):
         assert words in page.text, words
