@@ -161,7 +161,7 @@ class Bodies:
             frame = self._moved(frame, joint, step, f"{prefix}{coordinate}", prismatic, axis, (phi, tau), numbers)
         self.frames[f"{prefix}{body['name']}"] = frame
         self.named.setdefault(frame.carrier, f"{prefix}{body['name']}")
-        mass = _mass(body, numbers).outwards(frame.A, frame.p)
+        mass = mass_of(body, numbers).outwards(frame.A, frame.p)
         self.own[frame.carrier] = self.own[frame.carrier] + mass
 
     def _moved(
@@ -221,7 +221,7 @@ def _before_joint(parent: Frame, joint: Plain, numbers: Numbers) -> Frame:
     return turned.placed(turn(0, theta), vector(d, zero, zero))
 
 
-def _mass(body: Plain, numbers: Numbers) -> Moments:
+def mass_of(body: Plain, numbers: Numbers) -> Moments:
     """(m, s, J) about the origin of the body's frame; J = tr(Theta)/2 1 - Theta."""
     m, c = numbers.read(body.get("mass", 0)), numbers.vector(body.get("com", NONE))
     tensor = body.get("inertia", {})

@@ -106,15 +106,19 @@ class Motion:
         return first, cross(self.dw, a) + cross(self.w, first)
 
 
-def motions(bodies: Bodies, rates: Sequence[Ball]) -> dict[int, Motion]:
-    """By carrier, at q'' = 0."""
+def motions(
+    bodies: Bodies, rates: Sequence[Ball], second: Sequence[Ball] | None = None, world: Matrix | None = None
+) -> dict[int, Motion]:
+    """By carrier, with q'' = ``second`` (default: 0) and an acceleration of the ``world`` (default: 0)."""
     zero = zeros(3, 1)
-    found = {GROUND: Motion(zero, zero, zero, zero)}
+    found = {GROUND: Motion(zero, zero, zero, zero if world is None else world)}
     for k, joint in enumerate(bodies.joints):
         before, rate = found[joint.parent], rates[k]
         # (w, v)_k' = (w_p x w_k, w_p x v_k + v_p x w_k): the axis moves with the body before it
         dw = cross(before.w, joint.w) * rate
         dv = (cross(before.w, joint.v) + cross(before.v, joint.w)) * rate
+        if second is not None:
+            dw, dv = dw + joint.w * second[k], dv + joint.v * second[k]
         w, v = before.w + joint.w * rate, before.v + joint.v * rate
         found[k] = Motion(w, v, before.dw + dw, before.dv + dv)
     return found
@@ -122,7 +126,7 @@ def motions(bodies: Bodies, rates: Sequence[Ball]) -> dict[int, Motion]:
 
 def velocity_forces(bodies: Bodies, masses: dict[int, Moments], rates: Sequence[Ball]) -> list[Ball]:
     """Gamma_abc q'^b q'^c: the rates of momentum and moment of momentum at q'' = 0, projected on every joint."""
-    loads = {k: _momentum_rate(motion, masses[k]) for k, motion in motions(bodies, rates).items()}
+    loads = {k: required(motion, masses[k]) for k, motion in motions(bodies, rates).items()}
     result = [arb(0)] * len(bodies.joints)
     for k in reversed(range(len(bodies.joints))):
         joint = bodies.joints[k]
@@ -133,7 +137,7 @@ def velocity_forces(bodies: Bodies, masses: dict[int, Moments], rates: Sequence[
     return result
 
 
-def _momentum_rate(motion: Motion, mass: Moments) -> tuple[Matrix, Matrix]:
+def required(motion: Motion, mass: Moments) -> tuple[Matrix, Matrix]:
     """p' and L' of a body, L about the world's origin; p = m v + w x s, L = s x v + Theta w."""
     m, s, theta = mass.m, mass.s, theta_of(mass.J)
     p = motion.v * m + cross(motion.w, s)

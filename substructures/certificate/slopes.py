@@ -1,4 +1,4 @@
-"""Derivatives of one element of a stored program by its symbols, in ball arithmetic."""
+"""Derivatives of stored programs in ball arithmetic: of one element by all symbols, and of all along a direction."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from flint import arb
 
 from substructures.certificate.linear import Ball
 from substructures.certificate.stored import Stored, operations_in_balls
-from substructures.expr.operations import Operation
+from substructures.expr.operations import Operation, operands
 
 #: symbols of which a potential that was found is no function
 OUTSIDE = frozenset(("velocity", "acceleration", "input", "time"))
@@ -32,6 +32,23 @@ def slopes(program: Stored, entry: int, found: Sequence[Ball]) -> dict[str, Ball
         for k, factor in _partials(operation, found, i):
             pending[k] = pending.get(k, arb(0)) + weight * factor
     return result
+
+
+def tangents(program: Stored, found: Sequence[Ball], direction: Mapping[str, Ball]) -> dict[int, Ball]:
+    """The changes of all operations that change when symbols change in a direction; ``found``: their values.
+
+    Forwards through the operations (Griewank and Walther, section 3.1).
+    """
+    changes: dict[int, Ball] = {}
+    for i, operation in enumerate(program.operations):
+        if operation[0] == "sym":
+            name = program.symbols[operation[1]].name
+            if name in direction:
+                changes[i] = direction[name]
+        elif operation[0] not in ("int", "rat") and not changes.keys().isdisjoint(operands(operation)):
+            terms = [factor * changes[k] for k, factor in _partials(operation, found, i) if k in changes]
+            changes[i] = sum(terms[1:], terms[0])
+    return changes
 
 
 def _partials(operation: Operation, found: Sequence[Ball], i: int) -> list[tuple[int, Ball]]:

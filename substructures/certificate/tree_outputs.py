@@ -49,7 +49,7 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
 def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Outputs:
     """All outputs of the model; ``values``: of all symbols."""
     result = Outputs()
-    numbers, bodies, loads, acting = _built(tree, definitions, values)
+    numbers, bodies, loads, acting = built(tree, definitions, values)
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
     gravity = numbers.vector(tree.get("gravity", NONE))
     _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
@@ -58,7 +58,7 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
         known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])
-        _, start, _, there = _built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
+        _, start, _, there = built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
         gradient_instead(result, "potential_energy", acting, known, _potential_energy(start, gravity, there))
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting))
@@ -69,7 +69,7 @@ def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[
     return result
 
 
-def _built(
+def built(
     tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball], like: Sequence[Forces] = ()
 ) -> tuple[Numbers, Bodies, list[tuple[str, Numbers, range]], list[Forces]]:
     """The numbers of the tree, its bodies in the world, and what acts on them, by instance."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from substructures.certificate.served import SERVED
 from substructures.errors import TooLarge
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
 from substructures.quantities import derivatives
+from substructures.quantities.certificate import certified
 from substructures.quantities.memo import ProgramCache
 from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model
@@ -79,14 +81,15 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     see :mod:`substructures.quantities.derivatives`;
     closed_dynamics: the outputs DYNAMICS and CLOSED of the model, the part that accelerations on closures need.
     Velocities are the symbols q', accelerations q''. Raises KeyError for another name, TooLarge for more than
-    ``max_nodes`` operations, SingularMetric for a metric that is singular in every state.
+    ``max_nodes`` operations, SingularMetric for a metric that is singular in every state, VerificationFailed for a
+    program that is not what it has to be (certificate.md, section 4).
     """
     if quantity == CLOSED_DYNAMICS:  # no larger than the model
         return model.program.select([*DYNAMICS, *CLOSED])
     result = _FORMULAS[quantity](model, max_nodes)
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
-    return result
+    return certified(result, model, SERVED[quantity], quantity)
 
 
 _programs = ProgramCache()

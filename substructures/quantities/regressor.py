@@ -21,13 +21,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.errors import InvalidArgument, TooLarge
+from substructures.certificate.compare import compare
+from substructures.certificate.regressed import regressor_outputs
+from substructures.certificate.tree_outputs import tree_symbols
+from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import Inertia, pairing
 from substructures.mechanics.kinematics import INTERFACE, Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
+from substructures.part.certificate import defaults_of
+from substructures.part.certificate import plain as plain_document
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
@@ -138,6 +143,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     if len(result) > max_nodes:
         raise TooLarge("the regressor (in operations)", len(result), max_nodes)
     named = [pair for link in links for pair in inertia_names(link.name)]
+    _certify(spec, parts, result, [name for name, _ in named])
     used = {symbol.name for symbol in result.symbols}
     return RegressorModel(
         result,
@@ -148,6 +154,24 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         {name: value for name, value in assembly.parameters.items() if name in used},
         tuple(cut.rows for cut in assembly.cuts),
     )
+
+
+def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, names: Sequence[str]) -> None:
+    """Raise VerificationFailed unless every element is what the documents say."""
+    tree = plain_document(spec)
+    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
+    defaults = defaults_of(tree)
+    for name, definition in definitions.items():
+        defaults |= defaults_of(definition, f"{name}.")
+    try:
+        compare(
+            result,
+            tree_symbols(tree, definitions),
+            lambda values: regressor_outputs(tree, definitions, names, values),
+            defaults,
+        )
+    except VerificationFailed as error:
+        raise VerificationFailed(f"regressor: {error}") from None
 
 
 def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, MountedPart]]:

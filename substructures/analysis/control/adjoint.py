@@ -38,14 +38,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from substructures.analysis.arguments import exact
 from substructures.analysis.control.problem import LINEAR, Cost, declared, read_costs
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import require_known
+from substructures.certificate.perturbed import adjoint
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.part.scope import Scope
+from substructures.quantities.certificate import certified
 from substructures.quantities.formulas import derived
 from substructures.tree.model import Model, require_open
 
@@ -120,7 +123,15 @@ def adjoint_equations(
         "terminal_qd": array((n,), lambda a: end[n + a]),
         "terminal_parameters": array((len(varied),), lambda i: end[2 * n + i]),
     }
-    result = program(scope.graph, outputs, scope.symbols)
+    texts = {name: exact(getattr(cost, name), f"/cost/{name}") for name in ("running", "terminal")}
+    own = [*(f"{prefix}{name}" for prefix in ("lambda.", "mu.") for name in (*model.coordinates, *rates)), WEIGHT]
+    result = certified(
+        program(scope.graph, outputs, scope.symbols),
+        model,
+        adjoint(controls, texts, varied),
+        "adjoint equations",
+        more=dict.fromkeys(own, "input"),
+    )
     return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied))
 
 

@@ -26,11 +26,13 @@ import numpy as np
 
 from substructures.analysis.given import StateArray
 from substructures.array import Array
+from substructures.certificate.perturbed import curved
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.part.part import MAX_NODES
+from substructures.quantities.certificate import certified
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.states import read_states, symbol_values
 from substructures.quantities.workspace import Workspace
@@ -88,7 +90,8 @@ def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
     except ZeroDivisionError:
         message = "the metric is singular: a coordinate moves no mass, so there is no curvature"
         raise InvalidDocument.at("", "singular-metric", message) from None
-    return program(space.graph, outputs, {s.name: s for s in model.program.symbols})
+    result = program(space.graph, outputs, {s.name: s for s in model.program.symbols})
+    return certified(result, model, curved, "curvature")
 
 
 def curvature_values(

@@ -17,9 +17,10 @@ from functools import lru_cache
 from typing import Any, Literal
 
 from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
-from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.symmetries import Direction, directions
+from substructures.certificate.integrals import constant
 from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional
@@ -27,6 +28,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
+from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
 IntegralKind = Literal["energy", "cyclic", "symmetry", "linear_momentum", "angular_momentum"]
@@ -102,7 +104,11 @@ def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) 
     outputs = {i.name: Formulas((), {(): x}) for i, x in search.found}
     outputs["power"] = Formulas((), {(): f.power})
     integrals = tuple(i for i, _ in search.found)
-    return FirstIntegrals(program(f.graph, outputs, f.symbols), integrals, tuple(search.cyclic_names))
+    result, rows = program(f.graph, outputs, f.symbols), multipliers_of(model)
+    expectation = constant(result, [vars(each) for each in integrals], rows)
+    kinds = dict.fromkeys(rows, "input")
+    certified(result, model, expectation, "first_integrals", zero=unused | zero, more=kinds)
+    return FirstIntegrals(result, integrals, tuple(search.cyclic_names))
 
 
 class _Search:

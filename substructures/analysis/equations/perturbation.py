@@ -17,14 +17,16 @@ from functools import lru_cache
 
 from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.expressions import read_expressions
-from substructures.analysis.equations.formulas import ModelFormulas, inputs_of
+from substructures.analysis.equations.formulas import ModelFormulas, inputs_of, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.given import require_known
+from substructures.certificate.perturbed import first_order, perturbed
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
 from substructures.quantities.workspace import ID
 from substructures.tree.model import Model, require_open
@@ -84,7 +86,10 @@ def _perturbation(known: Known) -> Program:
     }
     if model.closures:
         outputs |= _with_closures(f, outputs)
-    return program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
+    result = program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
+    multipliers = multipliers_of(model)
+    more = dict.fromkeys(multipliers, "input")
+    return certified(result, model, perturbed(names, multipliers), "perturbation", more=more)
 
 
 def _with_closures(f: ModelFormulas, found: Mapping[str, Formulas]) -> dict[str, Formulas]:
@@ -139,4 +144,5 @@ def state_space(
     results = {name: array(shapes[name], lambda i, j, m=m: m[i][j]) for name, m in matrices.items()}
     results["derivative"] = array((2 * f.n,), lambda i: x[i])
     results["output"] = array((len(y),), lambda i: y[i])
-    return program(f.graph, results, {s.name: s for s in read.symbols} | f.symbols)
+    result = program(f.graph, results, {s.name: s for s in read.symbols} | f.symbols)
+    return certified(result, model, first_order([text for text, _ in given], chosen), "state_space")

@@ -34,13 +34,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.analysis.arguments import exact
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
 from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
+from substructures.certificate.quasi import Quasi
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
+from substructures.quantities.certificate import certified
 from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
@@ -103,7 +106,18 @@ def quasi_velocity_equations(
     if gaps:
         outputs["gaps"] = array((len(gaps),), lambda k: gaps[k])
     result = program(f.graph, outputs, f.symbols)
+    texts = {name: name for name in names} if velocities is None else dict(velocities)
+    plain = {c.name: {key: _exact(x) for key, x in vars(c).items()} for c in constraints}
+    closed = [f"{each.name}.{row}" for each in model.closures for row in each.rows]
+    expectation = Quasi(result, texts, rows.labels, list(rows.gaps), plain, model.frames, closed)
+    kinds = {s.name: s.kind for s in f.symbols.values()}
+    certified(result, model, expectation, "velocity equations", more=kinds)
     return QuasiVelocities(model, result, tuple(names), tuple(rows.labels), tuple(rows.gaps), tuple(dependent))
+
+
+def _exact(given: Any) -> Any:
+    """Numbers and texts of a constraint without rounding."""
+    return [exact(x, "") for x in given] if isinstance(given, (list, tuple)) else exact(given, "")
 
 
 class _Equations:

@@ -20,9 +20,11 @@ from dataclasses import dataclass
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.certificate.integrals import reduced
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
+from substructures.quantities.certificate import certified
 from substructures.tree.model import Model, require_open
 
 
@@ -120,12 +122,11 @@ class _Reduction:
         }
         names = f.model.coordinates
         momenta = {str(p.value): Symbol(str(p.value), "parameter", u) for p, u in zip(self.p, self.units, strict=True)}
-        return Reduced(
-            program(f.graph, outputs, f.symbols | momenta),
-            tuple(names[r] for r in self.rest),
-            tuple(names[c] for c in self.cyclic),
-            tuple(momenta),
-        )
+        rest, cyclic = (tuple(names[a] for a in some) for some in (self.rest, self.cyclic))
+        result = program(f.graph, outputs, f.symbols | momenta)
+        more = dict.fromkeys(momenta, "parameter")
+        certified(result, f.model, reduced(cyclic, rest), "routhian", zero=f.zero, more=more)
+        return Reduced(result, rest, cyclic, tuple(momenta))
 
     def _metric(self, a: int, b: int) -> Expr:
         """h_ab = g_ij P_ia P_jb, where only j = the remaining coordinate of b is needed: P^T g is 0 at the others."""

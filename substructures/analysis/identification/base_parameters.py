@@ -28,7 +28,11 @@ from functools import partial
 from typing import Any, TypeVar
 
 from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
-from substructures.errors import InvalidArgument, TooLarge
+from substructures.certificate.compare import compare
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.regressed import base_outputs
+from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
+from substructures.expr.direct import ball
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.modular import Field, NoSquareRoot
@@ -115,12 +119,31 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     columns = _Columns(Y, tuple(dict.fromkeys(drives)))
     found = dependencies(columns.functions())
     result = _program(Y, columns, found)
+    _certify(Y, columns, found.base, result)
     unseen = tuple(columns.names[j] for j, c in found.others.items() if not c)
     used = {symbol.name for symbol in result.symbols}
     parameters = {name: value for name, value in Y.parameters.items() if name in used}
     return BaseParameters(
         result, Y.coordinates, Y.joints, columns.names, columns.units, found.base, unseen, columns.drives, parameters
     )
+
+
+def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: Program) -> None:
+    """Raise VerificationFailed unless Y = Y_B [1 C], by the certified regressor."""
+    kinds = {s.name: s.kind for s in (*Y.program.symbols, *result.symbols)}
+    for name in Y.coordinates:
+        kinds |= {f"{name}'": "velocity", f"{name}''": "acceleration"}
+
+    def expected(values: Mapping[str, Any]) -> Outputs:
+        """At a state."""
+        return base_outputs(Y.program, result, Y.coordinates, base, columns.drives, values)
+
+    given = {name: parameter.get("value") for name, parameter in Y.parameters.items()}
+    defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
+    try:
+        compare(result, kinds, expected, defaults)
+    except VerificationFailed as error:
+        raise VerificationFailed(f"base_parameters: {error}") from None
 
 
 class _Columns:

@@ -33,11 +33,13 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.verdict import Check
 from substructures.array import Array
+from substructures.certificate.perturbed import by_parameters, varied
 from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
 QUANTITIES = ("metric", "christoffel", "forces")
@@ -67,7 +69,8 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
             slopes = directional(roots, {name: f.graph.one})
             entries = dict(zip(formulas.entries, slopes, strict=True))
             outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
-    return program(f.graph, outputs, f.symbols)
+    result = program(f.graph, outputs, f.symbols)
+    return certified(result, model, by_parameters(parameters, quantities), "parameter_sensitivity")
 
 
 def _require_parameters(model: Model, names: Sequence[str], argument: str) -> None:
@@ -106,7 +109,7 @@ def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
         "acceleration": array((f.n,), lambda a: acceleration[a]),
         "variation": array((f.n,), lambda a: variation[a]),
     }
-    return program(f.graph, outputs, symbols)
+    return certified(program(f.graph, outputs, symbols), f.model, varied(parameters), "variation of the motion")
 
 
 def sensitivities(

@@ -17,8 +17,10 @@ from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
+from substructures.certificate.served import simulated
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
+from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
 ACCELERATION, PIVOTS, POWER = "forward_dynamics", "pivots", "power"
@@ -36,7 +38,8 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
         PIVOTS: array((f.n,), lambda a: f.factors.D[a]),
         POWER: array((), lambda: power),
     }
-    return program(f.graph, outputs, f.symbols)
+    result = program(f.graph, outputs, f.symbols)
+    return certified(result, model, simulated, "equations of motion", zero=f.zero)
 
 
 @lru_cache(maxsize=32)

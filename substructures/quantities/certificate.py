@@ -1,0 +1,56 @@
+"""Programs that follow from a model compared with what they have to be (certificate.md, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from flint import arb
+
+from substructures.certificate.compare import compare
+from substructures.certificate.model_at import ModelAt
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.served import Expectation
+from substructures.errors import VerificationFailed
+from substructures.expr.direct import ball
+from substructures.expr.program import Program
+from substructures.tree.model import Model
+
+
+def certified(
+    program: Program,
+    model: Model,
+    expectation: Expectation,
+    what: str,
+    *,
+    zero: Iterable[str] = (),
+    more: Mapping[str, str] | None = None,
+) -> Program:
+    """The program, once every element was found to be what ``expectation`` makes of the certified one of the model.
+
+    ``zero``: symbols of the model that were put to 0; ``more``: kinds of symbols beside those of the model and their
+    variations ``d.*``. Raises VerificationFailed, which says ``what`` is wrong.
+    """
+    nothing = dict.fromkeys(zero, arb(0))
+
+    def expected(values: Mapping[str, Any]) -> Outputs:
+        """At a state."""
+        return expectation(ModelAt(model.program, model.coordinates, {**values, **nothing}))
+
+    kinds = kinds_of(model)
+    kinds |= {f"d.{name}": kind for name, kind in kinds.items()} | dict(more or {})
+    given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
+    defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
+    try:
+        compare(program, kinds, expected, defaults)
+    except VerificationFailed as error:
+        raise VerificationFailed(f"{what}: {error}") from None
+    return program
+
+
+def kinds_of(model: Model) -> dict[str, str]:
+    """The kinds of all symbols that formulas of a model may have, by name."""
+    kinds = {symbol.name: symbol.kind for symbol in model.program.symbols} | {"t": "time"}
+    for name in model.coordinates:
+        kinds |= {name: "coordinate", f"{name}'": "velocity", f"{name}''": "acceleration"}
+    return kinds | dict.fromkeys(model.parameters, "parameter") | dict.fromkeys(model.input_names, "input")

@@ -1,0 +1,224 @@
+"""That no wrong program is served beside the stored ones: each is certified when made (certificate.md, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from damaged import as_json, damages
+from random_trees import Plain
+
+from substructures import Definition, Model, Part, Program, TreeSpec, couple, derive
+from substructures.analysis.control import adjoint
+from substructures.analysis.control.problem import Cost
+from substructures.analysis.equations import curvature, first_integrals, perturbation, quasi_velocities, routh
+from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
+from substructures.analysis.identification import base_parameters as base
+from substructures.analysis.motion import parameter_sensitivity, right_hand_side
+from substructures.documents import read_json
+from substructures.errors import VerificationFailed
+from substructures.expr.graph import Expr
+from substructures.mechanics.factorisation import Factors
+from substructures.quantities import derivatives, formulas, regressor
+from substructures.quantities.workspace import Workspace
+
+MASS = {"mass": "m", "com": [0.1, "l", 0.2], "inertia": {"xx": 1, "yy": 1.2, "zz": 0.9, "xy": 0.1}}
+BODIES = [
+    {"name": "a", "parent": "base", "joint": {"type": "prismatic", "coordinate": "x", "theta": 0.4}} | MASS,
+    {"name": "b", "parent": "a", "joint": {"type": "revolute", "coordinate": "y", "theta": 1.1, "d": "l"}} | MASS,
+]
+LOADS = [
+    {"type": "joint", "coordinate": "x", "force": "-k*x*y - 0.3*x'*y' + u*y + sin(t)"},
+    {"type": "force", "body": "b", "at": [0.2, "l", 0.1], "vector": ["k", "-2*y'", "u"]},
+]
+PART: Plain = {
+    "name": "a",
+    "parameters": {"k": {"value": 1.7}, "l": {"value": 0.6}, "m": {"value": 2}},
+    "inputs": {"u": {}},
+    "bodies": BODIES,
+    "loads": LOADS,
+    "ports": [{"name": "tip", "body": "b", "position": [0.3, "l", 0.1], "rotation": {"rpy": [0.1, 0.2, 0.3]}}],
+}
+MOUNTS = [
+    {"name": "x", "substructure": "a"},
+    {"name": "y", "substructure": "a", "at": "x.b", "placement": {"position": [0.2, 0.1, 0], "rpy": [0.3, 0.2, 0.1]}},
+]
+ROD = {"name": "r", "type": "rod", "from": "y.b", "to": "world", "length": 0.7}
+#: without loads and gravity: momenta and energy are constant
+FREE: Plain = PART | {"loads": []}
+CONTROLS = ("tau.x.x", "y.u")
+CONSTRAINTS = (
+    KnifeEdge("skate", "y.tip"),
+    Linear("linear", "sin(x.y)*x.x' - 0.3*y.x' - x.k*y.y'"),
+)
+
+
+@cache
+def tree(closed: bool = False, free: bool = False) -> tuple[TreeSpec, dict[str, Part], Model]:
+    part = derive(Definition.read(read_json(as_json(FREE if free else PART))))
+    gravity, closures = [0, 0, 0] if free else [1, 2, -9], [ROD] if closed else []
+    plain = {"name": "t", "gravity": gravity, "instances": MOUNTS, "closures": closures}
+    spec, parts = TreeSpec.read(read_json(as_json(plain))), {"x": part, "y": part}
+    return spec, parts, couple(spec, parts)
+
+
+def model(closed: bool = False, free: bool = False) -> Model:
+    return tree(closed, free)[2]
+
+
+def rolling() -> Any:
+    sphere = Rolling("ball", "y.tip", 0.3, "sphere", (0.2, 0.1, 1))
+    return quasi_velocities.quasi_velocity_equations(model(), [sphere])
+
+
+def regressor_of() -> Any:
+    regressor.regressor(*tree()[:2])
+
+
+#: what makes a program, by name of the program and of an output that tells it from others
+MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
+    **{
+        name: (lambda name=name: formulas.derived(model(), name), "")
+        for name in formulas.DERIVED
+        if "forward" not in name
+    },
+    "forward_dynamics": (lambda: formulas.derived(model(), "forward_dynamics"), "pivots"),
+    "forward_dynamics_derivative": (
+        lambda: formulas.derived(model(), "forward_dynamics_derivative"),
+        "forward_dynamics_derivative",
+    ),
+    "perturbation": (lambda: perturbation.perturbation(model()), "stiffness"),
+    "perturbation of closed loops": (lambda: perturbation.perturbation(model(closed=True)), "closure.jacobian_rate"),
+    "state space": (lambda: perturbation.state_space(model(), ["x.x*y.y' + x.u^2", "sin(y.x)"], CONTROLS), "A"),
+    "sensitivity": (lambda: parameter_sensitivity.sensitivity_formulas(model(), ["x.l", "y.k"]), "metric:x.l"),
+    "variation": (lambda: parameter_sensitivity.variational(model(), ["x.l"]), "variation"),
+    "curvature": (lambda: curvature.curvature(model()), "riemann"),
+    "first integrals": (lambda: first_integrals.first_integrals(model(free=True)), "power"),
+    "first integrals of closed loops": (lambda: first_integrals.first_integrals(model(closed=True)), "power"),
+    "routhian": (lambda: routh.routh(model(free=True)), "routhian"),
+    "motion": (lambda: right_hand_side.forward_dynamics(model(), ["x.u"]), "power"),
+    "adjoint": (
+        lambda: adjoint.adjoint_equations(model(), CONTROLS, Cost("tau.x.x^2*y.x'", "x.y^2*y.y'*x.l"), ["x.l"]),
+        "adjoint_q",
+    ),
+    "velocity equations": (
+        lambda: quasi_velocities.quasi_velocity_equations(
+            model(), CONSTRAINTS, velocities={"v": "cos(x.y)*x.x' + x.y'", "w": "y.y'"}
+        ),
+        "hamel_bias",
+    ),
+    "velocity equations of closed loops": (
+        lambda: quasi_velocities.quasi_velocity_equations(model(closed=True), [Closed("r")]),
+        "gaps",
+    ),
+    "velocity equations of rolling": (rolling, "gaps"),
+    "regressor": (regressor_of, "regressor"),
+    "base parameters": (lambda: base.base_parameters(regressor.regressor(*tree()[:2]), ["armature"]), "grouping"),
+}  # fmt: skip
+MODULES = (adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, regressor)
+
+
+@dataclass
+class Fault:
+    """Puts another program in the place of the one that has an output of this name."""
+
+    output: str
+    wrong: Program | None = None
+    right: Program | None = None
+
+    def collected(self, collect: Callable[..., Program]) -> Callable[..., Program]:
+        def planted(*arguments: Any) -> Program:
+            found = collect(*arguments)
+            if self.output and self.output not in found.outputs:
+                return found
+            self.right = found
+            return self.wrong or found
+
+        return planted
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_no_wrong_program_is_served(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every output damaged in all ways: sign, factor, exchange, 1e-6, left out."""
+    make, output = MAKERS[name]
+    fault = Fault(output)
+    monkeypatch.setattr(Workspace, "program", fault.collected(Workspace.program))
+    for module in (*MODULES, routh, right_hand_side):
+        monkeypatch.setattr(module, "program", fault.collected(module.program), raising=False)
+    clear()
+    make()
+    assert fault.right is not None
+    right, tried = fault.right, 0
+    for kind, place, wrong in damages(right, np.random.default_rng(1)):
+        fault.wrong = wrong
+        clear()
+        with pytest.raises(VerificationFailed) as found:
+            make()
+        assert place.partition("[")[0] in str(found.value) or "grouping" in place, (kind, place)
+        tried += 1
+    assert tried >= 4 * len([x for x in right.outputs.values() if x.entries]) - 2
+    clear()
+
+
+def clear() -> None:
+    """What was made before is made anew."""
+    perturbation._perturbation.cache_clear()
+    first_integrals._first_integrals.cache_clear()
+    parameter_sensitivity._variational.cache_clear()
+
+
+def halved(function: Callable[..., list[Expr]]) -> Callable[..., list[Expr]]:
+    return lambda *arguments, **named: [x / 2 for x in function(*arguments, **named)]
+
+
+def turned(function: Callable[..., Mapping[Any, Expr]]) -> Callable[..., Mapping[Any, Expr]]:
+    return lambda *arguments, **named: {index: -x for index, x in function(*arguments, **named).items()}
+
+
+#: faults in the lines that make programs: the module or class, the function, and what it becomes
+FAULTS: dict[str, tuple[Any, str, Callable[..., Any]]] = {
+    "coriolis": (Workspace, "velocity_symbol", lambda f, _: f.graph.symbol(f"{f.model.coordinates[0]}'")),
+    "forward_dynamics": (Factors, "solve", lambda factors, f: [x * y for x, y in zip(f, factors.inverse, strict=True)]),
+    "inverse_dynamics_derivative": (derivatives, "directional", halved(derivatives.directional)),
+    "kinetic_energy": (
+        Workspace,
+        "times_velocity",
+        lambda f, g: {(a,): x * f.velocity_symbol(a) for (a, _), x in g.items()},
+    ),
+    "perturbation": (derivatives, "directional", halved(derivatives.directional)),
+    "perturbation of closed loops": (perturbation, "directional", halved(perturbation.directional)),
+    "sensitivity": (parameter_sensitivity, "directional", halved(parameter_sensitivity.directional)),
+    "variation": (parameter_sensitivity, "directional", halved(parameter_sensitivity.directional)),
+    "curvature": (curvature._Space, "_dot", lambda s, x, _: s.graph.sum(p * p for p in x)),
+    "adjoint": (adjoint, "pullback", halved(adjoint.pullback)),
+    "routhian": (routh._Reduction, "_metric", lambda r, a, b: r.g.get((r.rest[a], r.rest[b]), r.zero)),
+    "velocity equations": (quasi_velocities._Equations, "_structure", turned(quasi_velocities._Equations._structure)),
+    "regressor": (regressor, "pairing", lambda *_: 0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_what_makes_a_program_is_found(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    make, _ = MAKERS[name]
+    clear()
+    make()
+    clear()
+    monkeypatch.setattr(*FAULTS[name])
+    with pytest.raises(VerificationFailed, match="by the documents"):
+        make()
+    clear()
+
+
+def test_what_is_called_constant_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A coordinate that is taken for cyclic: its momentum is what it says, and not constant."""
+    vanishes = first_integrals.VanishingOnAllSides
+    monkeypatch.setattr(first_integrals, "VanishingOnAllSides", lambda _: lambda _: True)
+    clear()
+    with pytest.raises(VerificationFailed, match="changes along the motion"):
+        first_integrals.first_integrals(model())
+    clear()
+    monkeypatch.setattr(first_integrals, "VanishingOnAllSides", vanishes)
