@@ -70,7 +70,7 @@ def test_a_force_with_a_potential(model: Model) -> None:
     assert at_zero(model).reason == DIRICHLET
     motion = simulate(model, [0.4] * model.dof, (0, 3), qd=[1.0] * model.dof, count=5)
     assert motion.is_right
-    assert [(c.name, c.rule) for c in motion.checks] == [("energy", "constant")]
+    assert [(c.name, c.rule) for c in motion.checks] == [("energy", "constant"), ("steps", "accurate")]
 
 
 def test_a_potential_that_is_not_in_closed_form_still_decides() -> None:

@@ -63,7 +63,7 @@ def test_puma_560_keeps_its_energy() -> None:
     assert motion.status == "finished"
     assert motion.is_right
     drifts = {check.name: check.relative for check in motion.checks}
-    assert set(drifts) == {"energy", "momentum.x.q1"}
+    assert set(drifts) == {"energy", "momentum.x.q1", "steps"}
     assert drifts["energy"] < 1e-10
     assert drifts["momentum.x.q1"] < 1e-10
     energy = motion.series["energy"]
@@ -176,4 +176,4 @@ def test_results_say_in_two_lines_what_they_are() -> None:
     motion = simulate(catalogue_model("simple-pendulum"), [1], (0, 1), count=3)
     first, second = repr(motion).splitlines()
     assert first.startswith("Trajectory: 3 states of x.q1, t = 0 to 1 s, ")
-    assert second == "is_right=True: 1 of 1 checks hold (energy constant); series: energy"
+    assert second == "is_right=True: 2 of 2 checks hold (energy constant, steps accurate); series: energy"

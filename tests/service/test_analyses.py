@@ -25,7 +25,8 @@ def test_a_pendulum_swings_with_its_period(client: TestClient) -> None:
     assert turns[1] == pytest.approx(2 * math.pi * math.sqrt(1 / G) * series, rel=1e-8)
     assert (found["status"], found["is_right"]) == ("finished", True)
     assert [(c["name"], c["rule"], c["unit"], c["holds"]) for c in found["checks"]] == [
-        ("energy", "constant", "J", True)
+        ("energy", "constant", "J", True),
+        ("steps", "accurate", "1", True),
     ]
     assert len(found["t"]) == len(found["q"]) == len(found["series"]["energy"]) == 101
 
@@ -34,9 +35,10 @@ def test_a_violated_condition_is_told(client: TestClient) -> None:
     fixed = {"step": 0.1, "method": "semi-implicit-euler"}
     found = ask(client, "clock/simulations", q=[1.0], span=[0, 5], fixed_step=fixed)
     assert found["is_right"] is False
-    (check,) = found["checks"]
-    assert check["time"] > 0
-    assert check["relative"] > check["limit"]
+    assert [check["name"] for check in found["checks"]] == ["energy", "steps"]
+    for check in found["checks"]:
+        assert check["time"] > 0
+        assert check["relative"] > check["limit"]
     stopped = ask(client, "clock/simulations", q=[1.0], span=[0, 5], max_steps=3)
     assert (stopped["status"], stopped["is_right"]) == ("failed", None)
     assert "max_steps" in stopped["message"]

@@ -23,6 +23,7 @@ from substructures.analysis.motion.problem import IntegratorChoice, MotionProble
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.single_steps import steps_again
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
 from substructures.array import Array
@@ -84,9 +85,8 @@ def simulate_closed(
     x = np.concatenate((state.q, state.qd, (0.0,)))
     motion = _moved(s, problem, x, place.rank, progress, folder)
     found = _judged(s, problem, motion, place.rank)
-    if not s.conditions.varied_potential():
-        return found
-    return replace(found, checks=(*found.checks, *_repeated(s, problem, x, place.rank, motion, progress)))
+    more = _repeated if s.conditions.varied_potential() else _steps_again
+    return replace(found, checks=(*found.checks, *more(s, problem, x, place.rank, motion, progress)))
 
 
 def _repeated(
@@ -106,6 +106,20 @@ def _repeated(
         return _moved(s, other, x, rank, at_end(progress), None)
 
     return accurate(second_run(first, problem.integrator, again), state_groups(s.n, s.n), problem.drift_limit)
+
+
+def _steps_again(
+    s: Constrained, problem: ClosedProblem, _: Array, rank: int, first: IntegratedMotion, __: ProgressReport | None
+) -> tuple[Check, ...]:
+    """Some steps once more, where the balance of energy judges the whole."""
+    s.conditions = replace(s.conditions, events=())
+
+    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """From a state of the motion."""
+        other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
+        return _moved(s, other, x, rank, None, None)
+
+    return steps_again(first, problem.integrator, state_groups(s.n, s.n), problem.drift_limit, again)
 
 
 def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:

@@ -20,6 +20,7 @@ from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
+from substructures.analysis.motion.single_steps import steps_again
 from substructures.analysis.motion.steppers import METHODS
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
@@ -125,9 +126,8 @@ def simulate_rolling(
     else:
         motion = _moved(rolling, problem, y, progress, folder)
     found = _judged(rolling, problem, motion)
-    if not conditions.varied_potential():
-        return found
-    return replace(found, checks=(*found.checks, *_repeated(rolling, problem, y, motion, progress)))
+    more = _repeated if conditions.varied_potential() else _steps_again
+    return replace(found, checks=(*found.checks, *more(rolling, problem, y, motion, progress)))
 
 
 def _repeated(
@@ -143,6 +143,21 @@ def _repeated(
 
     groups = state_groups(rolling.n, rolling.p, "v")
     return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
+
+
+def _steps_again(
+    rolling: _Rolling, problem: RollingProblem, _: Array, first: IntegratedMotion, __: ProgressReport | None
+) -> tuple[Check, ...]:
+    """Some steps once more, where the balance of energy judges the whole."""
+    rolling.conditions = replace(rolling.conditions, events=())
+
+    def again(span: tuple[float, float], y: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """From a state of the motion."""
+        other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
+        return _moved(rolling, other, y, None, None)
+
+    groups = state_groups(rolling.n, rolling.p, "v")
+    return steps_again(first, problem.integrator, groups, problem.drift_limit, again)
 
 
 def _moved(

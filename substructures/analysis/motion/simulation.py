@@ -20,6 +20,7 @@ from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, Moti
 from substructures.analysis.motion.progress import ProgressReport, share_of
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
+from substructures.analysis.motion.single_steps import steps_again
 from substructures.analysis.motion.steppers import Stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
@@ -72,7 +73,7 @@ def simulate_tree(
     motion, figures = _moved(conditions, problem, f, x, progress, folder)
     found = _judged(conditions, problem, f, motion, figures)
     if any(check.name.startswith("energy") for check in found.checks):
-        return found
+        return replace(found, checks=(*found.checks, *_steps_again(conditions, problem, f, motion)))
     instead = unbalanced(conditions.in_potential(list(problem.start.inputs)))
     repeated = _repeated(conditions, problem, f, x, motion, at_end(progress))
     return replace(found, checks=(*found.checks, instead, *repeated))
@@ -198,6 +199,20 @@ def _repeated(
 
     groups = state_groups(f.n, f.n)
     return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
+
+
+def _steps_again(
+    conditions: Conditions, problem: TreeProblem, f: RightHandSide, first: IntegratedMotion
+) -> tuple[Check, ...]:
+    """Some steps once more, where first integrals judge the whole."""
+
+    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
+        """From a state of the motion."""
+        times = OutputTimes(span, [span[1]])
+        other = replace(problem, times=times, integrator=choice, fixed_step=None, events=())
+        return _moved(replace(conditions, events=()), other, f, x, None, None)[0]
+
+    return steps_again(first, problem.integrator, state_groups(f.n, f.n), problem.drift_limit, again)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:

@@ -1,0 +1,95 @@
+"""Single steps of an integration done again, more carefully: what first integrals cannot see.
+
+A motion along which energy and momenta are constant may still be at the wrong place: on its way too early or too late,
+or turned within what they leave open. So some of the accepted steps, and of the results between them, are integrated
+once more from where they begin, each on its own: the difference at its end is the error of the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from substructures.analysis.motion.integration import IntegratedMotion
+from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice
+from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
+from substructures.analysis.verdict import About, Check
+from substructures.array import Array
+
+#: of steps, and of results, that are done again
+STEPS, RESULTS = 12, 6
+#: so many steps at most for one of them
+MOST = 10_000
+#: a time and the state then
+State = tuple[float, Array]
+#: begins anew from a state: (span, state, integrator)
+From = Callable[[tuple[float, float], Array, IntegratorChoice], IntegratedMotion]
+#: by name: columns of the states, unit, columns whose rounding is in them
+Groups = Mapping[str, tuple[slice, str, slice]]
+
+
+def steps_again(
+    first: IntegratedMotion, choice: IntegratorChoice, groups: Groups, limit: float, again: From
+) -> tuple[Check, ...]:
+    """One check; none of a motion that was not finished.
+
+    The difference is relative to the largest number of its group of columns along the motion, and may reach ``limit``.
+    """
+    pairs = [] if first.status == "failed" or first.cancelled else _chosen(first)
+    ends = []
+    for (t, x), (end, _) in pairs:
+        second = again((t, end), x, _careful(choice, end - t))
+        if second.status != "finished":
+            why = f"a step could not be done again: {second.message}"
+            return (Check.left_out("steps", "accurate", why, needed=True),)
+        ends.append(second.x[-1])
+    if not pairs:
+        return ()
+    one, two = np.array([x for _, (_, x) in pairs]), np.array(ends)
+    times, along = np.array([end for _, (end, _) in pairs]), np.abs(np.array(first.step_x))
+    errors = [_relative(one, two, along, group) for group in groups.values()]
+    ways = f"{len(pairs)} of the {first.steps:,} steps and ways to results"
+    about: About = ("steps", "accurate", f"{ways}, done again in shorter ones, end where they ended", "1")
+    return (Check.of(about, np.max(errors, axis=0), times, 1.0, limit),)
+
+
+def _relative(one: Array, two: Array, along: Array, group: tuple[slice, str, slice]) -> Array:
+    """The differences of a group (K,), beyond rounding, relative to its largest number ``along`` the motion."""
+    columns, _, whole = group
+    scale, noise = along[:, columns].max(initial=0), ROUNDING * along[:, whole].max(initial=0)
+    error = np.abs(one[:, columns] - two[:, columns]).max(axis=1, initial=0)
+    return np.asarray(np.where(error <= noise, 0.0, error / (scale or 1.0)))
+
+
+def _chosen(first: IntegratedMotion) -> list[tuple[State, State]]:
+    """Steps, and ways from a step to a result within the next one, evenly over the motion."""
+    steps = list(zip(first.step_t, first.step_x, strict=True))
+    results = list(zip(first.t, first.x, strict=True))
+    found = [(steps[k], steps[k + 1]) for k in _spread(len(steps) - 1, STEPS)]
+    times = np.array(first.step_t)
+    for k in _spread(len(results), RESULTS):
+        before = int(np.searchsorted(times, results[k][0])) - 1
+        if before >= 0:
+            found.append((steps[before], results[k]))
+    return sorted(((a, b) for a, b in found if b[0] > a[0]), key=lambda pair: pair[1][0])
+
+
+def _spread(count: int, most: int) -> list[int]:
+    """Some of the numbers below ``count``, the first and the last among them."""
+    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())) if count > 0 else []
+
+
+def _careful(choice: IntegratorChoice, length: float) -> IntegratorChoice:
+    """Other tolerances, and at least two steps; by a method that begins at full order."""
+    factor = TIGHTER if choice.relative_tolerance >= LEAST else 1 / TIGHTER
+    method = {TAYLOR: "DOP853", "BDF": "Radau", "LSODA": "Radau"}.get(choice.method, choice.method)
+    return replace(
+        choice,
+        method=method,
+        relative_tolerance=factor * choice.relative_tolerance,
+        absolute_tolerance=min(factor * choice.absolute_tolerance, 0.1),
+        max_step=length / 2,
+        max_steps=MOST,
+    )

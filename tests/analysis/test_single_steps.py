@@ -1,0 +1,87 @@
+"""Motions along which all first integrals are constant, and which are wrong: single steps done again see it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from analysis_models import shipped
+from closed_trees import at, slider_crank
+from random_trees import Plain
+from rolling_bodies import FLOOR, R, disc
+
+from substructures.analysis.closed import simulation as closed
+from substructures.analysis.motion import fixed_step, integration, rolling, simulation, single_steps
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.simulate import FixedStep, simulate
+
+CRANK = slider_crank()
+MOTIONS: dict[str, tuple[Any, Callable[[], Trajectory]]] = {
+    "tree": (simulation, lambda: simulate(shipped("acrobot"), [1.2, 0], (0, 3))),
+    "closed": (
+        closed,
+        lambda: simulate(CRANK, at(CRANK, crank=0.3, piston=0.17), (0, 0.2), qd=at(CRANK, crank=20), fixed=["x.crank"]),
+    ),
+    "rolling": (
+        rolling,
+        lambda: simulate(disc(), [0, 0, R * np.sin(1.2), 0.2, 1.2, 0], (0, 2), constraints=[FLOOR], v=[1.0, 0.5, 6.0]),
+    ),
+}
+
+
+def failed(motion: Trajectory) -> list[str]:
+    return [check.name for check in motion.checks if check.holds is False]
+
+
+def fast(reduction: Any, calls: list[Any]) -> Any:
+    """The reduction of closed loops, of which the first one is too fast."""
+
+    class Fast(reduction):  # type: ignore[misc]
+        def __init__(self, *arguments: Any) -> None:
+            super().__init__(*arguments)
+            calls.append(self)
+
+        def rates(self, t: float, x: Any) -> Any:
+            return super().rates(t, x) * (1.001 if self is calls[0] else 1)
+
+    return Fast
+
+
+@pytest.mark.parametrize("kind", MOTIONS)
+def test_steps_that_are_too_long(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """x' = 1.001 f(t, x): the same orbits, with the same energy, gone through too fast."""
+    module, run = MOTIONS[kind]
+    assert run().is_right
+    calls: list[Any] = []
+    if kind == "closed":
+        monkeypatch.setitem(closed.REDUCTIONS, "projection", fast(closed.REDUCTIONS["projection"], calls))
+
+    def integrate(f: Any, *arguments: Any, **named: Any) -> Any:
+        calls.append(f)
+        g = (lambda t, x: 1.001 * f(t, x)) if len(calls) == 1 else f
+        return integration.integrate(g, *arguments, **named)
+
+    if kind != "closed":
+        monkeypatch.setattr(module, "integrate", integrate)
+    wrong = run()
+    assert failed(wrong) == ["steps"]
+    assert wrong.is_right is False
+    assert 2 < len(calls) <= 1 + single_steps.STEPS + single_steps.RESULTS
+
+
+def test_steps_of_a_fixed_size_that_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    request: Plain = {"q": [0.5], "span": (0, 1), "fixed_step": FixedStep(0.001)}
+    assert simulate(shipped("simple-pendulum"), **request).is_right
+    rk4 = fixed_step.rk4
+    monkeypatch.setattr(fixed_step, "rk4", lambda f, t, x, h: rk4(f, t, x, 1.001 * h))
+    assert failed(simulate(shipped("simple-pendulum"), **request)) == ["steps"]
+
+
+def test_a_step_that_cannot_be_done_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(single_steps, "MOST", 1)
+    motion = simulate(shipped("simple-pendulum"), [0.5], (0, 1))
+    assert motion.is_right is None
+    (left,) = (check for check in motion.checks if not check.made)
+    assert "could not be done again" in left.reason
