@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from service.refusals import unprocessable
+from substructures.certificate.rebuilt import require_same
 from substructures.documents.fields import Quantity, in_si, quantity_of
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import Fault, InvalidInput, listed
@@ -52,10 +53,12 @@ def bound(program: Program, parameters: Parameters, text: str) -> Program:
     if not chosen:
         return program
     try:
-        return bind(program, chosen)
+        result = bind(program, chosen)
+        require_same(result, program, chosen, "formulas with numbers in them")
     except InvalidInput as error:
         message = "; ".join(fault.message for fault in error.faults)
         raise unprocessable("bind", message, PLACE) from None
+    return result
 
 
 def unit_faults(name: str, value: str | Quantity, parameters: Parameters) -> list[Fault]:

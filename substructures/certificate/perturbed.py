@@ -154,6 +154,42 @@ def _blocks(m: ModelAt) -> list[list[list[Ball]]]:
     return [[[found.get((a, b, c), arb(0)) for a in n] for c in n] for b in n]
 
 
+def steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[str]) -> Expectation:
+    """E_x and its derivatives, momenta g_ss w and theirs, at rest in the coordinates x = ``still``."""
+    return partial(_steady, still, moving, multipliers)
+
+
+def _steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[str], m: ModelAt) -> Outputs:
+    names, result, zero = m.coordinates, Outputs(), [arb(0)] * m.n
+    here = m.at({f"{names[a]}'": arb(0) for a in still})
+    weights = arb_mat(1, len(multipliers), [m.values[name] for name in multipliers])
+
+    def E(at: ModelAt) -> list[Ball]:
+        """Gamma_xbc q'^b q'^c - Q_x - lambda_k G_kx, or its change."""
+        held = (weights * at.matrix("closure.jacobian")).entries() if multipliers else zero
+        needed = at.needed(zero)
+        return [needed[a] - held[a] for a in still]
+
+    def p(g: ModelAt) -> list[Ball]:
+        """g_ss w."""
+        metric = g.matrix("metric")
+        return [total(metric[s, b] * m.rates[b] for b in moving) for s in moving]
+
+    metric = here.matrix("metric")
+    columns_of(result, "metric", m.n, [[metric[a, b] for a in range(m.n)] for b in range(m.n)])
+    vector_of(result, "residual", E(here))
+    for name, by in (("position", [names[a] for a in still]), ("velocity", [f"{names[a]}'" for a in still])):
+        columns_of(result, f"by_{name}", len(still), [E(here.by(x)) for x in by])
+    columns_of(result, "by_rate", len(still), [E(here.by(f"{names[s]}'")) for s in moving])
+    vector_of(result, "momenta", p(here))
+    columns_of(result, "momenta_by_position", len(moving), [p(here.by(names[a])) for a in still])
+    if multipliers:
+        phi, G, rows = here.elements("closure.residual"), here.matrix("closure.jacobian"), range(len(multipliers))
+        vector_of(result, "closure.residual", [phi.get((k,), arb(0)) for k in rows])
+        columns_of(result, "closure.jacobian", len(rows), [[G[k, a] for k in rows] for a in still])
+    return result
+
+
 def adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str]) -> Expectation:
     """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``."""
     return partial(_adjoint, controls, costs, varied_by)

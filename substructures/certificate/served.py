@@ -8,6 +8,7 @@ g = L^T D L without exchange of rows (notation.md, section 7).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from flint import arb
 
@@ -136,6 +137,21 @@ def simulated(m: ModelAt) -> Outputs:
     vector_of(result, "forward_dynamics", m.accelerations())
     vector_of(result, "pivots", pivots(m.matrix("metric")))
     result.scalar("power", power(m))
+    return result
+
+
+def with_power(names: Sequence[str]) -> Expectation:
+    """Outputs of the model, and the power of the forces without potential."""
+    return partial(_with_power, names)
+
+
+def _with_power(names: Sequence[str], m: ModelAt) -> Outputs:
+    result = Outputs()
+    for name in dict.fromkeys([*names, "forces", "potential_energy"]):
+        output = m.program.outputs[name]
+        entries = result.array(name, tuple(output.shape), output.symmetry)
+        entries |= {i: m.found[entry] for i, entry in zip(output.index, output.entries, strict=True)}
+    result.scalar("lost_power", power(m))
     return result
 
 

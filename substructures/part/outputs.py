@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from substructures.certificate.compare import compare
+from substructures.certificate.rebuilt import own_outputs
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
@@ -12,6 +14,7 @@ from substructures.expr.replay import replay
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, packed
+from substructures.part.certificate import defaults_of, plain
 from substructures.part.part import Part
 
 #: outputs with the own inertia of all carriers
@@ -100,4 +103,18 @@ def with_own_inertia(part: Part, program: Program) -> Program:
     bindings = inertia_bindings(part, {carrier: own.own_inertia(carrier) for carrier in part.inertia_symbols})
     known = {symbol.name: symbol for symbol in part.program.symbols}
     lifted = {name: graph.lift(x) for name, x in bindings.items()}
-    return collect(graph, replay(program, graph, lifted), known)
+    result = collect(graph, replay(program, graph, lifted), known)
+    _require_own(part, program, result)
+    return result
+
+
+def _require_own(part: Part, program: Program, result: Program) -> None:
+    """Raise VerificationFailed unless the outputs are those of the program with the part's own inertia."""
+    kinds = {symbol.name: symbol.kind for symbol in part.program.symbols if symbol.kind != "inertia"}
+    own, symbols = part.program, part.inertia_symbols
+    compare(
+        result,
+        kinds,
+        lambda values: own_outputs(program, own, symbols, values),
+        defaults_of(plain(part.definition)),
+    )

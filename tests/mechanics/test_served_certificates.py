@@ -12,10 +12,12 @@ import pytest
 from damaged import as_json, damages
 from random_trees import Plain
 
+from service.analyses import printing
 from substructures import Definition, Model, Part, Program, TreeSpec, couple, derive
+from substructures.analysis.closed import work
 from substructures.analysis.control import adjoint
 from substructures.analysis.control.problem import Cost
-from substructures.analysis.equations import curvature, first_integrals, perturbation, quasi_velocities, routh
+from substructures.analysis.equations import curvature, first_integrals, perturbation, quasi_velocities, routh, steady
 from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
 from substructures.analysis.identification import base_parameters as base
 from substructures.analysis.motion import parameter_sensitivity, right_hand_side
@@ -23,6 +25,7 @@ from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
 from substructures.mechanics.factorisation import Factors
+from substructures.part import outputs as part_outputs
 from substructures.quantities import derivatives, formulas, regressor
 from substructures.quantities.workspace import Workspace
 
@@ -58,11 +61,15 @@ CONSTRAINTS = (
 
 
 @cache
+def part(free: bool = False) -> Part:
+    return derive(Definition.read(read_json(as_json(FREE if free else PART))))
+
+
+@cache
 def tree(closed: bool = False, free: bool = False) -> tuple[TreeSpec, dict[str, Part], Model]:
-    part = derive(Definition.read(read_json(as_json(FREE if free else PART))))
     gravity, closures = [0, 0, 0] if free else [1, 2, -9], [ROD] if closed else []
     plain = {"name": "t", "gravity": gravity, "instances": MOUNTS, "closures": closures}
-    spec, parts = TreeSpec.read(read_json(as_json(plain))), {"x": part, "y": part}
+    spec, parts = TreeSpec.read(read_json(as_json(plain))), {"x": part(free), "y": part(free)}
     return spec, parts, couple(spec, parts)
 
 
@@ -116,10 +123,20 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
         "gaps",
     ),
     "velocity equations of rolling": (rolling, "gaps"),
+    "steady motions": (lambda: steady.steady_formulas(model(closed=True), [0, 2]), "by_rate"),
+    "closed motions": (lambda: work.with_power(model(closed=True), ["metric", "bias"], ["x.u"]), "lost_power"),
+    "own inertia": (lambda: part_outputs.with_own_inertia(part(), part().program), ""),
+    "bound": (
+        lambda: printing.bound(model().program, model().parameters, "x.l:1/3,y.k:x.k^2 + 1,x.m:2.50,y.m:2"),
+        "",
+    ),
     "regressor": (regressor_of, "regressor"),
     "base parameters": (lambda: base.base_parameters(regressor.regressor(*tree()[:2]), ["armature"]), "grouping"),
 }  # fmt: skip
-MODULES = (adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, regressor)
+MODULES = (
+    *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, regressor),
+    *(right_hand_side, routh, steady, work),
+)
 
 
 @dataclass
@@ -147,8 +164,10 @@ def test_no_wrong_program_is_served(name: str, monkeypatch: pytest.MonkeyPatch) 
     make, output = MAKERS[name]
     fault = Fault(output)
     monkeypatch.setattr(Workspace, "program", fault.collected(Workspace.program))
-    for module in (*MODULES, routh, right_hand_side):
-        monkeypatch.setattr(module, "program", fault.collected(module.program), raising=False)
+    for module in MODULES:
+        monkeypatch.setattr(module, "program", fault.collected(module.program))
+    for where, function in ((part_outputs, "collect"), (printing, "bind")):
+        monkeypatch.setattr(where, function, fault.collected(getattr(where, function)))
     clear()
     make()
     assert fault.right is not None
@@ -169,6 +188,7 @@ def clear() -> None:
     perturbation._perturbation.cache_clear()
     first_integrals._first_integrals.cache_clear()
     parameter_sensitivity._variational.cache_clear()
+    steady._steady_formulas.cache_clear()
 
 
 def halved(function: Callable[..., list[Expr]]) -> Callable[..., list[Expr]]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
+from substructures.certificate import served
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.certificate import certified
 from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
@@ -33,4 +35,5 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
         total = total + (force + slopes[a]) * graph.symbol(f"{name}'")
     # velocities also where no output of the model depends on them
     symbols = Workspace(model).symbols
-    return program(graph, found | {POWER: array((), lambda: total)}, symbols)
+    result = program(graph, found | {POWER: array((), lambda: total)}, symbols)
+    return certified(result, model, served.with_power(outputs), "equations of closed motions", zero=absent)

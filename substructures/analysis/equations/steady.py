@@ -20,11 +20,13 @@ from functools import lru_cache
 from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.perturbation import require_smooth
+from substructures.certificate.perturbed import steady
 from substructures.errors import InvalidArgument
 from substructures.expr.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.program import Program, array, program
 from substructures.expr.walk import transfer
+from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
 
@@ -71,7 +73,9 @@ def _steady_formulas(known: Known, moving: tuple[int, ...]) -> Program:
     for name, formulas in found.items():
         values = transfer(formulas.entries.values(), f.graph, rest)
         outputs[name] = type(formulas)(formulas.shape, dict(zip(formulas.entries, values, strict=True)))
-    return program(f.graph, outputs, f.symbols)
+    multipliers = multipliers_of(model)
+    result, more = program(f.graph, outputs, f.symbols), dict.fromkeys(multipliers, "input")
+    return certified(result, model, steady(still, moving, multipliers), "steady motions", more=more)
 
 
 def require_free(model: Model, moving: Sequence[int]) -> None:
