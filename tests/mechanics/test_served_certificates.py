@@ -12,7 +12,6 @@ import pytest
 from damaged import as_json, damages
 from random_trees import Plain
 
-from service.analyses import printing
 from substructures import Definition, Model, Part, Program, TreeSpec, couple, derive
 from substructures.analysis.closed import work
 from substructures.analysis.control import adjoint
@@ -126,10 +125,6 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
     "steady motions": (lambda: steady.steady_formulas(model(closed=True), [0, 2]), "by_rate"),
     "closed motions": (lambda: work.with_power(model(closed=True), ["metric", "bias"], ["x.u"]), "lost_power"),
     "own inertia": (lambda: part_outputs.with_own_inertia(part(), part().program), ""),
-    "bound": (
-        lambda: printing.bound(model().program, model().parameters, "x.l:1/3,y.k:x.k^2 + 1,x.m:2.50,y.m:2"),
-        "",
-    ),
     "regressor": (regressor_of, "regressor"),
     "base parameters": (lambda: base.base_parameters(regressor.regressor(*tree()[:2]), ["armature"]), "grouping"),
 }  # fmt: skip
@@ -166,8 +161,7 @@ def test_no_wrong_program_is_served(name: str, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(Workspace, "program", fault.collected(Workspace.program))
     for module in MODULES:
         monkeypatch.setattr(module, "program", fault.collected(module.program))
-    for where, function in ((part_outputs, "collect"), (printing, "bind")):
-        monkeypatch.setattr(where, function, fault.collected(getattr(where, function)))
+    monkeypatch.setattr(part_outputs, "collect", fault.collected(part_outputs.collect))
     clear()
     make()
     assert fault.right is not None

@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from damaged import damages
 from fastapi.testclient import TestClient
 
+from service.analyses import printing
+from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import QUANTITIES
@@ -171,3 +174,22 @@ def test_no_states(double: TestClient) -> None:
         assert answer.status_code == 200, answer.text
         assert (answer.json()["count"], answer.json()["metric"]) == (0, [])
         assert double.post("/v1/trees/cell/kernels", json={"quantities": names}).status_code in (200, 201)
+
+
+def test_no_wrong_formula_with_numbers_in_it_is_served(double: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Outputs damaged in all ways by what puts the numbers in; a refusal says what is wrong."""
+    address = "/v1/trees/cell/metric"
+    source = Program.from_bytes(double.get(address).content)
+    parameters = {symbol.name: {"value": None} for symbol in source.symbols if symbol.kind == "parameter"}
+    first, *others = parameters
+    text = ",".join([f"{first}:1/3", *(f"{name}:{first}^2 + 1.50" for name in others)])
+    right = printing.bound(source, parameters, text)
+    found = [wrong for _, _, wrong in damages(right, RNG)]
+    for wrong in found:
+        monkeypatch.setattr(printing, "bind", lambda *_, wrong=wrong: wrong)
+        with pytest.raises(VerificationFailed, match="numbers in them: metric"):
+            printing.bound(source, parameters, text)
+    assert len(found) == 5
+    answer = double.get(address, params={"bind": text})
+    assert answer.status_code == 500
+    assert "metric" in answer.json()["detail"]
