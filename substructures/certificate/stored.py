@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Protocol
 
 from flint import arb, fmpq
 
 from substructures.certificate.linear import Ball
-from substructures.expr.operations import Operation, Output, Symbol
+from substructures.expr.operations import Operation, Output, Symbol, operands
 
 _BINARY: dict[str, Callable[[Ball, Ball], Ball]] = {
     "add": operator.add,
@@ -44,6 +45,34 @@ class Stored(Protocol):
     @property
     def outputs(self) -> Mapping[str, Output]:
         """Which operations are the elements of its arrays."""
+
+
+@dataclass(frozen=True)
+class Pruned:
+    """What some outputs of a program need of it."""
+
+    symbols: tuple[Symbol, ...]
+    operations: tuple[Operation, ...]
+    outputs: Mapping[str, Output]
+
+
+def pruned(program: Stored, names: Iterable[str]) -> Pruned:
+    """The program with the outputs of these names that it has, and what they need."""
+    outputs = {name: program.outputs[name] for name in names if name in program.outputs}
+    pending = [entry for output in outputs.values() for entry in output.entries]
+    needed: set[int] = set()
+    while pending:
+        i = pending.pop()
+        if i not in needed:
+            needed.add(i)
+            pending += operands(program.operations[i])
+    place = {i: k for k, i in enumerate(sorted(needed))}
+    operations = []
+    for i in place:
+        op, count = program.operations[i], len(operands(program.operations[i]))
+        operations.append((op[0], *(place[k] for k in op[1 : 1 + count]), *op[1 + count :]))
+    moved = {name: replace(x, entries=tuple(place[entry] for entry in x.entries)) for name, x in outputs.items()}
+    return Pruned(program.symbols, tuple(operations), moved)
 
 
 def operations_in_balls(program: Stored, values: Mapping[str, Ball]) -> list[Ball]:

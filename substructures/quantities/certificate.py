@@ -11,10 +11,14 @@ from substructures.certificate.compare import compare
 from substructures.certificate.model_at import ModelAt
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.served import Expectation
+from substructures.certificate.stored import pruned
 from substructures.errors import VerificationFailed
 from substructures.expr.direct import ball
 from substructures.expr.program import Program
 from substructures.tree.model import Model
+
+#: outputs of a model: the equations of motion with their closures
+DYNAMICS = ("metric", "bias", "forces", "potential_energy", "closure.residual", "closure.jacobian")
 
 
 def certified(
@@ -23,19 +27,21 @@ def certified(
     expectation: Expectation,
     what: str,
     *,
+    needs: Iterable[str] = DYNAMICS,
     zero: Iterable[str] = (),
     more: Mapping[str, str] | None = None,
 ) -> Program:
     """The program, once every element was found to be what ``expectation`` makes of the certified one of the model.
 
-    ``zero``: symbols of the model that were put to 0; ``more``: kinds of symbols beside those of the model and their
-    variations ``d.*``. Raises VerificationFailed, which says ``what`` is wrong.
+    ``needs``: outputs of the model that it is made of; ``zero``: symbols of the model that were put to 0; ``more``:
+    kinds of symbols beside those of the model and their variations ``d.*``. Raises VerificationFailed, which says
+    ``what`` is wrong.
     """
-    nothing = dict.fromkeys(zero, arb(0))
+    nothing, source = dict.fromkeys(zero, arb(0)), pruned(model.program, needs)
 
     def expected(values: Mapping[str, Any]) -> Outputs:
         """At a state."""
-        return expectation(ModelAt(model.program, model.coordinates, {**values, **nothing}))
+        return expectation(ModelAt(source, model.coordinates, {**values, **nothing}))
 
     kinds = kinds_of(model)
     kinds |= {f"d.{name}": kind for name, kind in kinds.items()} | dict(more or {})

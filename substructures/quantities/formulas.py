@@ -57,6 +57,8 @@ def _total_momentum(model: Model, _: int) -> Program:
     return r.program(outputs)
 
 
+#: outputs of the model that quantities are made of, others of the equations of motion
+NEEDS = {"coriolis": ("christoffel",), "total_momentum": ("linear_momentum", "angular_momentum")}
 _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "coriolis": _coriolis,
     "inverse_dynamics": _inverse_dynamics,
@@ -89,7 +91,7 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     result = _FORMULAS[quantity](model, max_nodes)
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
-    return certified(result, model, SERVED[quantity], quantity)
+    return certified(result, model, SERVED[quantity], quantity, needs=NEEDS.get(quantity, DYNAMICS))
 
 
 _programs = ProgramCache()

@@ -35,5 +35,6 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
         total = total + (force + slopes[a]) * graph.symbol(f"{name}'")
     # velocities also where no output of the model depends on them
     symbols = Workspace(model).symbols
+    needs = (*outputs, "forces", "potential_energy")
     result = program(graph, found | {POWER: array((), lambda: total)}, symbols)
-    return certified(result, model, served.with_power(outputs), "equations of closed motions", zero=absent)
+    return certified(result, model, served.with_power(outputs), "equations of closed motions", needs=needs, zero=absent)

@@ -91,7 +91,7 @@ def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
         message = "the metric is singular: a coordinate moves no mass, so there is no curvature"
         raise InvalidDocument.at("", "singular-metric", message) from None
     result = program(space.graph, outputs, {s.name: s for s in model.program.symbols})
-    return certified(result, model, curved, "curvature")
+    return certified(result, model, curved, "curvature", needs=("metric", "christoffel"))
 
 
 def curvature_values(

@@ -28,7 +28,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
-from substructures.quantities.certificate import certified
+from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.tree.model import Model
 
 IntegralKind = Literal["energy", "cyclic", "symmetry", "linear_momentum", "angular_momentum"]
@@ -107,7 +107,8 @@ def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) 
     result, rows = program(f.graph, outputs, f.symbols), multipliers_of(model)
     expectation = constant(result, [vars(each) for each in integrals], rows)
     kinds = dict.fromkeys(rows, "input")
-    certified(result, model, expectation, "first_integrals", zero=unused | zero, more=kinds)
+    needs = (*DYNAMICS, "linear_momentum", "angular_momentum", "rotation", "U", "Omega")
+    certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
     return FirstIntegrals(result, integrals, tuple(search.cyclic_names))
 
 

@@ -43,9 +43,10 @@ from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
+from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.workspace import Workspace
-from substructures.tree.model import Model
+from substructures.tree.model import KINEMATICS, Model
 
 DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
 
@@ -111,7 +112,7 @@ def quasi_velocity_equations(
     closed = [f"{each.name}.{row}" for each in model.closures for row in each.rows]
     expectation = Quasi(result, texts, rows.labels, list(rows.gaps), plain, model.frames, closed)
     kinds = {s.name: s.kind for s in f.symbols.values()}
-    certified(result, model, expectation, "velocity equations", more=kinds)
+    certified(result, model, expectation, "velocity equations", needs=(*CERTIFIED, *KINEMATICS), more=kinds)
     return QuasiVelocities(model, result, tuple(names), tuple(rows.labels), tuple(rows.gaps), tuple(dependent))
 
 

@@ -24,7 +24,7 @@ from substructures.certificate.integrals import reduced
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
-from substructures.quantities.certificate import certified
+from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.tree.model import Model, require_open
 
 
@@ -125,7 +125,8 @@ class _Reduction:
         rest, cyclic = (tuple(names[a] for a in some) for some in (self.rest, self.cyclic))
         result = program(f.graph, outputs, f.symbols | momenta)
         more = dict.fromkeys(momenta, "parameter")
-        certified(result, f.model, reduced(cyclic, rest), "routhian", zero=f.zero, more=more)
+        needs = (*DYNAMICS, "christoffel")
+        certified(result, f.model, reduced(cyclic, rest), "routhian", needs=needs, zero=f.zero, more=more)
         return Reduced(result, rest, cyclic, tuple(momenta))
 
     def _metric(self, a: int, b: int) -> Expr:

@@ -70,7 +70,7 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
             entries = dict(zip(formulas.entries, slopes, strict=True))
             outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
     result = program(f.graph, outputs, f.symbols)
-    return certified(result, model, by_parameters(parameters, quantities), "parameter_sensitivity")
+    return certified(result, model, by_parameters(parameters, quantities), "parameter_sensitivity", needs=quantities)
 
 
 def _require_parameters(model: Model, names: Sequence[str], argument: str) -> None:
