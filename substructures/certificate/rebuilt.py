@@ -11,6 +11,7 @@ from substructures.certificate.compare import compare
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Bindings
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.states import states_between
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed
 
@@ -29,7 +30,7 @@ def require_same(result: Stored, source: Stored, bound: Mapping[str, Any], what:
 
     kinds = {symbol.name: symbol.kind for symbol in source.symbols if symbol.name not in bound}
     try:
-        compare(result, kinds, expected, {})
+        compare(result, kinds, expected, {}, states_between(result.operations, source.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
 

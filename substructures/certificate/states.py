@@ -40,6 +40,11 @@ def states_needed(operations: Sequence[Operation], documents: Iterable[Plain]) -
     return 2 if branches or any(map(_has_branches, documents)) else 1
 
 
+def states_between(*programs: Sequence[Operation]) -> int:
+    """At how many states programs have to be compared with each other."""
+    return max(states_needed(operations, ()) for operations in programs)
+
+
 def _has_branches(document: Plain) -> bool:
     """Whether a definition or tree has anything that is not analytic, or is not known to be."""
     return (

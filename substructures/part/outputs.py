@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from substructures.certificate.compare import compare
 from substructures.certificate.rebuilt import own_outputs
+from substructures.certificate.states import states_between
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
@@ -117,4 +118,5 @@ def _require_own(part: Part, program: Program, result: Program) -> None:
         kinds,
         lambda values: own_outputs(program, own, symbols, values),
         defaults_of(plain(part.definition)),
+        states_between(result.operations, own.operations, program.operations),
     )

@@ -11,6 +11,7 @@ from substructures.certificate.compare import compare
 from substructures.certificate.model_at import ModelAt
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.served import Expectation
+from substructures.certificate.states import states_between
 from substructures.certificate.stored import pruned
 from substructures.errors import VerificationFailed
 from substructures.expr.direct import ball
@@ -48,7 +49,7 @@ def certified(
     given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
     defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
     try:
-        compare(program, kinds, expected, defaults)
+        compare(program, kinds, expected, defaults, states_between(program.operations, source.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
     return program

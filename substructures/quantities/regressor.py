@@ -23,6 +23,7 @@ from typing import Any
 
 from substructures.certificate.compare import compare
 from substructures.certificate.regressed import regressor_outputs
+from substructures.certificate.states import states_needed
 from substructures.certificate.tree_outputs import tree_symbols
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
 from substructures.expr.interpret import interpret_in_blocks
@@ -169,6 +170,7 @@ def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, names: 
             tree_symbols(tree, definitions),
             lambda values: regressor_outputs(tree, definitions, names, values),
             defaults,
+            states_needed(result.operations, [tree, *definitions.values()]),
         )
     except VerificationFailed as error:
         raise VerificationFailed(f"regressor: {error}") from None

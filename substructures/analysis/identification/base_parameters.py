@@ -31,6 +31,7 @@ from substructures.analysis.equations.dependencies import Dependencies, Function
 from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.regressed import base_outputs
+from substructures.certificate.states import states_between
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
 from substructures.expr.direct import ball
 from substructures.expr.expand import expand
@@ -141,7 +142,7 @@ def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: 
     given = {name: parameter.get("value") for name, parameter in Y.parameters.items()}
     defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
     try:
-        compare(result, kinds, expected, defaults)
+        compare(result, kinds, expected, defaults, states_between(result.operations, Y.program.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"base_parameters: {error}") from None
 
