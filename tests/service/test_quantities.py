@@ -12,7 +12,7 @@ import pytest
 from damaged import damages
 from fastapi.testclient import TestClient
 
-from service.analyses import printing
+from service.analyses import binding
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
@@ -183,12 +183,12 @@ def test_no_wrong_formula_with_numbers_in_it_is_served(double: TestClient, monke
     parameters = {symbol.name: {"value": None} for symbol in source.symbols if symbol.kind == "parameter"}
     first, *others = parameters
     text = ",".join([f"{first}:1/3", *(f"{name}:{first}^2 + 1.50" for name in others)])
-    right = printing.bound(source, parameters, text)
+    right = binding.bound(source, parameters, text)
     found = [wrong for _, _, wrong in damages(right, RNG)]
     for wrong in found:
-        monkeypatch.setattr(printing, "bind", lambda *_, wrong=wrong: wrong)
+        monkeypatch.setattr(binding, "bind", lambda *_, wrong=wrong: wrong)
         with pytest.raises(VerificationFailed, match="numbers in them: metric"):
-            printing.bound(source, parameters, text)
+            binding.bound(source, parameters, text)
     assert len(found) == 5
     answer = double.get(address, params={"bind": text})
     assert answer.status_code == 500
