@@ -46,6 +46,7 @@ class Runtime:
         self.stopping = Event()
 
     def close(self) -> None:
-        """Wait for the requests that are being answered, and drop those that are not begun."""
-        for threads in self.threads.values():
+        """End what has no end, wait for the requests that are being answered, and drop those that are not begun."""
+        self.stopping.set()
+                for threads in self.threads.values():
             threads.close()

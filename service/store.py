@@ -7,6 +7,7 @@ from typing import Any
 
 from service.caches import Caches
 from service.database.connections import Connection, Database
+from service.feed import Feed
 from service.integrity import missing, reading
 from service.kernels import Kernels
 from service.metrics import Metrics
@@ -33,10 +34,12 @@ class Store:
         self.caches = Caches.for_nodes(settings.cache_nodes)
         self.kernels = Kernels(settings.kernel_folder)
         self.runtime = Runtime(settings.key_seconds)
+        self.feed = Feed(database, self.runtime.stopping)
 
     def close(self) -> None:
         """Stop what computes in the background, and give the database up."""
         self.runtime.close()
+        self.feed.close()
         self.kernels.close()
         self.database.close()
 

@@ -6,6 +6,7 @@ import logging
 from time import perf_counter
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.http import problems
@@ -13,6 +14,7 @@ from service.http.request_id import begin_request
 from service.metrics import Metrics
 from service.refusals import Refused
 
+GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
 
@@ -52,6 +54,8 @@ class Conventions:
                     f"the Host header names '{named}', which is not served here; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
                 )
                 raise Refused(400, "host-not-allowed", detail)
+        except ClientDisconnect:  # it went before it had sent all, and nobody is there to be told
+            status = status or GONE
         except Exception as error:
             if status:  # the answer has begun: nothing can be said any more
                 raise
