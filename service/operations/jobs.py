@@ -13,13 +13,12 @@ from service.jobs import kinds
 from service.operations.library import StoreLibrary
 from service.queries import jobs, uploads
 from service.queries.jobs import Job, NewItem
-from service.refusals import Refused, not_found
+from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
 from service.store import Store
 from substructures.documents import write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
-SHOWN = 20  # faults
 STORING = ("assemble", "derive")  # kinds whose results are trees and versions
 YIELD = 8  # items that are resolved at a stretch
 RECENT = 30.0  # seconds over which the rate is measured
