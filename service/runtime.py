@@ -48,5 +48,5 @@ class Runtime:
     def close(self) -> None:
         """End what has no end, wait for the requests that are being answered, and drop those that are not begun."""
         self.stopping.set()
-                for threads in self.threads.values():
+        for threads in self.threads.values():
             threads.close()

@@ -185,7 +185,7 @@ def known_values(
     # default values, correctly rounded
     values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
-    if given.get("parameters"):
+    if given.get("parameters") is not None:
         units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
         values |= given_values(given["parameters"], "parameters", "/parameters", count, parameters, units)
     return values
