@@ -86,6 +86,7 @@ class Settings(BaseModel):
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
     workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
+    runner_user: str = Field("", description="user of the processes that compute jobs; empty: that of the server")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
     key_seconds: float = Field(1.0, ge=0, le=86400, description="for how long a key is not checked again, seconds")
     limits: Limits = Limits()

@@ -31,6 +31,7 @@ from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 from uvicorn.server import ServerState
 
 from service.http import problems
+from service.http.middleware import GUARDED
 from service.http.request_id import begin_request
 from service.refusals import Refused
 from service.settings import Limits
@@ -247,7 +248,7 @@ def _last(refused: Refused, instance: str) -> Response:
     """The last answer of a connection."""
     identifier = begin_request(None)
     answer = problems.response(refused, instance)
-    answer.headers["X-Request-Id"], answer.headers["Connection"] = identifier, "close"
+    answer.headers.update({**GUARDED, "X-Request-Id": identifier, "Connection": "close"})
     return answer
 
 

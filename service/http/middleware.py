@@ -14,6 +14,8 @@ from service.http.request_id import begin_request
 from service.metrics import Metrics
 from service.refusals import Refused
 
+#: nothing that is served is anything else than it says, or a page that may load something, unless it says so
+GUARDED = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}
 GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
@@ -42,7 +44,10 @@ class Conventions:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                MutableHeaders(scope=message)["X-Request-Id"] = identifier
+                told = MutableHeaders(scope=message)
+                told["X-Request-Id"] = identifier
+                for name, value in GUARDED.items():
+                    told.setdefault(name, value)
             await send(message)
 
         try:

@@ -285,3 +285,20 @@ def test_preferences_that_were_followed_are_told(
     body = {"quantities": ["metric"], "q": [0]}
     answer = filled.post("/v1/trees/cell/evaluations", json=body, headers={"Prefer": prefer})
     assert (answer.status_code, answer.headers.get("preference-applied")) == (status, applied)
+
+
+def test_everything_served_is_guarded(filled: TestClient) -> None:
+    """Nothing is taken for another type than it has, and nothing but pages may load anything."""
+    paths = [
+        "/livez",
+        "/v1/trees/cell",
+        "/v1/trees/cell/metric?format=latex",
+        "/nowhere",
+        "/openapi.json",
+        "/",
+        "/metrics",
+    ]
+    for path in [*paths, "/v1/trees/cell/picture", "/style.css", "/v1/limits"]:
+        answer = filled.get(path)
+        assert answer.headers["x-content-type-options"] == "nosniff", path
+        assert "default-src 'none'" in answer.headers["content-security-policy"], path
