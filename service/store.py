@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.caches import Caches
+from service.claims import Claims
 from service.database.connections import Connection, Database
 from service.feed import Feed
 from service.integrity import missing, reading
@@ -34,12 +35,14 @@ class Store:
         self.caches = Caches.for_nodes(settings.cache_nodes)
         self.kernels = Kernels(settings.kernel_folder)
         self.runtime = Runtime(settings.key_seconds)
+        self.claims = Claims(database)
         self.feed = Feed(database, self.runtime.stopping)
 
     def close(self) -> None:
         """Stop what computes in the background, and give the database up."""
         self.runtime.close()
         self.feed.close()
+        self.claims.close()
         self.kernels.close()
         self.database.close()
 

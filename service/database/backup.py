@@ -18,7 +18,9 @@ def backup(address: str, target: Path) -> int:
 
     The copy is checked, and appears under its name only when it is complete. Raises DatabaseError.
     """
-    source = _file(address, "use pg_dump for PostgreSQL: it is consistent while servers run")
+    source = _file(
+        address, "for PostgreSQL use pg_dump --format=custom --file=FILE URL: it is consistent while servers run"
+    )
     if target.exists():
         raise DatabaseError(f"{target} exists; choose another name")
     if not source.exists():
@@ -43,7 +45,10 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
 
     Raises DatabaseError for a damaged file, and for a store that is there unless it may be overwritten.
     """
-    target = _file(address, "use pg_restore for PostgreSQL")
+    target = _file(
+        address,
+        "for PostgreSQL stop all servers and workers, then use pg_restore --clean --if-exists --dbname=URL FILE",
+    )
     if target.exists() and not overwrite:
         raise DatabaseError(f"{target} exists; restore to another file, or say --overwrite")
     _check_backup(source)  # before the store is claimed: the file of the claim stays

@@ -45,7 +45,7 @@ class Act:
         wait = self._prefers("wait=([0-9]{1,6})")
         self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
         self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
-        self._claimed = IdempotencyClaim(request, body, store.database, limits, key)
+        self._claimed = IdempotencyClaim(request, body, store, key)
 
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
         """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
@@ -130,6 +130,7 @@ class Act:
         with self.store.database.write() as connection:
             answer = found(connection)
             self._claimed.keep(connection, answer)
+        self._claimed.settle()
         if answer.status == 202:  # a job does not wait until somebody looks for one
             self.store.runtime.wake.set()
         return answer
