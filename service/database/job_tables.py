@@ -16,7 +16,20 @@ have equal results, whoever asks.
 
 from __future__ import annotations
 
-from sqlalchemy import CheckConstraint, Column, Float, ForeignKey, Index, Integer, LargeBinary, Table, Text, text
+from sqlalchemy import (
+    Boolean,
+    CheckConstraint,
+    Column,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    Table,
+    Text,
+    false,
+    text,
+)
 
 from service.database.tables import metadata
 
@@ -48,6 +61,7 @@ jobs = Table(
     Column("started", Text, nullable=True),
     Column("finished", Text, nullable=True),
     Column("error", Text, nullable=True),  # problem document
+    Column("shared", Boolean, nullable=False, server_default=false()),  # whether every key may see it
     _known("ck_jobs_state", JOB_STATES),
     CheckConstraint("failed <= done AND done <= total", name="ck_jobs_counts"),
     Index(None, "state", "id"),

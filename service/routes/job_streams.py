@@ -13,7 +13,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.operations import jobs
 from service.queries import job_events, results
 from service.queries import jobs as rows
@@ -37,12 +37,13 @@ def events(
     job: str,
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     last_event_id: Annotated[str | None, Header(max_length=20, description="resume behind this event")] = None,
 ) -> Response:
     """What happened and happens: changes of state, and positions of items that changed. Ends with the job, or with
     the server: then the client asks again, with ``Last-Event-ID``."""
     with store.database.read() as connection:
-        jobs.find(connection, job)
+        jobs.find(connection, job, viewer)
     seq = int(last_event_id) if last_event_id and last_event_id.isascii() and last_event_id.isdigit() else 0
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
     limits, principal = store.settings.limits, request.state.principal
@@ -91,10 +92,10 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 
 
 @router.get("/archive", response_class=Response, responses=ZIP)
-def archive(job: str, store: StoreOf) -> Response:
+def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it."""
     with store.database.read() as connection:
-        jobs.find(connection, job)
+        jobs.find(connection, job, viewer)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
     return StreamingResponse(_archive(store, job), media_type="application/zip", headers=headers)
 
