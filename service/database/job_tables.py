@@ -17,6 +17,7 @@ have equal results, whoever asks.
 from __future__ import annotations
 
 from sqlalchemy import (
+    BigInteger,
     Boolean,
     CheckConstraint,
     Column,
@@ -101,6 +102,9 @@ results = Table(
     Column("kind", Text, nullable=False),
     Column("summary", Text, nullable=False),
     Column("created", Text, nullable=False),
+    Column("principal", Text, nullable=False, server_default=""),  # whose job computed it
+    Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of summary and files
+    Index(None, "principal", "size"),
 )
 
 result_files = Table(
@@ -128,6 +132,9 @@ uploads = Table(  # chunks of states, npz, named by their sha256
     Column("digest", Text, primary_key=True),
     Column("content", LargeBinary, nullable=False),
     Column("touched", Text, nullable=False),  # when it was uploaded last
+    Column("principal", Text, nullable=False, server_default=""),  # who uploaded it first
+    Column("size", BigInteger, nullable=False, server_default="0"),  # bytes
+    Index(None, "principal", "size"),
     Index(None, "touched"),
 )
 

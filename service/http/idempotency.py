@@ -65,6 +65,7 @@ class IdempotencyClaim:
             return None
         lifetime = timedelta(hours=self._store.settings.limits.idempotency_hours)
         with self._database.write() as connection:
+            self._store.usage.take(connection, "answer", self._principal, 0)
             # who takes a claim over too early is fenced off: the first to finish is the only one
             idempotency.forget(connection, lifetime, LEASE)
             entry = idempotency.claim(connection, self._wanted, self._fingerprint)
@@ -101,6 +102,7 @@ class IdempotencyClaim:
         kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), answer.body)
         if not idempotency.finish(connection, self._wanted, kept):
             raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
+        self._store.usage.add("answer", self._principal, len(answer.body))
 
     def settle(self) -> None:
         """The answer that was kept is on the disk."""

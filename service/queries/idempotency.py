@@ -54,7 +54,11 @@ def find(connection: Connection, principal: str, key: str) -> Entry | None:
 def finish(connection: Connection, held: Claim, answer: tuple[int, str, bytes | None]) -> bool:
     """Keep the answer (status, headers, body); False when the claim is no longer ours."""
     status, headers, body = answer
-    kept = update(idempotency).where(_in_flight(held)).values(status=status, headers=headers, body=body)
+    kept = (
+        update(idempotency)
+        .where(_in_flight(held))
+        .values(status=status, headers=headers, body=body, size=len(body or b""))
+    )
     return bool(connection.execute(kept).rowcount)
 
 

@@ -160,6 +160,12 @@ def get_job(connection: Connection, identifier: str) -> Job | None:
     return None if row is None else Job(*row)
 
 
+def principals(connection: Connection, ids: Collection[str]) -> dict[str, str]:
+    """Who submitted jobs."""
+    query = select(jobs.c.id, jobs.c.principal).where(jobs.c.id.in_(list(ids)))
+    return {row[0]: row[1] for row in connection.execute(query)} if ids else {}
+
+
 def page_jobs(
     connection: Connection,
     state: str | None,
