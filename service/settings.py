@@ -50,7 +50,7 @@ class Limits(BaseModel):
     connections: Count = Field(512, description="most open connections; never more than half of the descriptors")
     connections_per_address: Count = Field(256, description="most open connections of one address (IPv6: /64)")
     head_bytes: int = Field(65536, ge=1024, le=2**24, description="longest head of a request, bytes")
-    url_bytes: int = Field(16384, ge=256, le=65535, description="longest URL, bytes")
+    url_bytes: int = Field(65535, ge=256, le=65535, description="longest URL, bytes")
     head_seconds: Seconds = Field(10.0, description="longest time until the head of a request is there, seconds")
     body_seconds: Seconds = Field(60.0, description="longest time that a body may be behind 500 bytes/s, seconds")
     answer_seconds: Seconds = Field(300.0, description="longest time for which nothing of an answer is read, seconds")

@@ -170,6 +170,27 @@ ActOf = Annotated[Act, Depends(act)]
 SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
+async def in_time(request: Request, endpoint: Callable[[], Response], advice: str) -> Response:
+    """The answer of an endpoint that prints formulas. Raises Refused 503 when it takes too long.
+
+    ``advice``: what to do then. A GET does not become a job by itself, for it is to store nothing.
+    """
+    store = store_of(request)
+    deadline = Deadline(store.settings.limits.sync_seconds)
+
+    def late() -> Response:
+        """What is said when there is no time left."""
+        detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; {advice}"
+        raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
+
+    def watched() -> Response:
+        """The endpoint under its deadline."""
+        return late() if deadline.is_over else deadline.watched(endpoint, late, instead=late)
+
+    threads = store.runtime.threads["print"]
+    return await deadline.within(partial(threads.submit, request.state.principal), watched)
+
+
 def timed(task: Task) -> Callable[[Callable[..., Response]], Callable[..., Awaitable[Response]]]:
     """An endpoint whose work, done by its parameter ``act``, is given up when it takes too long."""
 

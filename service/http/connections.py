@@ -58,10 +58,10 @@ class Connections:
         is_full = len(same) >= self.limits.connections_per_address
         if not is_full and self._count >= self.most:
             is_full, crowd = True, max(self._open.values(), key=len)
-        given_up = min(crowd, key=lambda each: each.patience, default=None) if is_full else None
+        given_up = min(crowd, key=lambda each: each.left, default=None) if is_full else None
         same[connection] = None
         self._count += 1
-        if given_up is None or given_up.patience == float("inf"):
+        if given_up is None or given_up.left == float("inf"):
             return not is_full
         given_up.end(too_many())
         self.leave(given_up)
@@ -134,7 +134,7 @@ class Connection(HttpToolsProtocol):
         """Read on, unless there is no end of what is to be read."""
         self._unused += len(data)
         super().data_received(data)
-        if self._unused > self._limits.head_bytes and not self.transport.is_closing():
+        if self._unused > self._limits.head_bytes + self._limits.url_bytes and not self.transport.is_closing():
             self.end(_too_long_head(self._limits.head_bytes))
 
     def on_message_begin(self) -> None:
@@ -216,10 +216,18 @@ class Connection(HttpToolsProtocol):
             return "rest"
         return "" if self.flow.read_paused or cycle.waiting_for_100_continue else "body"
 
+    @property
+    def left(self) -> float:
+        """The patience that is left, also where time has not passed since the client let us wait."""
+        return self.patience if self._waits else self._most(self._waiting_for())
+
     def _wait(self, waits: str) -> None:
+        self._waits, self.patience = waits, self._most(waits)
+
+    def _most(self, waits: str) -> float:
+        """The patience at first, in seconds."""
         limits = self._limits
-        self._waits = waits
-        self.patience = {
+        return {
             "head": limits.head_seconds,
             "body": limits.body_seconds,
             "rest": limits.body_seconds,

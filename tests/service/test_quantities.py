@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import io
+import threading
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from service.store import Store
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import QUANTITIES
@@ -171,3 +173,25 @@ def test_no_states(double: TestClient) -> None:
         assert answer.status_code == 200, answer.text
         assert (answer.json()["count"], answer.json()["metric"]) == (0, [])
         assert double.post("/v1/trees/cell/kernels", json={"quantities": names}).status_code in (200, 201)
+
+
+def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What takes longer is refused with what to do instead, and others are answered meanwhile."""
+    let_go = threading.Event()
+
+    def slow(*_: Any) -> Any:
+        assert let_go.wait(60)
+        raise ValueError("too late")
+
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 0.3})
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
+    monkeypatch.setattr("service.operations.models.model_quantity", slow)
+    monkeypatch.setattr("service.operations.analyses.printed", slow)
+    try:
+        for quantity in ("metric", "first_integrals"):
+            answer = filled.get(f"/v1/trees/cell/{quantity}")
+            assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+            assert "'export'" in answer.json()["detail"]
+            assert filled.get("/v1/trees/cell").status_code == 200
+    finally:
+        let_go.set()
