@@ -31,6 +31,7 @@ from typing import Any
 from service.cache import Cache
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
+from substructures.compile.cache import prune
 from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
@@ -74,8 +75,9 @@ def _weight(kernel: Kernel) -> int:
 class Kernels:
     """An engine for :mod:`substructures.quantities.evaluation`; kernels are kept in memory and in a folder if given."""
 
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path | None, most: int = 2**32) -> None:
+        """``most``: bytes that the folder may take."""
+        self.folder, self._most = folder, most
         self._kernels: Cache[Kernel] = Cache(CAPACITY, _weight)
         self._waiting: dict[Key, int] = {}  # states that were answered without the kernel
         self._lock = Lock()
@@ -129,6 +131,8 @@ class Kernels:
         if kernel is not None:
             return kernel, False
         kernel = compile_program(program, key[1], self.folder)
+        if self.folder is not None:
+            prune(self.folder, self._most)
         self._kernels.put(key, kernel)
         return kernel, True
 

@@ -17,6 +17,8 @@ from typing import Any
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
 
+SHOWN = 20  # faults
+
 
 class Refused(Exception):
     """A request that cannot be served. ``code`` is for programs, ``detail`` for people."""
@@ -71,7 +73,12 @@ def known_refusal(error: Exception) -> Refused | None:
 
 
 def problem(refused: Refused, **request: str) -> dict[str, Any]:
-    """The problem document (RFC 9457); ``request``: what is known of the request it answers."""
+    """The problem document (RFC 9457); ``request``: what is known of the request it answers.
+
+    Of many faults the first are listed, and ``count`` says how many there are.
+    """
+    faults = refused.faults
+    counted = {"count": len(faults)} if len(faults) > SHOWN else {}
     return {
         "type": f"urn:problem-type:substructures:{refused.code}",
         "title": HTTPStatus(refused.status).phrase,
@@ -79,6 +86,7 @@ def problem(refused: Refused, **request: str) -> dict[str, Any]:
         "detail": refused.detail,
         **request,
         "code": refused.code,
-        "errors": [{"pointer": f.pointer, "code": f.code, "message": f.message} for f in refused.faults],
+        "errors": [{"pointer": f.pointer, "code": f.code, "message": f.message} for f in faults[:SHOWN]],
+        **counted,
         **refused.members,
     }

@@ -10,8 +10,8 @@ from service.threads import SharedThreads
 
 #: what is computed by threads of its own, and how many: the interpreter runs one at a time, so that more of those who
 #: derive would only delay those who evaluate
-Task = Literal["evaluate", "analyse", "derive"]
-THREADS: dict[Task, int] = {"evaluate": 16, "analyse": 4, "derive": 1}
+Task = Literal["evaluate", "analyse", "derive", "print"]
+THREADS: dict[Task, int] = {"evaluate": 16, "analyse": 4, "derive": 1, "print": 8}
 #: idempotency keys of computations that a process remembers
 COMPUTED = 10_000
 
@@ -46,6 +46,7 @@ class Runtime:
         self.stopping = Event()
 
     def close(self) -> None:
-        """Wait for the requests that are being answered, and drop those that are not begun."""
+        """End what has no end, wait for the requests that are being answered, and drop those that are not begun."""
+        self.stopping.set()
         for threads in self.threads.values():
             threads.close()

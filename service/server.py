@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
 import gc
+import os
 import signal
 import socket
 import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from typing import cast
 
 import uvicorn
 
 from service.app import create_app, open_store
+from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engine import Engine
 from service.queries.keys import any_key
 from service.queue.engines import engine_of
@@ -21,6 +26,8 @@ from service.settings import Settings, SettingsError
 from service.store import Store
 
 TURN = 0.001  # seconds that a thread computes while others wait
+TICKS = 10  # of uvicorn in a second
+AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
 
 def serve(settings: Settings) -> None:
@@ -87,9 +94,23 @@ def background(settings: Settings) -> Iterator[str]:
 class _Server(uvicorn.Server):
     """Ends event streams when it is told to stop, since it waits for the answers that it has begun."""
 
-    def __init__(self, store: Store, config: uvicorn.Config) -> None:
+    def __init__(self, store: Store, connections: Connections, config: uvicorn.Config) -> None:
         super().__init__(config)
-        self._store = store
+        self._store, self._connections = store, connections
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen; the loop accepts few connections at a stretch, while many may wait."""
+        asyncio.get_running_loop().set_exception_handler(Complaints())
+        await super().startup(sockets)
+        for listener in (one for server in self.servers for one in server.sockets):
+            with socket.socket(fileno=os.dup(listener.fileno())) as same:
+                same.listen(WAITING)
+
+    async def on_tick(self, counter: int) -> bool:
+        """Once a second, look for connections whose clients let us wait."""
+        if counter % TICKS == 0:
+            self._connections.sweep(1.0)
+        return await super().on_tick(counter)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End what would have no end, then wait for the answers that were begun."""
@@ -98,11 +119,14 @@ class _Server(uvicorn.Server):
 
 
 def _server(store: Store) -> uvicorn.Server:
-    settings = store.settings
+    settings, connections = store.settings, Connections(store.settings.limits)
     return _Server(
         store,
+        connections,
         uvicorn.Config(
             create_app(store),
+            http=cast(type[asyncio.Protocol], partial(Connection, connections)),
+            backlog=AT_A_STRETCH,
             host=settings.host,
             port=settings.port,
             log_config=None,

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.caches import Caches
+from service.claims import Claims
 from service.database.connections import Connection, Database
+from service.feed import Feed
 from service.integrity import missing, reading
 from service.kernels import Kernels
 from service.metrics import Metrics
@@ -15,6 +17,7 @@ from service.queries.trees import Tree
 from service.refusals import LongWork
 from service.runtime import Runtime
 from service.settings import Settings
+from service.usage import Usage
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
@@ -31,12 +34,17 @@ class Store:
     def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
         self.settings, self.database, self.metrics = settings, database, metrics
         self.caches = Caches.for_nodes(settings.cache_nodes)
-        self.kernels = Kernels(settings.kernel_folder)
+        self.kernels = Kernels(settings.kernel_folder, settings.limits.kernel_bytes)
         self.runtime = Runtime(settings.key_seconds)
+        self.claims = Claims(database)
+        self.usage = Usage(settings.limits)
+        self.feed = Feed(database, self.runtime.stopping)
 
     def close(self) -> None:
         """Stop what computes in the background, and give the database up."""
         self.runtime.close()
+        self.feed.close()
+        self.claims.close()
         self.kernels.close()
         self.database.close()
 

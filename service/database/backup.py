@@ -7,7 +7,8 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from service.database.connections import Database, DatabaseError, claimed, normalised
+from service.database.connections import Database, DatabaseError, normalised
+from service.database.file import PRIVATE, Claim
 
 HEADER = b"SQLite format 3\x00"
 
@@ -17,13 +18,14 @@ def backup(address: str, target: Path) -> int:
 
     The copy is checked, and appears under its name only when it is complete. Raises DatabaseError.
     """
-    source = _file(address, "use pg_dump for PostgreSQL: it is consistent while servers run")
+    source = _file(
+        address, "for PostgreSQL use pg_dump --format=custom --file=FILE URL: it is consistent while servers run"
+    )
     if target.exists():
         raise DatabaseError(f"{target} exists; choose another name")
     if not source.exists():
         raise DatabaseError(f"there is no database {source}")
-    part = target.with_name(target.name + ".part")
-    part.unlink(missing_ok=True)
+    part = _new(target)
     try:
         with closing(_reader(source)) as connection, closing(sqlite3.connect(part)) as copy:
             connection.backup(copy)  # one step: one state, whatever is written meanwhile
@@ -43,13 +45,16 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
 
     Raises DatabaseError for a damaged file, and for a store that is there unless it may be overwritten.
     """
-    target = _file(address, "use pg_restore for PostgreSQL")
+    target = _file(
+        address,
+        "for PostgreSQL stop all servers and workers, then use pg_restore --clean --if-exists --dbname=URL FILE",
+    )
     if target.exists() and not overwrite:
         raise DatabaseError(f"{target} exists; restore to another file, or say --overwrite")
     _check_backup(source)  # before the store is claimed: the file of the claim stays
-    with closing(claimed(normalised(address))):
-        part = target.with_name(target.name + ".part")
-        part.unlink(missing_ok=True)
+    with closing(Claim(target)) as claim:
+        target = claim.path  # not a link to it
+        part = _new(target)
         try:
             with closing(_reader(source)) as connection, closing(sqlite3.connect(part)) as copy:
                 connection.backup(copy)
@@ -98,6 +103,14 @@ def _check(connection: sqlite3.Connection, path: Path) -> None:
     if found != ["ok"] or dangling:
         raise DatabaseError(f"{path} is damaged: {'; '.join(found)}; {len(dangling)} dangling references")
     connection.execute("SELECT version_num FROM alembic_version").fetchall()
+
+
+def _new(target: Path) -> Path:
+    """A new file beside the target that only its owner can read; what takes its name has been complete."""
+    part = target.with_name(target.name + ".part")
+    part.unlink(missing_ok=True)
+    os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, PRIVATE))
+    return part
 
 
 def _sync(path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
@@ -13,6 +12,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
+from service.database.file import Claim, DatabaseError, Watch
 from service.database.migrate import upgrade
 
 READERS = 16
@@ -24,11 +24,7 @@ CONNECT_SECONDS = 10
 
 ROOM = 2**20  # bytes
 
-__all__ = ["Connection", "Database", "DatabaseError", "claimed", "normalised", "told"]
-
-
-class DatabaseError(Exception):
-    """A database that cannot be used; the message says which and why."""
+__all__ = ["Connection", "Database", "DatabaseError", "normalised", "told"]
 
 
 class Database:
@@ -38,13 +34,15 @@ class Database:
         """Open and migrate the database at an SQLAlchemy URL.
 
         ``exclusive`` claims an SQLite file for this process, since its one writer must be the only server's. Raises
-        DatabaseError when another server holds it, when it does not answer and for an unknown kind of URL,
-        MigrationError for a database of a newer version.
+        DatabaseError when another server holds it, when it is damaged, when it does not answer and for an unknown kind
+        of URL, MigrationError for a database of a newer version.
         """
         self.url = normalised(address)
+        self._watch: Watch | None = None
         with ExitStack() as opened:
             if exclusive and self.is_sqlite:
-                opened.enter_context(closing(claimed(self.url)))
+                claim = opened.enter_context(closing(Claim(self.file)))
+                self._watch = opened.enter_context(closing(Watch(claim.path)))
             self.writer = _engine(self.url, writer=True)
             opened.callback(self.writer.dispose)
             self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)
@@ -60,19 +58,31 @@ class Database:
         """Whether this is SQLite; the alternative is PostgreSQL."""
         return self.url.get_backend_name() == "sqlite"
 
+    @property
+    def file(self) -> Path:
+        """The file of an SQLite store."""
+        return Path(self.url.database or "")
+
+    def _check_file(self) -> None:
+        if self._watch is not None:
+            self._watch.check()
+
     @contextmanager
     def read(self) -> Iterator[Connection]:
         """A transaction that sees one state of the database and writes nothing."""
+        self._check_file()
         with self.reader.connect() as connection:
             yield connection
 
     @contextmanager
     def write(self) -> Iterator[Connection]:
         """A transaction that commits when the block ends and leaves nothing behind when it raises."""
+        self._check_file()
         with self.writer.begin() as connection:
             if not self.is_sqlite:  # its locks must not outlast a process that stands still
                 connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {IDLE_MS}")
             yield connection
+            self._check_file()  # what is committed to a file that is gone must not be acknowledged
 
     def ping(self) -> None:
         """Raise when the database does not answer."""
@@ -82,7 +92,7 @@ class Database:
     @property
     def has_room(self) -> bool:
         """Whether the disk of an SQLite file has room for more; PostgreSQL does not say."""
-        return not self.is_sqlite or disk_usage(Path(self.url.database or "").absolute().parent).free > ROOM
+        return not self.is_sqlite or disk_usage(self.file.absolute().parent).free > ROOM
 
     def close(self) -> None:
         """Close all connections and give up the claim."""
@@ -158,21 +168,3 @@ def _configure(connection: Any, _record: object) -> None:
     connection.execute("PRAGMA synchronous=FULL")  # acknowledged means on the disk
     connection.execute(f"PRAGMA busy_timeout={BUSY_MS}")
     connection.execute("PRAGMA foreign_keys=ON")
-
-
-def claimed(url: URL) -> sqlite3.Connection:
-    """An exclusive lock beside an SQLite file; the operating system drops it when the process dies.
-
-    Raises DatabaseError when another process has it.
-    """
-    path = Path(f"{url.database}.lock")
-    try:
-        lock = sqlite3.connect(path, timeout=0, isolation_level=None, check_same_thread=False)
-    except sqlite3.OperationalError as error:
-        raise DatabaseError(f"cannot open {path}: {error}") from None
-    try:
-        lock.execute("BEGIN EXCLUSIVE")
-    except sqlite3.OperationalError:
-        lock.close()
-        raise DatabaseError(f"another server uses {url.database}; stop it or use PostgreSQL for several") from None
-    return lock

@@ -16,7 +16,21 @@ have equal results, whoever asks.
 
 from __future__ import annotations
 
-from sqlalchemy import CheckConstraint, Column, Float, ForeignKey, Index, Integer, LargeBinary, Table, Text, text
+from sqlalchemy import (
+    BigInteger,
+    Boolean,
+    CheckConstraint,
+    Column,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    Table,
+    Text,
+    false,
+    text,
+)
 
 from service.database.tables import metadata
 
@@ -48,6 +62,7 @@ jobs = Table(
     Column("started", Text, nullable=True),
     Column("finished", Text, nullable=True),
     Column("error", Text, nullable=True),  # problem document
+    Column("shared", Boolean, nullable=False, server_default=false()),  # whether every key may see it
     _known("ck_jobs_state", JOB_STATES),
     CheckConstraint("failed <= done AND done <= total", name="ck_jobs_counts"),
     Index(None, "state", "id"),
@@ -87,6 +102,9 @@ results = Table(
     Column("kind", Text, nullable=False),
     Column("summary", Text, nullable=False),
     Column("created", Text, nullable=False),
+    Column("principal", Text, nullable=False, server_default=""),  # whose job computed it
+    Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of summary and files
+    Index(None, "principal", "size"),
 )
 
 result_files = Table(
@@ -114,6 +132,9 @@ uploads = Table(  # chunks of states, npz, named by their sha256
     Column("digest", Text, primary_key=True),
     Column("content", LargeBinary, nullable=False),
     Column("touched", Text, nullable=False),  # when it was uploaded last
+    Column("principal", Text, nullable=False, server_default=""),  # who uploaded it first
+    Column("size", BigInteger, nullable=False, server_default="0"),  # bytes
+    Index(None, "principal", "size"),
     Index(None, "touched"),
 )
 

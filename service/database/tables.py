@@ -16,6 +16,7 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
 from __future__ import annotations
 
 from sqlalchemy import (
+    BigInteger,
     Column,
     ForeignKey,
     ForeignKeyConstraint,
@@ -187,8 +188,10 @@ idempotency = Table(
     _text("created"),
     _number("status", nullable=True),  # NULL: in flight
     _text("headers", nullable=True),
+    Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of the body
     Column("body", LargeBinary, nullable=True),  # NULL with a status: recompute (requests that store nothing)
     Index(None, "created"),
+    Index(None, "principal", "size"),
 )
 
 api_keys = Table(

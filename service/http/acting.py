@@ -45,7 +45,7 @@ class Act:
         wait = self._prefers("wait=([0-9]{1,6})")
         self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
         self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
-        self._claimed = IdempotencyClaim(request, body, store.database, limits, key)
+        self._claimed = IdempotencyClaim(request, body, store, key)
 
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
         """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
@@ -130,6 +130,7 @@ class Act:
         with self.store.database.write() as connection:
             answer = found(connection)
             self._claimed.keep(connection, answer)
+        self._claimed.settle()
         if answer.status == 202:  # a job does not wait until somebody looks for one
             self.store.runtime.wake.set()
         return answer
@@ -167,6 +168,27 @@ async def spooled_act(request: Request, idempotency_key: IdempotencyKey = None) 
 
 ActOf = Annotated[Act, Depends(act)]
 SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
+
+
+async def in_time(request: Request, endpoint: Callable[[], Response], advice: str) -> Response:
+    """The answer of an endpoint that prints formulas. Raises Refused 503 when it takes too long.
+
+    ``advice``: what to do then. A GET does not become a job by itself, for it is to store nothing.
+    """
+    store = store_of(request)
+    deadline = Deadline(store.settings.limits.sync_seconds)
+
+    def late() -> Response:
+        """What is said when there is no time left."""
+        detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; {advice}"
+        raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
+
+    def watched() -> Response:
+        """The endpoint under its deadline."""
+        return late() if deadline.is_over else deadline.watched(endpoint, late, instead=late)
+
+    threads = store.runtime.threads["print"]
+    return await deadline.within(partial(threads.submit, request.state.principal), watched)
 
 
 def timed(task: Task) -> Callable[[Callable[..., Response]], Callable[..., Awaitable[Response]]]:

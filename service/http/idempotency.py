@@ -24,11 +24,12 @@ import orjson
 from fastapi import Request
 
 from service.answers import Answer
-from service.database.connections import Connection, Database
+from service.claims import LEASE
+from service.database.connections import Connection
 from service.queries import idempotency
 from service.refusals import Refused
 from service.runtime import Computed
-from service.settings import Limits
+from service.store import Store
 
 
 class IdempotencyClaim:
@@ -38,15 +39,14 @@ class IdempotencyClaim:
         self,
         request: Request,
         body: Callable[[], Iterable[bytes]],
-        database: Database,
-        limits: Limits,
+        store: Store,
         key: str | None,
     ) -> None:
         """``body``: gives the pieces of the request body."""
         self.key = key or ""
-        self._request, self._body, self._database, self._limits = request, body, database, limits
+        self._request, self._body, self._store, self._database = request, body, store, store.database
         self._principal: str = request.state.principal
-        self._owner = secrets.token_hex(8)
+        self._wanted = idempotency.Claim(self._principal, self.key, secrets.token_hex(8))
         self._is_claimed = False
 
     @cached_property
@@ -63,13 +63,15 @@ class IdempotencyClaim:
         """Claim the key, once, or what was answered under it already. Raises Refused 409 or 422."""
         if not self.key or self._is_claimed:
             return None
-        lifetime = timedelta(hours=self._limits.idempotency_hours)
-        # who takes a claim over too early is fenced off: the first to finish is the only one
-        lease = timedelta(seconds=15 + 2 * self._limits.sync_seconds)
+        lifetime = timedelta(hours=self._store.settings.limits.idempotency_hours)
         with self._database.write() as connection:
-            idempotency.forget(connection, lifetime, lease)
-            entry = idempotency.claim(connection, self._principal, self.key, self._fingerprint, self._owner)
+            self._store.usage.take(connection, "answer", self._principal, 0)
+            # who takes a claim over too early is fenced off: the first to finish is the only one
+            idempotency.forget(connection, lifetime, LEASE)
+            entry = idempotency.claim(connection, self._wanted, self._fingerprint)
         self._is_claimed = entry is None
+        if self._is_claimed:
+            self._store.claims.hold(self._wanted)
         return self._answered(entry)
 
     def known(self, computed: Computed) -> idempotency.Entry | None:
@@ -98,14 +100,21 @@ class IdempotencyClaim:
         if not self._is_claimed:
             return
         kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), answer.body)
-        if not idempotency.finish(connection, self._principal, self.key, self._owner, kept):
+        if not idempotency.finish(connection, self._wanted, kept):
             raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
+        self._store.usage.add("answer", self._principal, len(answer.body))
+
+    def settle(self) -> None:
+        """The answer that was kept is on the disk."""
+        if self._is_claimed:
+            self._store.claims.drop(self._wanted)
 
     def release(self) -> None:
         """Give the claim up: the request may be sent again."""
         if self._is_claimed:
+            self._store.claims.drop(self._wanted)
             with self._database.write() as connection:
-                idempotency.release(connection, self._principal, self.key, self._owner)
+                idempotency.release(connection, self._wanted)
 
 
 def _reused() -> Refused:

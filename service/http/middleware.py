@@ -6,6 +6,7 @@ import logging
 from time import perf_counter
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.http import problems
@@ -13,6 +14,9 @@ from service.http.request_id import begin_request
 from service.metrics import Metrics
 from service.refusals import Refused
 
+#: nothing that is served is anything else than it says, or a page that may load something, unless it says so
+GUARDED = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}
+GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
 
@@ -40,7 +44,10 @@ class Conventions:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                MutableHeaders(scope=message)["X-Request-Id"] = identifier
+                told = MutableHeaders(scope=message)
+                told["X-Request-Id"] = identifier
+                for name, value in GUARDED.items():
+                    told.setdefault(name, value)
             await send(message)
 
         try:
@@ -52,6 +59,8 @@ class Conventions:
                     f"the Host header names '{named}', which is not served here; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
                 )
                 raise Refused(400, "host-not-allowed", detail)
+        except ClientDisconnect:  # it went before it had sent all, and nobody is there to be told
+            status = status or GONE
         except Exception as error:
             if status:  # the answer has begun: nothing can be said any more
                 raise

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from fastapi import FastAPI
+import orjson
+from fastapi import FastAPI, Request, Response
 from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
@@ -82,10 +83,21 @@ def text(app: FastAPI) -> str:
 
 
 class DocumentedApp(FastAPI):
-    """Serves this document in place of FastAPI's."""
+    """Serves this document in place of FastAPI's, as bytes that are made once."""
+
+    def setup(self) -> None:
+        """Add the route of the document, and none of pages that show it."""
+        self.router.add_route("/openapi.json", self._serve, include_in_schema=False)
+
+    async def _serve(self, _request: Request) -> Response:
+        if self._bytes is None:
+            self._bytes = orjson.dumps(self.openapi())
+        return Response(self._bytes, media_type="application/json")
 
     def openapi(self) -> dict[str, Any]:
         """The document, made once."""
         if self.openapi_schema is None:
             self.openapi_schema = document(self)
         return self.openapi_schema
+
+    _bytes: bytes | None = None

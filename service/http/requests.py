@@ -56,6 +56,21 @@ def _authorised(store: Store, given: str | None, scope: str) -> str:
     return principal
 
 
+def viewer(request: Request) -> str | None:
+    """Whose jobs the request may see, besides those that are shared: None for all, as admin or without any keys."""
+    asking: str = request.state.principal
+    if asking == keys.OPEN:
+        return None
+    try:
+        _authorised(store_of(request), request.headers.get("authorization"), "admin")
+    except Refused:
+        return asking
+    return None
+
+
+ViewerOf = Annotated[str | None, Depends(viewer)]
+
+
 async def raw_body(request: Request) -> bytes:
     """The request body, refused with 413 as soon as it exceeds its limit."""
     limits = store_of(request).settings.limits

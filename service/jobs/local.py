@@ -22,8 +22,9 @@ class LocalEngine:
     """Computes works in ``workers`` processes of this machine. To be used by one thread, which has to outlive it:
     on Linux a runner ends with the thread that started it."""
 
-    def __init__(self, workers: int) -> None:
-        self.workers = workers
+    def __init__(self, workers: int, user: str = "") -> None:
+        """``user``: whose rights the runners have, in place of ours."""
+        self.workers, self._user = workers, user
         self._selector = selectors.DefaultSelector()
         self._processes: set[Process] = set()
         self._running: dict[str, Process] = {}
@@ -81,7 +82,7 @@ class LocalEngine:
     def _fill(self) -> None:
         """Start runners that are missing; after failures only now and then."""
         while len(self._processes) < self.workers and monotonic() >= self._not_before:
-            process = Process()
+            process = Process(self._user)
             process.deadline = monotonic() + START
             self._processes.add(process)
             self._selector.register(process.reports, selectors.EVENT_READ, process)

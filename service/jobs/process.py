@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import pwd
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import time
 from collections import OrderedDict, deque
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from service.jobs.engine import AttemptReport, Work
 from service.jobs.kinds import failed
@@ -42,10 +44,17 @@ def environment() -> dict[str, str]:
     return result | dict.fromkeys(THREADS, "1")
 
 
+def rights_of(user: str) -> dict[str, Any]:
+    """The arguments of ``subprocess.Popen`` for a process of another user. Raises LookupError when there is none."""
+    entry = pwd.getpwnam(user)
+    return {"user": entry.pw_uid, "group": entry.pw_gid, "extra_groups": []}
+
+
 class Process:
     """A runner. Nothing here blocks: descriptors are to be watched by the owner."""
 
-    def __init__(self) -> None:
+    def __init__(self, user: str = "") -> None:
+        """``user``: whose rights it has, in place of ours. Raises OSError or LookupError when it cannot be started."""
         self.reports, inherited = _pipe()
         command = [sys.executable, "-P", "-m", "service.jobs.runner", str(inherited), str(os.getpid())]
         try:
@@ -58,6 +67,7 @@ class Process:
                 env=environment(),
                 cwd="/",
                 start_new_session=True,
+                **(rights_of(user) if user else {}),
             )
         finally:
             os.close(inherited)

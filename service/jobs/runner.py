@@ -22,7 +22,8 @@ from service.refusals import Refused
 
 CHUNK = 2**20
 NICE = 10  # a service that answers requests goes first
-PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+PR_SET_PDEATHSIG, PR_SET_NO_NEW_PRIVS = 1, 38  # <linux/prctl.h>
+FILE = 2**24  # bytes that it may write to a file; items need none
 INTERVAL = 0.2  # between reports of progress, seconds
 
 
@@ -30,6 +31,7 @@ def main(arguments: list[str]) -> int:
     """Serve until the input ends."""
     reports, parent = map(int, arguments)
     _end_with(parent)
+    _give_up_rights()
     os.nice(NICE)
     _send(reports, Message({"ready": os.getpid()}))
     reader = MessageReader()
@@ -47,6 +49,16 @@ def _end_with(parent: int) -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
     if os.getppid() != parent:
         sys.exit(0)
+
+
+def _give_up_rights() -> None:
+    """Let this process, and whatever it may start, gain no rights, fill no disk and leave no memory image."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+    for what, limit in ((resource.RLIMIT_FSIZE, FILE), (resource.RLIMIT_CORE, 0)):
+        _, hard = resource.getrlimit(what)
+        most = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+        resource.setrlimit(what, (most, most))
 
 
 def _serve(work: Work, reports: int) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from service.addresses import tree_path, version_path
@@ -12,6 +13,7 @@ from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
 from service.queries import results
 from service.queries.attempts import Attempt
+from service.queries.jobs import principals
 from service.summaries import PartContent
 from substructures.documents import read_json, write_json
 
@@ -19,9 +21,22 @@ from substructures.documents import read_json, write_json
 BASE_REVISION, IS_EXACT = "base", "is_exact"
 
 
-def keep(connection: Connection, ended: Iterable[tuple[Attempt, Outcome]]) -> None:
-    """Store outcomes under the keys of their items, in the transaction that completes the items."""
-    results.put_results(connection, [_result(connection, *each) for each in ended])
+#: counts bytes that a principal is about to keep, and refuses what is too many
+Take = Callable[[Connection, str, str, int], None]
+
+
+def keep(connection: Connection, ended: Iterable[tuple[Attempt, Outcome]], take: Take | None = None) -> None:
+    """Store outcomes under the keys of their items, in the transaction that completes the items.
+
+    Raises Refused where there is no room for them.
+    """
+    ended = list(ended)
+    owners = principals(connection, {attempt.job for attempt, _ in ended})
+    found = [replace(_result(connection, *each), principal=owners.get(each[0].job, "")) for each in ended]
+    if take is not None:
+        for owner in sorted({each.principal for each in found}):
+            take(connection, "result", owner, sum(each.size for each in found if each.principal == owner))
+    results.put_results(connection, found)
 
 
 def _result(connection: Connection, attempt: Attempt, outcome: Outcome) -> results.Result:

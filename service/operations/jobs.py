@@ -13,13 +13,12 @@ from service.jobs import kinds
 from service.operations.library import StoreLibrary
 from service.queries import jobs, uploads
 from service.queries.jobs import Job, NewItem
-from service.refusals import Refused, not_found
+from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
 from service.store import Store
 from substructures.documents import write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
-SHOWN = 20  # faults
 STORING = ("assemble", "derive")  # kinds whose results are trees and versions
 YIELD = 8  # items that are resolved at a stretch
 RECENT = 30.0  # seconds over which the rate is measured
@@ -32,6 +31,7 @@ class JobSubmission:
     kind: str
     items: Sequence[NewItem]
     uploads: Sequence[str] = ()  # digests of the states that the items refer to
+    shared: bool = False  # whether every key may see it
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +53,14 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
     kind = body.get("kind")
     if not isinstance(kind, str):
         raise InvalidDocument.at("/kind", "missing", f"'kind' is needed: one of {', '.join(kinds.KINDS)}")
+    shared = body.get("shared", False)
+    if not isinstance(shared, bool):
+        raise InvalidDocument.at("/shared", "boolean-expected", "true or false is needed")
     with store.database.read() as connection:
         library = StoreLibrary(connection)
         expanded = kinds.expand(kind, body, store.settings.limits, library)
-        return JobSubmission(kind, _resolved(kind, expanded, library, _places(body, len(expanded)), members or {}))
+        items = _resolved(kind, expanded, library, _places(body, len(expanded)), members or {})
+        return JobSubmission(kind, items, shared=shared)
 
 
 def prepare_items(store: Store, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]) -> JobSubmission:
@@ -142,22 +146,22 @@ def require_room(connection: Connection, new: int, principal: str, limits: Limit
 def submit(connection: Connection, submission: JobSubmission, principal: str, limits: Limits) -> Job:
     """Queue a job. Raises Refused 503 when the queue is full."""
     require_room(connection, len(submission.items), principal, limits)
-    identifier = jobs.add_job(connection, submission.kind, principal, submission.items)
+    identifier = jobs.add_job(connection, submission.kind, principal, submission.items, submission.shared)
     uploads.refer(connection, identifier, submission.uploads)
     return find(connection, identifier)
 
 
-def find(connection: Connection, identifier: str) -> Job:
-    """A job. Raises Refused 404."""
+def find(connection: Connection, identifier: str, viewer: str | None = None) -> Job:
+    """A job that a principal may see (None: any). Raises Refused 404."""
     job = jobs.get_job(connection, identifier)
-    if job is None:
+    if job is None or (viewer is not None and viewer != job.principal and not job.shared):
         raise not_found(f"there is no job '{identifier[:80]}'", "unknown-job")
     return job
 
 
-def find_item(connection: Connection, identifier: str, position: int) -> jobs.JobItem:
+def find_item(connection: Connection, identifier: str, position: int, viewer: str | None = None) -> jobs.JobItem:
     """One item of a job. Raises Refused 404."""
-    found = jobs.page_items(connection, find(connection, identifier).id, None, position - 1, 1)
+    found = jobs.page_items(connection, find(connection, identifier, viewer).id, None, position - 1, 1)
     if not found or found[0].position != position:
         raise not_found(f"the job has no item {position}", "unknown-item")
     return found[0]

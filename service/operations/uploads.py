@@ -71,7 +71,8 @@ def prepare(
 def _write(store: Store, contents: dict[str, bytes], items: int, principal: str) -> None:
     with store.database.write() as connection:
         jobs.require_room(connection, items, principal, store.settings.limits)
-        put_uploads(connection, contents)
+        store.usage.take(connection, "upload", principal, sum(map(len, contents.values())))
+        put_uploads(connection, contents, principal)
     contents.clear()
 
 

@@ -7,7 +7,7 @@ import re
 from fastapi import APIRouter, Request, Response
 
 from service import keys
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.operations import catalogue, jobs, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
@@ -67,19 +67,19 @@ def tree(ref: str, request: Request, store: StoreOf) -> Response:
 
 
 @router.get("/jobs")
-def all_jobs(request: Request, store: StoreOf) -> Response:
+def all_jobs(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The latest jobs."""
     with store.database.read() as connection:
-        found = job_rows.page_jobs(connection, None, None, None, JOBS + 1)
+        found = job_rows.page_jobs(connection, None, None, None, JOBS + 1, viewer)
         progress = [jobs.progress(connection, job) for job in found[:JOBS]]
     return answer(request, jobs_page(found[:JOBS], progress, len(found) > JOBS))
 
 
 @router.get("/jobs/{job}")
-def one_job(job: str, request: Request, store: StoreOf) -> Response:
+def one_job(job: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """A job with its progress."""
     with store.database.read() as connection:
-        found = jobs.find(connection, job)
+        found = jobs.find(connection, job, viewer)
         bad = job_rows.page_items(connection, job, "failed", -1, BAD + 1)
         progress = jobs.progress(connection, found)
     return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD))

@@ -12,6 +12,15 @@ from service.queries.common import insert_missing, now
 
 
 @dataclass(frozen=True, slots=True)
+class Claim:
+    """Somebody's claim on a key of a principal."""
+
+    principal: str
+    key: str
+    owner: str
+
+
+@dataclass(frozen=True, slots=True)
 class Entry:
     """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute again (older versions)."""
 
@@ -23,10 +32,16 @@ class Entry:
     body: bytes | None
 
 
-def claim(connection: Connection, principal: str, key: str, fingerprint: str, owner: str) -> Entry | None:
+def claim(connection: Connection, wanted: Claim, fingerprint: str) -> Entry | None:
     """Claim a key; None when it is ours now, otherwise what is there."""
-    row = {"principal": principal, "key": key, "fingerprint": fingerprint, "owner": owner, "created": now()}
-    return None if insert_missing(connection, idempotency, [row]) else find(connection, principal, key)
+    row = {"principal": wanted.principal, "key": wanted.key, "owner": wanted.owner}
+    row |= {"fingerprint": fingerprint, "created": now()}
+    return None if insert_missing(connection, idempotency, [row]) else find(connection, wanted.principal, wanted.key)
+
+
+def renew(connection: Connection, held: Claim) -> bool:
+    """Let a claim begin anew; False when it is no longer one."""
+    return bool(connection.execute(update(idempotency).where(_in_flight(held)).values(created=now())).rowcount)
 
 
 def find(connection: Connection, principal: str, key: str) -> Entry | None:
@@ -36,19 +51,20 @@ def find(connection: Connection, principal: str, key: str) -> Entry | None:
     return None if found is None else Entry(*found)
 
 
-def finish(connection: Connection, principal: str, key: str, owner: str, answer: tuple[int, str, bytes | None]) -> bool:
+def finish(connection: Connection, held: Claim, answer: tuple[int, str, bytes | None]) -> bool:
     """Keep the answer (status, headers, body); False when the claim is no longer ours."""
     status, headers, body = answer
-    chosen = _is(principal, key) & (idempotency.c.owner == owner) & idempotency.c.status.is_(None)
-    return bool(
-        connection.execute(update(idempotency).where(chosen).values(status=status, headers=headers, body=body)).rowcount
+    kept = (
+        update(idempotency)
+        .where(_in_flight(held))
+        .values(status=status, headers=headers, body=body, size=len(body or b""))
     )
+    return bool(connection.execute(kept).rowcount)
 
 
-def release(connection: Connection, principal: str, key: str, owner: str) -> None:
+def release(connection: Connection, held: Claim) -> None:
     """Give a claim up, so that the request can be sent again."""
-    chosen = _is(principal, key) & (idempotency.c.owner == owner) & idempotency.c.status.is_(None)
-    connection.execute(delete(idempotency).where(chosen))
+    connection.execute(delete(idempotency).where(_in_flight(held)))
 
 
 def forget(connection: Connection, answered: timedelta, in_flight: timedelta) -> None:
@@ -56,6 +72,10 @@ def forget(connection: Connection, answered: timedelta, in_flight: timedelta) ->
     is_claim = idempotency.c.status.is_(None)
     connection.execute(delete(idempotency).where(idempotency.c.created < now(-answered), ~is_claim))
     connection.execute(delete(idempotency).where(idempotency.c.created < now(-in_flight), is_claim))
+
+
+def _in_flight(held: Claim) -> ColumnElement[bool]:
+    return _is(held.principal, held.key) & (idempotency.c.owner == held.owner) & idempotency.c.status.is_(None)
 
 
 def _is(principal: str, key: str) -> ColumnElement[bool]:

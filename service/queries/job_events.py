@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import orjson
 from sqlalchemy import Connection, func, insert, select
 
-from service.database.job_tables import job_events
+from service.database.job_tables import job_events, jobs
 from service.queries.common import now
+
+TOGETHER = 500  # jobs of one statement
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,3 +37,15 @@ def events_after(connection: Connection, job: str, seq: int, size: int) -> list[
     columns = select(*(job_events.c[name] for name in JobEvent.__slots__))
     query = columns.where(job_events.c.job == job, job_events.c.seq > seq).order_by(job_events.c.seq).limit(size)
     return [JobEvent(*row) for row in connection.execute(query)]
+
+
+def latest(connection: Connection, identifiers: Iterable[str]) -> dict[str, tuple[int, bool]]:
+    """Of each job that is there the number of its last entry, and whether it is finished."""
+    known = sorted(identifiers)
+    last = select(func.max(job_events.c.seq)).where(job_events.c.job == jobs.c.id).scalar_subquery()
+    columns = select(jobs.c.id, last, jobs.c.finished.is_not(None))
+    found: dict[str, tuple[int, bool]] = {}
+    for start in range(0, len(known), TOGETHER):
+        for row in connection.execute(columns.where(jobs.c.id.in_(known[start : start + TOGETHER]))):
+            found[row[0]] = row[1] or 0, bool(row[2])
+    return found

@@ -33,6 +33,7 @@ class Job:
     started: str | None
     finished: str | None
     error: str | None
+    shared: bool
 
     @property
     def is_final(self) -> bool:
@@ -70,12 +71,13 @@ def new_id() -> str:
     return f"{time_ns() // 10**6:012x}{secrets.token_hex(8)}"
 
 
-def add_job(connection: Connection, kind: str, principal: str, items: Sequence[NewItem]) -> str:
+def add_job(connection: Connection, kind: str, principal: str, items: Sequence[NewItem], shared: bool = False) -> str:
     """Queue a job. Items whose result is known already have succeeded at once."""
     share_results(connection)
     identifier = new_id()
     counts = {"total": len(items), "done": 0, "failed": 0, "attempts": 0}
     row = {"id": identifier, "kind": kind, "principal": principal, "state": "queued", "created": now(), **counts}
+    row["shared"] = shared
     connection.execute(insert(jobs).values(**row))
     common = {"job": identifier, "state": "queued", "attempts": 0, "deaths": "[]", "fraction": 0.0}
     rows = [
@@ -158,9 +160,24 @@ def get_job(connection: Connection, identifier: str) -> Job | None:
     return None if row is None else Job(*row)
 
 
-def page_jobs(connection: Connection, state: str | None, kind: str | None, before: str | None, size: int) -> list[Job]:
-    """Up to ``size`` jobs, the newest first."""
+def principals(connection: Connection, ids: Collection[str]) -> dict[str, str]:
+    """Who submitted jobs."""
+    query = select(jobs.c.id, jobs.c.principal).where(jobs.c.id.in_(list(ids)))
+    return {row[0]: row[1] for row in connection.execute(query)} if ids else {}
+
+
+def page_jobs(
+    connection: Connection,
+    state: str | None,
+    kind: str | None,
+    before: str | None,
+    size: int,
+    viewer: str | None = None,
+) -> list[Job]:
+    """Up to ``size`` jobs that a principal may see (None: all), the newest first."""
     query = _all_jobs()
+    if viewer is not None:
+        query = query.where(or_(jobs.c.principal == viewer, jobs.c.shared))
     for column, value in ((jobs.c.state, state), (jobs.c.kind, kind)):
         if value is not None:
             query = query.where(column == value)

@@ -28,6 +28,12 @@ class Result:
     kind: str
     summary: str
     files: Mapping[str, bytes]
+    principal: str = ""
+
+    @property
+    def size(self) -> int:
+        """Bytes of summary and files."""
+        return len(self.summary.encode()) + sum(map(len, self.files.values()))
 
 
 def put_results(connection: Connection, found: Sequence[Result]) -> None:
@@ -42,8 +48,9 @@ def put_results(connection: Connection, found: Sequence[Result]) -> None:
     put_all(connection, result_files, files)
 
 
-def _row(result: Result) -> dict[str, str]:
-    return {"key": result.key, "kind": result.kind, "summary": result.summary}
+def _row(result: Result) -> dict[str, str | int]:
+    told: dict[str, str | int] = {"key": result.key, "kind": result.kind, "summary": result.summary}
+    return told | {"principal": result.principal, "size": result.size}
 
 
 def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]:

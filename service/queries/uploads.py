@@ -12,13 +12,15 @@ from service.database.job_tables import job_uploads, uploads
 from service.queries.common import now, put_all
 
 
-def put_uploads(connection: Connection, contents: Mapping[str, bytes]) -> None:
-    """Store contents by digest; of those that are there the age begins anew."""
+def put_uploads(connection: Connection, contents: Mapping[str, bytes], principal: str = "") -> None:
+    """Store contents of a principal by digest; of those that are there the age begins anew."""
     touched = now()
     for digest in sorted(contents):  # in one order, so that two uploads of the same do not wait for each other
         known = update(uploads).where(uploads.c.digest == digest).values(touched=touched)
         if not connection.execute(known).rowcount:
-            put_all(connection, uploads, [{"digest": digest, "content": contents[digest], "touched": touched}])
+            content = contents[digest]
+            row = {"digest": digest, "content": content, "touched": touched, "principal": principal}
+            put_all(connection, uploads, [{**row, "size": len(content)}])
 
 
 def get_upload(connection: Connection, digest: str) -> bytes | None:

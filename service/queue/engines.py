@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from importlib import import_module
 from urllib.parse import urlsplit
 
 from service.jobs.engine import Engine
 from service.jobs.local import LocalEngine
+from service.jobs.process import rights_of
 from service.settings import Settings, SettingsError
 
 
@@ -17,10 +20,21 @@ def engine_of(settings: Settings) -> Callable[[], Engine] | None:
     workers = settings.workers or os.cpu_count() or 1
     match settings.engine:
         case "local":
-            return lambda: LocalEngine(workers)
+            _check_user(settings.runner_user)
+            return lambda: LocalEngine(workers, settings.runner_user)
         case "dask":
             return _dask(settings.engine_address)
     return None
+
+
+def _check_user(user: str) -> None:
+    """Raises SettingsError for a user whose rights we cannot give to a process."""
+    if not user:
+        return
+    try:
+        subprocess.run([sys.executable, "-I", "-c", ""], check=True, **rights_of(user))
+    except (LookupError, OSError, subprocess.CalledProcessError) as error:
+        raise SettingsError(f"SUBSTRUCTURES_RUNNER_USER: no process of '{user}' can be started: {error}") from None
 
 
 def _dask(address: str) -> Callable[[], Engine]:

@@ -41,7 +41,7 @@ class Round:
     """What one owner brings and wants.
 
     ``alone``: no other owner can live, so all others' items are lost. ``ahead``: how many items of a job to claim
-    even where these are more than its share of the ``wanted`` ones.
+    even where these are more than its share of the ``wanted`` ones. ``take``: counts the bytes of results.
     """
 
     owner: str
@@ -51,6 +51,7 @@ class Round:
     take_over: bool = False
     alone: bool = False
     ahead: Callable[[str], int] | None = None
+    take: job_results.Take | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +162,7 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
     outcomes = [(each.attempt, each.outcome) for each in valid if each.outcome is not None]
     good = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None]
     problems = {attempt.id: outcome.problem for attempt, outcome in outcomes if outcome.problem is not None}
-    problems |= _keep(connection, good)
+    problems |= _keep(connection, good, round_.take)
     finished = [(a, _dump(problems[a.id]) if a.id in problems else None) for a, _ in outcomes]
     queue.finish(connection, finished)
     for attempt, problem_text in finished:
@@ -172,26 +173,32 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
             changes.add(job, "succeeded", positions)
 
 
-def _keep(connection: Connection, good: Sequence[tuple[Attempt, Outcome]]) -> dict[str, Mapping[str, Any]]:
+def _keep(
+    connection: Connection, good: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
+) -> dict[str, Mapping[str, Any]]:
     """Keep outcomes, together or, when one of them cannot be kept, each for itself: the problems by attempt."""
-    fault = _fault(connection, good)
+    fault = _fault(connection, good, take)
     if fault is None:
         return {}
     if len(good) == 1:
         return {good[0][0].id: fault}
-    faults = {each[0].id: _fault(connection, [each]) for each in good}
+    faults = {each[0].id: _fault(connection, [each], take) for each in good}
     return {identifier: each for identifier, each in faults.items() if each is not None}
 
 
-def _fault(connection: Connection, good: Sequence[tuple[Attempt, Outcome]]) -> Mapping[str, Any] | None:
+def _fault(
+    connection: Connection, good: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
+) -> Mapping[str, Any] | None:
     """Keep outcomes, all or none; the problem when they cannot be kept."""
     if not good:
         return None
     try:
         with connection.begin_nested():
-            job_results.keep(connection, good)
+            job_results.keep(connection, good, take)
     except StaleError as error:
         return problem(Refused(409, "conflict", str(error)))
+    except Refused as error:
+        return problem(error)
     except Exception as error:
         if is_outage(error):  # the database, not the item
             raise

@@ -180,7 +180,7 @@ class Supervisor:
         if free or not self._backlog.is_stuck:
             ahead = self._backlog.ahead(free + len(self._running), (a.job for a, _ in self._running.values()))
         alone = self._store.database.is_sqlite
-        round_ = Round(self._owner, self._lease, ended, free, take_over, alone, ahead)
+        round_ = Round(self._owner, self._lease, ended, free, take_over, alone, ahead, self._store.usage.take)
         with self._store.database.write() as connection:
             played = play(connection, round_)
         self._take_over_at_once, self._played = False, monotonic()
@@ -238,7 +238,9 @@ class Supervisor:
         """Keep what has ended, and leave the rest to others."""
         try:
             with self._store.database.write() as connection:
-                play(connection, Round(self._owner, self._lease, list(self._ended.values())))
+                play(
+                    connection, Round(self._owner, self._lease, list(self._ended.values()), take=self._store.usage.take)
+                )
                 put_back_all(connection, self._owner, None, is_counted=False)
         except Exception:
             _log.exception("items could not be handed back; they are taken over when their lease ends")

@@ -38,7 +38,8 @@ def committed(store: Store, submission: jobs.JobSubmission, principal: str) -> C
     """What queues a submission and answers 202."""
 
     def commit(connection: Connection) -> Answer:
-        """Queue the job and answer it."""
+        """Queue the job and answer it, unless there is no room for results."""
+        store.usage.take(connection, "result", principal, 0)
         return answer(connection, jobs.submit(connection, submission, principal, store.settings.limits), 202)
 
     return commit

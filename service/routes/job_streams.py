@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import asyncio
 import io
 import zipfile
 from collections.abc import AsyncIterator, Iterator
 from time import monotonic
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Response
+from fastapi import APIRouter, Header, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
+from starlette.types import Receive, Scope, Send
 
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.operations import jobs
 from service.queries import job_events, results
 from service.queries import jobs as rows
@@ -23,7 +23,7 @@ from service.views.jobs import event_text, item_view
 from service.views.resources import dump
 
 EVENTS, ITEMS = 500, 100  # of one read
-POLL, HEARTBEAT = 0.25, 15.0  # seconds
+HEARTBEAT = 15.0  # seconds
 EVENT = {
     "description": "one event; its data are JSON",
     "type": "object",
@@ -40,34 +40,54 @@ router = APIRouter(prefix="/v1/jobs/{job}", tags=["jobs"], dependencies=[needs("
 @router.get("/events", response_class=Response, responses=STREAM)
 def events(
     job: str,
+    request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     last_event_id: Annotated[str | None, Header(max_length=20, description="resume behind this event")] = None,
 ) -> Response:
     """What happened and happens: changes of state, and positions of items that changed. Ends with the job, or with
     the server: then the client asks again, with ``Last-Event-ID``."""
     with store.database.read() as connection:
-        jobs.find(connection, job)
+        jobs.find(connection, job, viewer)
     seq = int(last_event_id) if last_event_id and last_event_id.isascii() and last_event_id.isdigit() else 0
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(store, job, min(seq, 2**31 - 1)), media_type="text/event-stream", headers=headers)
+    limits, principal = store.settings.limits, request.state.principal
+    store.feed.enter(principal, limits.event_streams_per_key, limits.event_streams)
+    return _EventStream(store, principal, _events(store, job, min(seq, 2**31 - 1)), headers)
+
+
+class _EventStream(StreamingResponse):
+    """Gives its place among the streams back when it ends, however it ends."""
+
+    def __init__(self, store: Store, principal: str, content: AsyncIterator[bytes], headers: dict[str, str]) -> None:
+        super().__init__(content, media_type="text/event-stream", headers=headers)
+        self._store, self._principal = store, principal
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send all there is and will be."""
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._store.feed.leave(self._principal)
 
 
 async def _events(store: Store, job: str, seq: int) -> AsyncIterator[bytes]:
     said = monotonic()
-    while not store.runtime.stopping.is_set():
-        found, is_final = await run_in_threadpool(_read, store, job, seq)
-        for event in found:
-            yield event_text(event)
-            seq = event.seq
-        if found:
-            said = monotonic()
-        elif is_final:
-            return
-        elif monotonic() - said > HEARTBEAT:
-            yield b": still here\n\n"
-            said = monotonic()
-        if len(found) < EVENTS and not is_final:
-            await asyncio.sleep(POLL)
+    with store.feed.watching(job, seq) as watcher:
+        while not store.runtime.stopping.is_set():
+            found, is_final = await run_in_threadpool(_read, store, job, watcher.seq)
+            for event in found:
+                yield event_text(event)
+                watcher.seq = event.seq
+            if found:
+                said = monotonic()
+            elif is_final:
+                return
+            elif monotonic() - said >= HEARTBEAT:
+                yield b": still here\n\n"
+                said = monotonic()
+            if len(found) < EVENTS and not is_final:
+                await watcher.wait(HEARTBEAT)
 
 
 def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], bool]:
@@ -77,10 +97,10 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 
 
 @router.get("/archive", response_class=Response, responses=ZIP)
-def archive(job: str, store: StoreOf) -> Response:
+def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it."""
     with store.database.read() as connection:
-        jobs.find(connection, job)
+        jobs.find(connection, job, viewer)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
     return StreamingResponse(_archive(store, job), media_type="application/zip", headers=headers)
 

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf
-from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
+from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
 from service.operations import jobs
 from service.paging import limited, read_token, write_token
@@ -52,6 +52,7 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
 def list_jobs(
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     state: JobState | None = None,
     kind: JobKind | None = None,
     page_size: PageSize = 50,
@@ -61,7 +62,7 @@ def list_jobs(
     size, search = limited(page_size, store.settings.limits), ("jobs", state, kind)
     before = read_token(search, page_token, str)
     with store.database.read() as connection:
-        found = rows.page_jobs(connection, state, kind, before[0] if before else None, size + 1)
+        found = rows.page_jobs(connection, state, kind, before[0] if before else None, size + 1, viewer)
         items = [job_view(each, jobs.progress(connection, each)) for each in found[:size]]
     token = write_token(search, found[size - 1].id) if len(found) > size else None
     link = next_link(request, token)
@@ -70,20 +71,20 @@ def list_jobs(
 
 
 @router.get("/{job}", response_model=JobView, dependencies=READ)
-def get_job(job: str, store: StoreOf) -> Response:
+def get_job(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """A job with its progress."""
     with store.database.read() as connection:
-        return response_of(answer(connection, jobs.find(connection, job)))
+        return response_of(answer(connection, jobs.find(connection, job, viewer)))
 
 
 @router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
-def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf, viewer: ViewerOf) -> Response:
     """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
     read_model(CancelRequest, body)
 
     def commit(connection: Connection) -> Answer:
         """Cancel, if the job is one's own."""
-        if jobs.find(connection, job).principal != act.principal:
+        if jobs.find(connection, job, viewer).principal != act.principal:
             act.require("admin")
         return answer(connection, jobs.cancel(connection, job))
 
@@ -97,6 +98,7 @@ def list_items(
     job: str,
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     state: ItemState | None = None,
     page_size: PageSize = 50,
     page_token: Token = None,
@@ -105,7 +107,7 @@ def list_items(
     size, search = limited(page_size, store.settings.limits), ("items", job, state)
     after = read_token(search, page_token, int)
     with store.database.read() as connection:
-        jobs.find(connection, job)
+        jobs.find(connection, job, viewer)
         found = rows.page_items(connection, job, state, after[0] if after else -1, size + 1)
         files = results.list_files(connection, [item.key for item in found if item.summary is not None])
     views = [item_view(job, item, files.get(item.key, ()) if item.summary else ()) for item in found[:size]]
@@ -126,13 +128,13 @@ router.add_api_route(
 
 
 @router.get("/{job}/items/{position}/files/{name}", dependencies=READ, response_class=Response, responses=FILE)
-def get_file(job: str, position: int, name: str, store: StoreOf) -> Response:
+def get_file(job: str, position: int, name: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """A file of a result."""
     with store.database.read() as connection:
         if not 0 <= position < MANY:
-            jobs.find(connection, job)
+            jobs.find(connection, job, viewer)
             raise not_found(f"the job has no item {position}", "unknown-item")
-        item = jobs.find_item(connection, job, position)
+        item = jobs.find_item(connection, job, position, viewer)
         content = results.get_file(connection, item.key, name) if item.summary is not None else None
     if content is None:
         raise not_found(f"item {position} has no file '{name[:80]}'", "unknown-file")

@@ -6,9 +6,9 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
-from service.analyses.formulas import QUANTITIES
+from service.analyses.formulas import QUANTITIES, Options
 from service.answers import JSON, Answer, Stream, etag
-from service.http.acting import Commit, SpooledAct, SpooledActOf
+from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, media_type, needs
 from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
@@ -21,6 +21,7 @@ from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
+from service.store import Store
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
@@ -85,14 +86,23 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
-def get_quantity(
+async def get_quantity(
     ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf
 ) -> Response:
     """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...
 
     What follows from them (first_integrals, perturbation, curvature, ...) is described by further members of the JSON
-    answer.
+    answer. What takes longer than a request may is an item of a job of kind `export`.
     """
+    item = f'{{"tree": "{ref[:80]}", "quantity": "{quantity[:80]}", "format": "{style.format}", ...}}'
+    advice = f"submit a job of kind 'export' with the item {item}"
+    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options), advice)
+
+
+def _quantity(
+    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options
+) -> Response:
+    """The formulas in a thread."""
     with store.database.read() as connection:
         tree = trees.find(connection, ref)
         model = store.model(connection, tree)

@@ -33,6 +33,7 @@ class JobRequest(Shape):
         default_factory=dict, description="an item that is copied for every combination of choices"
     )
     choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
+    shared: bool = Field(False, description="whether every API key may see the job, not only the one that submits it")
 
 
 class CancelRequest(Shape):
@@ -59,6 +60,7 @@ class JobView(Shape):
     progress: JobProgress
     attempts: int = Field(description="attempts on all items")
     principal: str = Field(description="id of the API key, or local")
+    shared: bool = Field(description="whether every API key may see it")
     created: Time
     started: Time | None
     finished: Time | None

@@ -39,6 +39,7 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         },
         "attempts": job.attempts,
         "principal": job.principal,
+        "shared": bool(job.shared),
         "created": job.created,
         "started": job.started,
         "finished": job.finished,

@@ -36,6 +36,8 @@ def read(folder: Path, wanted: str) -> tuple[Any, bytes] | None:
     if data[: len(MARK)] != MARK or data[len(MARK) : start] != _checksum(data[start:]):
         return None
     line, _, code = data[start:].partition(b"\n")
+    with contextlib.suppress(OSError):
+        os.utime(_path(folder, wanted))  # it was used now
     try:
         head = json.loads(line)
         return (head["data"], code) if head["key"] == wanted and code else None
@@ -57,6 +59,18 @@ def write(folder: Path, wanted: str, plain: Any, code: bytes) -> None:
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
+
+
+def prune(folder: Path, most: int) -> None:
+    """Remove entries until all take at most so many bytes, beginning with those that were used least lately."""
+    with contextlib.suppress(OSError):
+        found = [(entry, entry.stat()) for entry in os.scandir(folder) if entry.name.endswith(".kernel")]
+        size = sum(each.st_size for _, each in found)
+        for entry, each in sorted(found, key=lambda one: one[1].st_mtime_ns):
+            if size <= most:
+                return
+            Path(entry.path).unlink(missing_ok=True)
+            size -= each.st_size
 
 
 def _checksum(body: bytes) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import struct
 import zipfile
 import zlib
@@ -24,6 +25,7 @@ NOTES: dict[str, tuple[str, ...]] = {"failures": (), "warnings": ("pointer",)}
 KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 MAX_HEADER = 10_000  # bytes
+MAX_LISTED = 2**21  # bytes of the directory of a zip file, for which its reader takes many times as much memory
 ALIGNMENT = 64  # bytes
 # of a zip file: a header before each file, a line of the directory, its end, a field that other readers pass over
 LOCAL, LISTED = struct.Struct("<4s5H3I2H"), struct.Struct("<4s6H3I5H2I")
@@ -31,6 +33,13 @@ END, PADDING = struct.Struct("<4s4H2IH"), struct.Struct("<2H")
 VERSION, UTF_8, ENCRYPTED, FIRST_DAY, PADDING_ID = 20, 0x800, 1, 0x21, 0xD935  # 2.0; 1 January 1980; as zipalign's
 UNIX, READABLE = 3 << 8, 0o644 << 16  # whose names and permissions these are
 
+MAX_DIMENSIONS = 32
+#: an entry of the header of an array, which is a dictionary of Python; there is no need to read any other literal
+_ENTRY = re.compile(
+    r"""\s*(['"])(descr|fortran_order|shape)\1\s*:\s*"""
+    r"""(?:(['"])([<>|=]?[A-Za-z?][0-9]{0,9})\3|(True|False)|\(([0-9L,\s]*)\))\s*(?:,|(?=\}))"""
+)
+_LENGTH = re.compile(r"[0-9]{1,18}L?")
 #: what the standard library raises for a damaged zip file
 DAMAGED = (zipfile.BadZipFile, RuntimeError, EOFError, OSError, ValueError, struct.error, zlib.error)
 
@@ -38,6 +47,7 @@ DAMAGED = (zipfile.BadZipFile, RuntimeError, EOFError, OSError, ValueError, stru
 def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
     """The arrays of an npz file of at most ``limit`` bytes unpacked. Raises InvalidDocument naming the array."""
     try:
+        _check_directory(file)
         with zipfile.ZipFile(file) as archive:
             members = archive.infolist()
             if len(members) > MAX_ARRAYS:
@@ -52,6 +62,8 @@ def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
 
 def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, file: IO[bytes]) -> bytes:
     """A file in a zip, no longer than its directory says; if it is not compressed, in a third of the library's time."""
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others unpack into any memory
+        raise zipfile.BadZipFile(f"'{member.filename}' is packed in a way that npz files do not have")
     if member.compress_type != zipfile.ZIP_STORED or member.flag_bits & ENCRYPTED:
         return archive.read(member)
     file.seek(member.header_offset)
@@ -60,6 +72,20 @@ def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, file: IO[bytes]) ->
     if crc32(data) != member.CRC:
         raise zipfile.BadZipFile(f"wrong check sum of '{member.filename}'")
     return data
+
+
+def _check_directory(file: IO[bytes]) -> None:
+    """Refuse a directory that is larger than that of any npz file, before it is read."""
+    size = file.seek(0, io.SEEK_END)
+    file.seek(max(0, size - END.size - 2**16))
+    tail = file.read()
+    place = tail.rfind(b"PK\5\6")
+    if place < 0 or place + END.size > len(tail):
+        raise zipfile.BadZipFile("it has no directory")
+    listed = END.unpack_from(tail, place)[5]
+    if listed > MAX_LISTED or tail[:place].endswith(b"PK\6\7", max(0, place - 20), max(0, place - 16)):
+        raise TooLarge("the directory of the npz file (in bytes)", listed, MAX_LISTED)
+    file.seek(0)
 
 
 def _after_header(member: zipfile.ZipInfo, header: bytes | memoryview) -> int:
@@ -107,21 +133,40 @@ class _Memory(io.RawIOBase):
 
 
 def _array(name: str, data: bytes | memoryview) -> np.ndarray[Any, Any]:
-    stream = io.BytesIO(data[:MAX_HEADER])
     pointer = "/" + name.removesuffix(".npy").replace("~", "~0").replace("/", "~1")
     try:
-        version = npy.read_magic(stream)
-        read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, fortran, dtype = read_header(stream, max_header_size=MAX_HEADER)
-    except ValueError as error:
-        raise InvalidDocument.at(pointer, "npy", f"not an npy array: {error}") from None
+        shape, fortran, dtype, start = _header(io.BytesIO(data[:MAX_HEADER]))
+    except (ValueError, TypeError, OverflowError, struct.error) as error:
+        raise InvalidDocument.at(pointer, "npy", f"not an npy array: {str(error)[:80]}") from None
     if dtype.kind not in KINDS:
         raise InvalidDocument.at(pointer, "dtype", f"arrays of type {dtype} are not accepted")
-    start = stream.tell()
-    if math.prod(shape) * dtype.itemsize != len(data) - start or any(n < 0 for n in shape):
+    if math.prod(shape) * dtype.itemsize != len(data) - start:
         raise InvalidDocument.at(pointer, "npy", f"shape {shape} does not fit {len(data) - start} bytes")
     flat = np.frombuffer(data, dtype, math.prod(shape), start) if math.prod(shape) else np.zeros(0, dtype)
     return np.require(flat.reshape(shape, order="F" if fortran else "C"), requirements="A")
+
+
+def _header(stream: io.BytesIO) -> tuple[tuple[int, ...], bool, np.dtype[Any], int]:
+    """Shape, order (Fortran's?), type and beginning of the data. Raises ValueError and the like."""
+    length = struct.Struct("<H" if npy.read_magic(stream) == (1, 0) else "<I")
+    size = length.unpack(stream.read(length.size))[0]
+    text = stream.read(size)
+    if len(text) < size:
+        raise ValueError("its header is longer than the file, or than any")
+    found, inside = dict[str, str](), text.decode("latin1").strip()
+    end = int(inside.startswith("{"))
+    while place := _ENTRY.match(inside, end):
+        _, name, _, *values = place.groups()
+        found[name] = next(value for value in values if value is not None)
+        end = place.end()
+    if inside[end:].strip() != "}" or not end or len(found) != 3:
+        raise ValueError("its header does not have 'descr', 'fortran_order' and 'shape' alone")
+    lengths = [each.strip() for each in found["shape"].split(",")]
+    lengths = lengths[:-1] if not lengths[-1] else lengths
+    if len(lengths) > MAX_DIMENSIONS or not all(map(_LENGTH.fullmatch, lengths)):
+        raise ValueError("its shape has too many numbers, or other things")
+    shape = tuple(int(each.rstrip("L")) for each in lengths)
+    return shape, found["fortran_order"] == "True", np.dtype(found["descr"]), stream.tell()
 
 
 @dataclass(frozen=True, slots=True)

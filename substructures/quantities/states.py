@@ -61,6 +61,8 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
     count = longest(given) if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
         raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
+    if limit == 1 and not count:
+        raise InvalidArgument.at("/q", "missing", "a state is needed")
     others = []
     for name in STATE[1:]:
         found = _state(model, given.get(name), name)
@@ -166,7 +168,7 @@ def known_values(
     # default values, correctly rounded
     values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
-    if given.get("parameters"):
+    if given.get("parameters") is not None:
         units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
         values |= given_values(given["parameters"], "parameters", "/parameters", count, parameters, units)
     return values
@@ -185,10 +187,12 @@ def given_values(
     """Numbers by name in SI, one or one for every state, or ``{"value", "unit"}`` of these; ``field``: what they are,
     ``place``: pointer to the object, ``units``: SI units by name.
     """
-    if not isinstance(given or {}, Mapping):
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
         raise InvalidArgument.at(place, "object-expected", "an object of numbers by name is needed")
     result = {}
-    for name, value in (given or {}).items():
+    for name, value in given.items():
         pointer = f"{place}/{escape(name)}"
         if name not in known:
             message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"

@@ -147,3 +147,27 @@ def test_warnings_for_what_depends_on_parameters(client: TestClient) -> None:
     answer = client.post("/v1/substructures", content=json.dumps(definition), headers=JSON)
     assert answer.status_code == 201, answer.text
     assert "rod" in json.dumps(answer.json()["certificate"]["warnings"])
+
+
+MANY: dict[str, tuple[str, Any]] = {
+    "bodies": ("substructures", {"name": "a", "bodies": [1] * 50_000}),
+    "values": ("trees/cell/root-loci", {"parameter": "arm.m", "values": ["x"] * 9000, "q": [0]}),
+    "quantities": ("trees/cell/evaluations", {"quantities": [f"x{k}" for k in range(50_000)], "q": [0]}),
+}
+
+
+@pytest.mark.parametrize("what", MANY)
+def test_many_faults_are_counted_and_few_are_shown(filled: TestClient, what: str) -> None:
+    path, body = MANY[what]
+    answer = filled.post(f"/v1/{path}", json=body)
+    assert answer.status_code == 422
+    assert (len(answer.json()["errors"]), answer.json()["count"] >= 1000) == (20, True)
+    assert len(answer.content) < 20_000
+
+
+@pytest.mark.parametrize("q", [{"arm.q": []}, [[0], [0, 1]], {"arm.q": [1, 2]}, [], [[]], {}, {"arm.q": [[1]]}])
+@pytest.mark.parametrize("kind", ["root-loci", "loop-states"])
+def test_one_state_is_one_state(filled: TestClient, kind: str, q: Any) -> None:
+    body = {"q": q} | ({"parameter": "arm.m", "values": [1, 2]} if kind == "root-loci" else {})
+    answer = filled.post(f"/v1/trees/cell/{kind}", json=body)
+    assert answer.status_code in (200, 422), answer.text

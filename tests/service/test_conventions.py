@@ -294,3 +294,20 @@ def test_preferences_that_were_followed_are_told(
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
     answer = filled.request("PATCH", f"/v1/trees/{path}")
     assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
+
+
+def test_everything_served_is_guarded(filled: TestClient) -> None:
+    """Nothing is taken for another type than it has, and nothing but pages may load anything."""
+    paths = [
+        "/livez",
+        "/v1/trees/cell",
+        "/v1/trees/cell/metric?format=latex",
+        "/nowhere",
+        "/openapi.json",
+        "/",
+        "/metrics",
+    ]
+    for path in [*paths, "/v1/trees/cell/picture", "/style.css", "/v1/limits"]:
+        answer = filled.get(path)
+        assert answer.headers["x-content-type-options"] == "nosniff", path
+        assert "default-src 'none'" in answer.headers["content-security-policy"], path

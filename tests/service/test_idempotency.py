@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import threading
+import time
+from datetime import timedelta
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import Engine, event
 
+from service import claims
 from service.app import open_store
 from service.operations import trees
 from service.queries import idempotency
@@ -16,8 +20,10 @@ from service.runtime import COMPUTED, Computed
 from service.settings import Settings
 
 from .conftest import HAND, PENDULUM, make_client
+from .databases import fresh
 
 KEY = {"Idempotency-Key": "3f6b"}
+DEAD = idempotency.Claim("local", "3f6b", "dead")
 
 
 def test_replay(filled: TestClient, rows: Any) -> None:
@@ -84,10 +90,40 @@ def test_claims_of_a_dead_server_are_dropped(settings: Settings) -> None:
     with open_store(settings) as store:
         client = make_client(store)
         with store.database.write() as connection:
-            assert idempotency.claim(connection, "local", "3f6b", "x", "dead") is None
+            assert idempotency.claim(connection, DEAD, "x") is None
         assert client.post("/v1/substructures", json=PENDULUM, headers=KEY).status_code == 422
     with open_store(settings) as store:
         assert make_client(store).post("/v1/substructures", json=PENDULUM, headers=KEY).status_code == 201
+
+
+@pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
+def test_claims_end_soon_after_their_server(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That of a server that was killed is taken over when its lease is over; that of one that works is renewed."""
+    assert timedelta(seconds=5) >= claims.LEASE
+    monkeypatch.setattr("service.http.idempotency.LEASE", timedelta(seconds=0.6))
+    monkeypatch.setattr(claims, "RENEWAL", 0.05)
+    living = idempotency.Claim("local", "living", "we")
+    with fresh(kind, tmp_path) as address, open_store(Settings(database=address, catalogue=False)) as store:
+        client = make_client(store)
+        with store.database.write() as connection:
+            assert idempotency.claim(connection, DEAD, "x") is None
+            assert idempotency.claim(connection, living, "x") is None
+        store.claims.hold(living)
+
+        def post(key: str) -> int:
+            return client.post("/v1/substructures", json=PENDULUM, headers={"Idempotency-Key": key}).status_code
+
+        while post(DEAD.key) == 422:  # it is another request's
+            time.sleep(0.05)
+        assert post(DEAD.key) == 201
+        for _ in range(20):
+            assert post(living.key) == 422
+            time.sleep(0.05)
+        with store.database.write() as connection:
+            idempotency.release(connection, living)
+        assert post(living.key) == 200
+        while store.claims.count:  # what is no claim any more is forgotten
+            time.sleep(0.05)
 
 
 def test_evaluations_are_computed_again(filled: TestClient, rows: Any) -> None:

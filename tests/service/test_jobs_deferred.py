@@ -159,7 +159,8 @@ def test_scopes(settings: Settings) -> None:
         assert post("/v1/substructures", PENDULUM, "write", Prefer="respond-async") == 403
         job = client.post("/v1/jobs", json=verify, headers=keys["jobs read"]).json()["id"]
         assert client.get(f"/v1/jobs/{job}", headers=keys["jobs"]).status_code == 403
-        assert client.get(f"/v1/jobs/{job}", headers=keys["read"]).status_code == 200
-        assert post(f"/v1/jobs/{job}/cancel", {}, "jobs") == 403  # another's
+        assert client.get(f"/v1/jobs/{job}", headers=keys["read"]).status_code == 404  # another's
+        assert client.get(f"/v1/jobs/{job}", headers=keys["jobs read"]).status_code == 200
+        assert post(f"/v1/jobs/{job}/cancel", {}, "jobs") == 404
         assert post(f"/v1/jobs/{job}/cancel", {}, "jobs read") == 200
         assert post(f"/v1/jobs/{job}/cancel", {"x": 1}, "admin") == 422

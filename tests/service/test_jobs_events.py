@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import json
 import threading
+import time
+from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 
+import httpx2
 import pytest
 from fastapi.testclient import TestClient
 
+from service import feed
 from service.routes import job_streams
+from service.server import background
+from service.settings import Limits, Settings
 from service.store import Store
+from substructures.client import Client
 
+from .conftest import PENDULUM, TREE
 from .fake_engine import FakeEngine, eventually, export, finished, running, submitted
 
 Event = tuple[int, str, dict[str, Any]]
@@ -70,7 +79,7 @@ def test_events_add_up(filled: TestClient, store: Store) -> None:
 
 def test_events_as_they_happen(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(job_streams, "HEARTBEAT", 0.05)
-    monkeypatch.setattr(job_streams, "POLL", 0.01)
+    monkeypatch.setattr(feed, "POLL", 0.01)
     with running(store, FakeEngine(slots=1, is_open=False)) as engine:
         job = submitted(filled, export("cell", "metric", "gravity"))
         texts: list[str] = []
@@ -95,3 +104,31 @@ def test_events_end_with_the_server(filled: TestClient, store: Store) -> None:
     store.runtime.stopping.set()
     reader.join(5)
     assert [event[2]["state"] for event in parsed(texts[0])] == ["queued"]
+
+
+def test_streams_are_limited_and_share_one_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three streams read their own events once each; then one look serves all, and the fourth has no place."""
+    reads, looks = list[str](), list[set[str]]()
+    read_own, look = job_streams._read, feed.latest
+    monkeypatch.setattr(job_streams, "_read", lambda store, job, seq: (reads.append(job), read_own(store, job, seq))[1])
+    monkeypatch.setattr(feed, "latest", lambda connection, known: (looks.append(known), look(connection, known))[1])
+    monkeypatch.setattr(feed, "POLL", 0.05)
+    limits = Limits(event_streams_per_key=3)
+    settings = Settings(database=f"sqlite:///{tmp_path}/x.db", catalogue=False, engine="none", limits=limits)
+    with background(settings) as address, Client(address) as client, ExitStack() as opened:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        job = client.request("POST", "/v1/jobs", json=export("cell", "metric")).json()["id"]
+        url = f"{address}/v1/jobs/{job}/events"
+        streams = [opened.enter_context(httpx2.stream("GET", url)) for _ in range(3)]
+        texts = [stream.iter_text() for stream in streams]
+        assert all("queued" in next(text) for text in texts)
+        refused = httpx2.get(url)
+        assert (refused.status_code, refused.json()["code"]) == (503, "too-many-streams")
+        time.sleep(0.5)
+        assert len(reads) <= 6  # what there was, and that there is no more
+        assert len(looks) >= 3
+        client.request("POST", f"/v1/jobs/{job}/cancel", json={})
+        assert all("cancelled" in "".join(text) for text in texts)
+    with background(settings) as address:  # places were given back with the streams
+        assert httpx2.get(f"{address}/v1/jobs/{job}/events").status_code == 200

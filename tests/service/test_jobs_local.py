@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pwd
 import signal
 import subprocess
 import sys
@@ -15,6 +16,9 @@ import pytest
 from service.jobs.engine import Budget, Work
 from service.jobs.kinds import run
 from service.jobs.local import LocalEngine
+from service.jobs.process import rights_of
+from service.queue.engines import engine_of
+from service.settings import Settings, SettingsError
 from substructures.documents import write_json
 
 from .conftest import PENDULUM, SLIDER, TREE
@@ -210,3 +214,46 @@ def test_runner_that_cannot_start_is_tried_again_after_a_pause(monkeypatch: pyte
         ready(engine)
     finally:
         engine.close()
+
+
+@linux
+def test_runners_give_up_rights(pool: LocalEngine) -> None:
+    """They gain none (set-user-ID programs), fill no disk, and leave no image of their memory."""
+    process = process_of(pool)
+    assert "NoNewPrivs:\t1\n" in Path(f"/proc/{process}/status").read_text()
+    limits = Path(f"/proc/{process}/limits").read_text().splitlines()
+    found = {line[:26].strip(): line[26:].split()[:2] for line in limits[1:]}
+    assert found["Max file size"] == ["16777216", "16777216"]
+    assert found["Max core file size"] == ["0", "0"]
+
+
+@linux
+@pytest.mark.skipif(os.geteuid() != 0, reason="only a privileged process may give a process to another user")
+def test_runners_of_another_user(library: MemoryLibrary) -> None:
+    said = subprocess.run(["/usr/bin/id"], capture_output=True, text=True, check=True, **rights_of("nobody")).stdout
+    assert said.startswith(f"uid={pwd.getpwnam('nobody').pw_uid}(nobody)")
+    assert "root" not in said
+    settings = Settings(runner_user="nobody", workers=1)
+    if any(folder.stat().st_mode & 0o005 != 0o005 for folder in Path(sys.executable).resolve().parents):
+        with pytest.raises(SettingsError, match="no process of 'nobody' can be started"):  # it may not read this Python
+            engine_of(settings)
+        return
+    make = engine_of(settings)
+    assert make is not None
+    engine = make()
+    try:
+        (process,) = engine.processes
+        while not engine.free:
+            engine.reports(0.1)
+        assert Path(f"/proc/{process}").stat().st_uid == pwd.getpwnam("nobody").pw_uid
+        assert "Groups:\t \n" in Path(f"/proc/{process}/status").read_text()
+        (work,) = library.works("export", {"items": [{"tree": "cell", "quantity": "metric", "format": "text"}]}, BUDGET)
+        engine.start(work)
+        assert [report.outcome for report in engine.reports(60) if report.is_final]
+    finally:
+        engine.close()
+
+
+def test_users_that_there_are_not() -> None:
+    with pytest.raises(SettingsError, match="no process of 'nobody-of-this-name'"):
+        engine_of(Settings(runner_user="nobody-of-this-name"))

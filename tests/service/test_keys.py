@@ -19,6 +19,7 @@ from service.settings import SettingsError
 from service.store import Store
 
 from .conftest import PENDULUM, make_client
+from .fake_engine import export
 
 
 def new_key(store: Store, *scopes: str, days: float | None = None) -> dict[str, str]:
@@ -122,3 +123,31 @@ def test_remembered_authorisations_are_few() -> None:
     for number in range(3 * REMEMBERED):
         remembered.put(f"Bearer {number}", "read", "local")
     assert len(remembered._known) <= REMEMBERED
+
+
+def test_jobs_are_their_submitters_own(filled: TestClient, store: Store) -> None:
+    """Others see those that are marked shared, an admin all; nobody else's is cancelled."""
+    mine, others, admin = new_key(store, "read", "jobs"), new_key(store, "read", "jobs"), new_key(store, "admin")
+    ids = [
+        filled.post("/v1/jobs", json={**export("cell", "metric"), "shared": shared}, headers=mine).json()["id"]
+        for shared in (False, True)
+    ]
+
+    def seen(key: dict[str, str]) -> set[str]:
+        return {each["id"] for each in filled.get("/v1/jobs", headers=key).json()["items"]}
+
+    assert (seen(mine), seen(others), seen(admin)) == (set(ids), {ids[1]}, set(ids))
+    paths = ("", "/items", "/result", "/archive", "/items/0/files/x", "/items/-1/files/x")
+    for key, hidden in ((mine, False), (others, True), (admin, False)):
+        for path in paths:
+            answer = filled.get(f"/v1/jobs/{ids[0]}{path}", headers=key)
+            assert (answer.status_code == 404 and answer.json()["code"] == "unknown-job") == hidden, path
+        assert (filled.get(f"/jobs/{ids[0]}", headers=key).status_code == 404) == hidden
+        assert (ids[0][:16] in filled.get("/jobs", headers=key).text) != hidden
+        assert filled.get(f"/v1/jobs/{ids[1]}", headers=key).json()["shared"] is True
+    assert filled.get(f"/v1/jobs/{ids[0]}/events", headers=others).status_code == 404
+    assert filled.post(f"/v1/jobs/{ids[0]}/cancel", headers=others).status_code == 404
+    assert filled.post(f"/v1/jobs/{ids[1]}/cancel", headers=others).status_code == 403
+    assert filled.post(f"/v1/jobs/{ids[0]}/cancel", headers=mine).status_code == 200
+    wrong = filled.post("/v1/jobs", json={**export("cell", "metric"), "shared": 1}, headers=mine)
+    assert wrong.json()["errors"][0]["pointer"] == "/shared"

@@ -84,6 +84,102 @@ def broken() -> dict[str, bytes]:
     }
 
 
+def headed(header: str, data: bytes = bytes(8), version: bytes = b"\1\0") -> bytes:
+    """An npz file whose ``q`` has this header."""
+    text = header.encode()
+    length = len(text).to_bytes(2 if version == b"\1\0" else 4, "little")
+    stream = io.BytesIO(packed(quantities=np.array(["metric"])))
+    with zipfile.ZipFile(stream, "a") as archive:
+        archive.writestr("q.npy", b"\x93NUMPY" + version + length + text + data)
+    return stream.getvalue()
+
+
+HEADER = "{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }"
+HEADERS = {
+    "nested": "(" * 5000,
+    "nested lists": "[" * 4000 + "]" * 4000,
+    "signs": "-" * 9000 + "1",
+    "indents": "  {'a'\n\t (:",
+    "open quotes": "{'descr': '''",
+    "operators": "not " * 2000 + "1",
+    "nothing": "",
+    "no keys": "{}",
+    "another key": HEADER.replace("}", "'x': (1,)}"),
+    "a key twice": HEADER.replace("'descr'", "'shape': (1,), 'descr'").replace("'fortran_order': False,", ""),
+    "structured": HEADER.replace("'<f8'", "[('a', '<f8')]"),
+    "repeated": HEADER.replace("<f8", "(2,3)f8"),
+    "no type": HEADER.replace("<f8", "<q99"),
+    "wide": HEADER.replace("<f8", "<U999999999"),
+    "objects": HEADER.replace("<f8", "|O"),
+    "negative": HEADER.replace("(1,)", "(-1,)"),
+    "a long number": HEADER.replace("(1,)", "(" + "9" * 8000 + ",)"),
+    "a large number": HEADER.replace("(1,)", "(0, 999999999999999999, 999999999999999999)"),
+    "dimensions": HEADER.replace("(1,)", "(" + "1," * 65 + ")"),
+    "commas": HEADER.replace("(1,)", "(,)"),
+    "letters": HEADER.replace("(1,)", "(L,)"),
+    "behind": HEADER + "[]",
+}
+
+
+@pytest.mark.parametrize("what", HEADERS)
+def test_hostile_headers(double: TestClient, what: str) -> None:
+    answer = double.post(URL, content=headed(HEADERS[what]), headers=NPZ)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["pointer"] in ("/q", "")
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        HEADER,
+        HEADER.replace(", }", "}\n"),
+        HEADER.replace("(1,)", "(1L,)"),
+        HEADER.replace("'", '"'),
+        "{'shape':(1,),'fortran_order':False,'descr':'<f8'}",
+        "{ 'fortran_order' : True,\n 'shape' : ( 1 , ), 'descr' : '<f8' }   ",
+    ],
+)
+@pytest.mark.parametrize("version", [b"\1\0", b"\2\0", b"\3\0"])
+def test_headers_as_others_write_them(filled: TestClient, header: str, version: bytes) -> None:
+    answer = filled.post(URL, content=headed(header, version=version), headers={**NPZ, "Accept": "application/json"})
+    assert (answer.status_code, answer.json()["count"]) == (200, 1)
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_other_ways_to_pack(double: TestClient, method: int) -> None:
+    plain, stream = zipfile.ZipFile(io.BytesIO(packed(q=np.zeros(2)))), io.BytesIO()
+    with zipfile.ZipFile(stream, "w", method) as archive:
+        archive.writestr("q.npy", plain.read("q.npy"))
+    whole = stream.getvalue()
+    start = whole.index(b"q.npy") + 5
+    damaged = whole[:start] + b"\xff" * 15 + whole[start + 15 :]
+    for content in (whole, damaged):
+        answer = double.post(URL, content=content, headers=NPZ)
+        assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "npz")
+
+
+def test_a_directory_that_takes_memory(double: TestClient) -> None:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for k in range(40_000):
+            archive.writestr(f"{k}.npy", b"")
+    answer = double.post(URL, content=stream.getvalue(), headers=NPZ)
+    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "too-large")
+
+
+@pytest.mark.parametrize("name", ["parameters", "inputs", "along", "along.inputs", "t", "parameters.", "qd", ""])
+def test_arrays_called_as_objects_are(filled: TestClient, name: str) -> None:
+    for value in (np.zeros(2), np.zeros((2, 2, 2)), np.array(1.0), np.array(["a", "b"]), np.zeros(0)):
+        stream = io.BytesIO(packed(q=np.zeros(1), quantities=np.array(["metric"])))
+        with zipfile.ZipFile(stream, "a") as archive, archive.open(f"{name}.npy", "w") as member:
+            np.lib.format.write_array(member, value)
+        for preference in ({}, {"Prefer": "respond-async"}):
+            answer = filled.post(URL, content=stream.getvalue(), headers={**NPZ, **preference})
+            assert answer.status_code in (200, 202, 422), (value, answer.text)
+            if name in ("parameters", "inputs"):
+                assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, f"/{name}")
+
+
 @pytest.mark.parametrize("kind", broken())
 def test_broken_files(double: TestClient, kind: str) -> None:
     answer = double.post(URL, content=broken()[kind], headers=NPZ)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import io
+import threading
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from damaged import damages
 from fastapi.testclient import TestClient
 
 from service.analyses import binding
+from service.store import Store
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
@@ -193,3 +195,25 @@ def test_no_wrong_formula_with_numbers_in_it_is_served(double: TestClient, monke
     answer = double.get(address, params={"bind": text})
     assert answer.status_code == 500
     assert "metric" in answer.json()["detail"]
+
+
+def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What takes longer is refused with what to do instead, and others are answered meanwhile."""
+    let_go = threading.Event()
+
+    def slow(*_: Any) -> Any:
+        assert let_go.wait(60)
+        raise ValueError("too late")
+
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 0.3})
+    monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
+    monkeypatch.setattr("service.operations.models.model_quantity", slow)
+    monkeypatch.setattr("service.operations.analyses.printed", slow)
+    try:
+        for quantity in ("metric", "first_integrals"):
+            answer = filled.get(f"/v1/trees/cell/{quantity}")
+            assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+            assert "'export'" in answer.json()["detail"]
+            assert filled.get("/v1/trees/cell").status_code == 200
+    finally:
+        let_go.set()

@@ -35,7 +35,7 @@ _KINDS: dict[str, Kind] = {
     "analyse": analysis_kind(),
 }
 KINDS = tuple(_KINDS)
-FIELDS = ("kind", "items", "template", "choices")
+FIELDS = ("kind", "items", "template", "choices", "shared")
 _log = logging.getLogger(__name__)
 
 

@@ -1,0 +1,136 @@
+"""The file of an SQLite store: gone or replaced, damaged, private, and one server's by whatever name."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy.exc import OperationalError
+
+from service.app import open_store
+from service.database.backup import backup, restore
+from service.database.connections import Database, DatabaseError
+from service.settings import Settings
+from service.store import Store
+
+from .conftest import PENDULUM, SLIDER, make_client
+from .farm import Server, running
+
+
+def deleted(path: Path) -> None:
+    path.unlink()
+
+
+def moved(path: Path) -> None:
+    path.rename(path.with_name("elsewhere.db"))
+
+
+def replaced(path: Path) -> None:
+    other = path.with_name("other.db")
+    backup(f"sqlite:///{path}", other)
+    other.replace(path)
+
+
+def without_log(path: Path) -> None:
+    path.with_name(f"{path.name}-wal").unlink()
+
+
+@pytest.mark.parametrize("happens", [deleted, moved, replaced, without_log])
+def test_a_store_that_is_gone_is_noticed(
+    client: TestClient, store: Store, tmp_path: Path, happens: Callable[[Path], None]
+) -> None:
+    """Nothing is acknowledged that a new start would not find."""
+    assert client.post("/v1/substructures", json=PENDULUM).status_code == 201
+    assert client.get("/readyz").status_code == 200
+    happens(tmp_path / "store.db")
+    for answer in (
+        client.get("/readyz"),
+        client.post("/v1/substructures", json=SLIDER),
+        client.get("/v1/substructures/pendulum"),
+    ):
+        assert (answer.status_code, answer.json()["code"]) == (503, "database-unavailable")
+    assert client.get("/livez").status_code == 200
+    store.close()
+    names = {path.name for path in tmp_path.glob("*.db")}
+    if "store.db" in names and happens is not without_log:
+        with closing(sqlite3.connect(tmp_path / "store.db")) as found:
+            assert {row[0] for row in found.execute("SELECT name FROM substructures")} <= {"pendulum"}
+    assert ("store.db" in names) == (happens in (replaced, without_log))  # nobody has made a new one
+
+
+def test_a_store_that_goes_while_it_is_written(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path}/x.db")
+    with pytest.raises(OperationalError, match="deleted or replaced"), database.write() as connection:  # noqa: PT012
+        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+        (tmp_path / "x.db").rename(tmp_path / "y.db")
+        (tmp_path / "x.db-wal").rename(tmp_path / "y.db-wal")
+    database.close()
+    with closing(sqlite3.connect(tmp_path / "y.db")) as found:
+        assert found.execute("SELECT count(*) FROM substructures").fetchone() == (0,)
+
+
+def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    with closing(sqlite3.connect(path)) as connection:
+        size = connection.execute("PRAGMA page_size").fetchone()[0]
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        root = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'formulas'").fetchone()[0]
+    content = bytearray(path.read_bytes())
+    content[(root - 1) * size + 8 : root * size] = os.urandom(size - 8)
+    path.write_bytes(content)
+    with pytest.raises(DatabaseError, match=r"is damaged: .*restore a backup"):
+        Database(f"sqlite:///{path}")
+    assert path.read_bytes() == content
+
+
+def mode(path: Path) -> int:
+    return path.stat().st_mode & 0o777
+
+
+def test_files_are_private(tmp_path: Path) -> None:
+    before = os.umask(0o022)
+    try:
+        address = f"sqlite:///{tmp_path}/x.db"
+        with open_store(Settings(database=address, catalogue=False)) as store:
+            make_client(store).post("/v1/substructures", json=PENDULUM)
+            backup(address, tmp_path / "saved")
+            (tmp_path / "x.db").chmod(0o644)  # as older versions made it
+        Database(address).close()
+        restore(tmp_path / "saved", f"sqlite:///{tmp_path}/y.db")
+    finally:
+        os.umask(before)
+    files = {path.name: mode(path) for path in tmp_path.iterdir() if path.is_file()}
+    assert {"x.db", "x.db.lock", "y.db", "saved"} <= files.keys()
+    assert set(files.values()) == {0o600}
+
+
+@pytest.mark.parametrize("link", ["symbolic", "hard", "symbolic folder"])
+def test_a_link_is_the_same_store(tmp_path: Path, link: str) -> None:
+    """A server in a process of its own holds the store; whoever calls it by another name is refused."""
+    store = tmp_path / "a" / "x.db"
+    store.parent.mkdir()
+    other = tmp_path / "b" / "x.db"
+    with running([Server(f"sqlite:///{store}", tmp_path / "log")]) as _:
+        if link == "symbolic folder":
+            other.parent.symlink_to(store.parent)
+        else:
+            other.parent.mkdir()
+            (other.symlink_to if link == "symbolic" else other.hardlink_to)(store)
+        with pytest.raises(DatabaseError, match="another server uses"):
+            Database(f"sqlite:///{other}")
+
+
+def test_a_claim_ends_with_its_database(tmp_path: Path) -> None:
+    (tmp_path / "link.db").symlink_to(tmp_path / "x.db")
+    for name in ("x.db", "link.db", "x.db"):
+        database: Any = Database(f"sqlite:///{tmp_path}/{name}")
+        database.close()
+    assert not (tmp_path / "link.db.lock").exists()
