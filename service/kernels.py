@@ -1,7 +1,8 @@
 """Numbers as fast as they can be had: by the kernel of a tree, from kernels of its parts, or by the interpreter.
 
 Kernels of trees and of parts are compiled in the background when they are first missed, at once for large batches and
-on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler.
+on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler. In memory there is room for
+so many bytes; kernels that were not used for longest are unloaded first, and found again in the folder.
 
 Which of the three is the quickest, measured by ``benchmarks.first_answer`` (AMD Zen 3, one thread) for metric and
 forces of 6 + 6 and of 34 dof:
@@ -24,6 +25,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from enum import StrEnum
+from operator import attrgetter
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -41,7 +43,8 @@ from substructures.tree.coupling import ASKED
 
 #: from this many states on compiling first is quicker
 AT_ONCE = 8192
-CAPACITY = 2_000_000  # weight of the kernels kept in memory
+CAPACITY = 256 * 2**20  # bytes of the kernels kept in memory; of those that answer trees of six coordinates 1,000
+QUEUE = 100  # kernels that wait for the compiler; for others it is asked again later
 
 Key = tuple[str, tuple[str, ...]]
 
@@ -66,17 +69,12 @@ def quickest(states: int, coupled: bool, warm: bool) -> Way:
     return Way.PARTS
 
 
-def _weight(kernel: Kernel) -> int:
-    """About what a kernel holds: it grows with its results."""
-    return 100 + 10 * sum(len(output.entries) for output in kernel.outputs.values())
-
-
 class Kernels:
     """An engine for :mod:`substructures.quantities.evaluation`; kernels are kept in memory and in a folder if given."""
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
-        self._kernels: Cache[Kernel] = Cache(CAPACITY, _weight)
+        self._kernels: Cache[Kernel] = Cache(CAPACITY, attrgetter("held"))
         self._waiting: dict[Key, int] = {}  # states that were answered without the kernel
         self._lock = Lock()
         self._compiler = ThreadPoolExecutor(1, thread_name_prefix="compiler")
@@ -153,6 +151,8 @@ class Kernels:
     def _compile_later(self, key: Key, program: Program, states: int) -> None:
         with self._lock:
             is_new = key not in self._waiting
+            if is_new and len(self._waiting) >= QUEUE:
+                return
             self._waiting[key] = states
         if is_new:
             self._compiler.submit(self._work, key, program)
