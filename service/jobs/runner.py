@@ -7,7 +7,6 @@ item: memory by RLIMIT_DATA, CPU time by an interval timer whose signal, SIGPROF
 
 from __future__ import annotations
 
-import ctypes
 import os
 import resource
 import signal
@@ -18,18 +17,18 @@ from time import monotonic
 from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.kinds import failed, run
 from service.jobs.wire import Message, MessageReader, read_work, report_frame
+from service.lifetime import end_with
 from service.refusals import Refused
 
 CHUNK = 2**20
 NICE = 10  # a service that answers requests goes first
-PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 INTERVAL = 0.2  # between reports of progress, seconds
 
 
 def main(arguments: list[str]) -> int:
     """Serve until the input ends."""
     reports, parent = map(int, arguments)
-    _end_with(parent)
+    end_with(parent)  # elsewhere than on Linux the end of the input does
     os.nice(NICE)
     _send(reports, Message({"ready": os.getpid()}))
     reader = MessageReader()
@@ -39,14 +38,6 @@ def main(arguments: list[str]) -> int:
             if not _serve(read_work(frame, blobs), reports):
                 return 0
     return 0
-
-
-def _end_with(parent: int) -> None:
-    """Let the kernel end this process when the thread that started it is gone; elsewhere the input does."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
-    if os.getppid() != parent:
-        sys.exit(0)
 
 
 def _serve(work: Work, reports: int) -> bool:
