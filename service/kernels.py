@@ -39,7 +39,7 @@ from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.from_parts import NumericTree, Scalars, kernel_entries
-from substructures.tree.coupling import ASKED
+from substructures.tree.coupling import asked
 
 #: from this many states on compiling first is quicker
 AT_ONCE = 8192
@@ -109,7 +109,7 @@ class Kernels:
     def prepare(self, parts: Iterable[Part]) -> None:
         """Compile what coupling asks of parts, in the background."""
         for part in parts:
-            for names in ASKED:
+            for names in asked(part):
                 self._ready(part.program, names, 1)
 
     def has(self, program: Program, names: Sequence[str]) -> bool:
@@ -118,7 +118,7 @@ class Kernels:
 
     def warm(self, parts: Iterable[Part]) -> bool:
         """Whether all that coupling asks of parts is compiled."""
-        return all(self._kernels.get((part.program.digest, names)) for part in parts for names in ASKED)
+        return all(self._kernels.get((part.program.digest, names)) for part in parts for names in asked(part))
 
     def compiled(self, program: Program, names: Sequence[str]) -> tuple[Kernel, bool]:
         """The kernel for these outputs, and whether it had to be compiled (or read from the folder) first."""

@@ -25,6 +25,9 @@ from substructures.certificate.outputs import Outputs
 from substructures.certificate.potentials import gradient_instead, halved, is_found
 from substructures.expr.operations import Output
 
+#: with more Christoffel symbols than this a part or tree is stored without them (notation.md, section 6)
+MOST_CHRISTOFFEL = 100_000
+
 
 def part_symbols(definition: Plain) -> dict[str, str]:
     """Every symbol that a stored program of the part may have: its kind by its name."""
@@ -51,7 +54,7 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     carried, result = carried_by_joints(bodies, masses), Outputs()
     _joints(result, bodies, masses, carried)
     _factors(result, len(bodies.joints), stored)
-    _interface(result, carried)
+    _interface(result, carried, is_large(bodies))
     equations(result, bodies, carried)
     _frames(result, bodies, definition)
     lengths = [x for frame in bodies.frames.values() for x in frame.p.entries()]
@@ -144,17 +147,19 @@ def _inertia(result: Outputs, prefix: str, shape: tuple[int, ...], some: list[tu
         result.matrix(names[2], (*shape, 3, 3), lead, x.J)
 
 
-def _interface(result: Outputs, carried: list[Carried]) -> None:
+def _interface(result: Outputs, carried: list[Carried], large: bool) -> None:
     """What couples the part to any host, in the interface frame about its origin."""
     n = len(carried)
     for name, shape in (("f", (n, 3)), ("n", (n, 3)), ("K", (n, 3, 3))):
         result.array(name, shape)
-    for name in ("kappa", "F", "N"):
+    for name in () if large else ("kappa", "F", "N"):
         result.array(name, (n, n, 3))
     for c, some in enumerate(carried):
         result.matrix("f", (n, 3), (c,), some.f)
         result.matrix("n", (n, 3), (c,), some.n)
         result.matrix("K", (n, 3, 3), (c,), some.K)
+        if large:
+            continue
         F, N = some.forces()
         at = [(b, c) for b in some.path]
         result.columns("F", (n, n, 3), at, F)
@@ -165,16 +170,30 @@ def _interface(result: Outputs, carried: list[Carried]) -> None:
 
 
 def equations(result: Outputs, bodies: Bodies, carried: list[Carried]) -> None:
-    """Metric with the rotors of the joints, and the independent Christoffel symbols: a < c, b <= c."""
+    """Metric with the rotors of the joints, and the independent Christoffel symbols: a < c, b <= c; of a large system
+    without these.
+    """
     n = len(carried)
-    g, gamma = result.array("metric", (n, n), "symmetric"), result.array("christoffel", (n, n, n), "christoffel")
+    g = result.array("metric", (n, n), "symmetric")
     for c, some in enumerate(carried):
-        row, block = some.metric(), some.christoffel()
-        for i, a in enumerate(some.path):
-            g[a, c] = row[0, i]
-            if a < c:
-                gamma.update({(a, b, c): block[i, j] for j, b in enumerate(some.path)})
+        row = some.metric()
+        g.update({(a, c): row[0, i] for i, a in enumerate(some.path)})
         g[c, c] += bodies.joints[c].armature
+    if is_large(bodies):
+        return
+    gamma = result.array("christoffel", (n, n, n), "christoffel")
+    for c, some in enumerate(carried):
+        block = some.christoffel()
+        gamma.update(
+            {(a, b, c): block[i, j] for i, a in enumerate(some.path) if a < c for j, b in enumerate(some.path)}
+        )
+
+
+def is_large(bodies: Bodies) -> bool:
+    """Whether formulas of the Christoffel symbols, and of products of columns, are more than are stored."""
+    paths = [bodies.path(c) for c in range(len(bodies.joints))]
+    turning = [sum(not bodies.joints[b].prismatic for b in path) for path in paths]
+    return sum(len(path) * b for path, b in zip(paths, turning, strict=True)) > MOST_CHRISTOFFEL
 
 
 def _frames(result: Outputs, bodies: Bodies, definition: Plain) -> None:

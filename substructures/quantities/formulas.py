@@ -11,7 +11,7 @@ from substructures.part.part import MAX_NODES
 from substructures.quantities import derivatives
 from substructures.quantities.memo import ProgramCache
 from substructures.quantities.workspace import ID, Workspace, vector
-from substructures.tree.model import Model
+from substructures.tree.model import Model, require_stored
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
 DYNAMICS = ("metric", "bias", "forces")
@@ -19,6 +19,7 @@ DYNAMICS = ("metric", "bias", "forces")
 
 def _coriolis(model: Model, max_nodes: int) -> Program:
     """C_ab = Gamma_abc q'^c."""
+    require_stored(model.program, ["christoffel"])
     products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
     if products > max_nodes:
         raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)
