@@ -1,7 +1,8 @@
 """Numbers as fast as they can be had: by the kernel of a tree, from kernels of its parts, or by the interpreter.
 
 Kernels of trees and of parts are compiled in the background when they are first missed, at once for large batches and
-on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler.
+on request; they are kept in memory and in a folder, by program, outputs, CPU and compiler. In memory there is room for
+so many bytes; kernels that were not used for longest are unloaded first, and found again in the folder.
 
 Which of the three is the quickest, measured by ``benchmarks.first_answer`` (AMD Zen 3, one thread) for metric and
 forces of 6 + 6 and of 34 dof:
@@ -24,6 +25,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from enum import StrEnum
+from operator import attrgetter
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -38,11 +40,12 @@ from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.from_parts import NumericTree, Scalars, kernel_entries
-from substructures.tree.coupling import ASKED
+from substructures.tree.coupling import asked
 
 #: from this many states on compiling first is quicker
 AT_ONCE = 8192
-CAPACITY = 2_000_000  # weight of the kernels kept in memory
+CAPACITY = 256 * 2**20  # bytes of the kernels kept in memory; of those that answer trees of six coordinates 1,000
+QUEUE = 100  # kernels that wait for the compiler; for others it is asked again later
 
 Key = tuple[str, tuple[str, ...]]
 
@@ -67,18 +70,13 @@ def quickest(states: int, coupled: bool, warm: bool) -> Way:
     return Way.PARTS
 
 
-def _weight(kernel: Kernel) -> int:
-    """About what a kernel holds: it grows with its results."""
-    return 100 + 10 * sum(len(output.entries) for output in kernel.outputs.values())
-
-
 class Kernels:
     """An engine for :mod:`substructures.quantities.evaluation`; kernels are kept in memory and in a folder if given."""
 
     def __init__(self, folder: Path | None, most: int = 2**32) -> None:
         """``most``: bytes that the folder may take."""
         self.folder, self._most = folder, most
-        self._kernels: Cache[Kernel] = Cache(CAPACITY, _weight)
+        self._kernels: Cache[Kernel] = Cache(CAPACITY, attrgetter("held"))
         self._waiting: dict[Key, int] = {}  # states that were answered without the kernel
         self._lock = Lock()
         self._compiler = ThreadPoolExecutor(1, thread_name_prefix="compiler")
@@ -113,7 +111,7 @@ class Kernels:
     def prepare(self, parts: Iterable[Part]) -> None:
         """Compile what coupling asks of parts, in the background."""
         for part in parts:
-            for names in ASKED:
+            for names in asked(part):
                 self._ready(part.program, names, 1)
 
     def has(self, program: Program, names: Sequence[str]) -> bool:
@@ -122,7 +120,7 @@ class Kernels:
 
     def warm(self, parts: Iterable[Part]) -> bool:
         """Whether all that coupling asks of parts is compiled."""
-        return all(self._kernels.get((part.program.digest, names)) for part in parts for names in ASKED)
+        return all(self._kernels.get((part.program.digest, names)) for part in parts for names in asked(part))
 
     def compiled(self, program: Program, names: Sequence[str]) -> tuple[Kernel, bool]:
         """The kernel for these outputs, and whether it had to be compiled (or read from the folder) first."""
@@ -157,6 +155,8 @@ class Kernels:
     def _compile_later(self, key: Key, program: Program, states: int) -> None:
         with self._lock:
             is_new = key not in self._waiting
+            if is_new and len(self._waiting) >= QUEUE:
+                return
             self._waiting[key] = states
         if is_new:
             self._compiler.submit(self._work, key, program)

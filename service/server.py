@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import logging
 import os
 import signal
 import socket
@@ -22,8 +23,11 @@ from service.jobs.engine import Engine
 from service.queries.keys import any_key
 from service.queue.engines import engine_of
 from service.queue.supervisor import Supervisor
+from service.respawn import listeners
 from service.settings import Settings, SettingsError
 from service.store import Store
+
+logger = logging.getLogger(__name__)
 
 TURN = 0.001  # seconds that a thread computes while others wait
 TICKS = 10  # of uvicorn in a second
@@ -37,7 +41,17 @@ def serve(settings: Settings) -> None:
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
         _prepare_to_answer()
         with supervised(store, engine_of(settings)):
-            _server(store).run()
+            _server(store).run(sockets=_listeners(settings))
+
+
+def _listeners(settings: Settings) -> list[socket.socket]:
+    """Raises SettingsError for an address that cannot be listened on."""
+    try:
+        found = listeners(settings.host, settings.port)
+    except OSError as error:
+        raise SettingsError(f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}") from None
+    logger.info("listening on %s", ", ".join(f"{name[0]}:{name[1]}" for name in (s.getsockname() for s in found)))
+    return found
 
 
 def _prepare_to_answer() -> None:

@@ -19,7 +19,7 @@ from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.evaluation import REGRESSOR, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
-from substructures.tree.model import Model
+from substructures.tree.model import Model, require_stored
 
 JSON = "json"
 #: quantities that consist of several outputs
@@ -52,9 +52,11 @@ def quantities(name: str) -> tuple[str, ...]:
 
 
 def check_quantity(model: Model, quantity: str) -> None:
-    """Raise Refused 404 unless the model has the quantity."""
+    """Raise Refused 404 unless the model has the quantity, InvalidDocument for what a large one does not store."""
     if quantity in (*DERIVED, *OUTPUTS) or any(name in model.program.outputs for name in quantities(quantity)):
         return
+    if quantity == CHRISTOFFEL:  # of a large model, which says why
+        require_stored(model.program, [quantity])
     names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
     raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")

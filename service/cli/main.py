@@ -1,4 +1,7 @@
-"""The command ``substructures``: finds the command's module by its name and imports nothing else."""
+"""The command ``substructures``: finds the command's module by its name and imports nothing else.
+
+A command that is ``kept`` runs in a process of its own, which is started again when it is killed.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
-from service import __version__
+from service import __version__, respawn
 
 FAILURES = "service.cli.failures"
 
@@ -20,10 +23,11 @@ class Command:
     name: str
     module: str
     text: str
+    kept: bool = False
 
 
 COMMANDS = (
-    Command("serve", "server", "run the service (settings also from SUBSTRUCTURES_* variables)"),
+    Command("serve", "server", "run the service (settings also from SUBSTRUCTURES_* variables)", kept=True),
     Command("worker", "server", "compute the jobs of servers that share a PostgreSQL database"),
     Command("demo", "demo", "couple a gripper onto a Puma 560 over HTTP and compare with published numbers"),
     Command("derive", "parts", "derive and verify a definition here, without a server"),
@@ -42,6 +46,10 @@ COMMANDS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; 0 when it succeeded, 1 when it did not, 2 when it was called wrongly."""
     words = sys.argv[1:] if arguments is None else arguments
+    if arguments is None and any(each.kept and each.name == _named(words) for each in COMMANDS):
+        if not respawn.is_kept():
+            return respawn.keep()
+        respawn.end_with_parent()
     options = parser_for(words).parse_args(words)
     command: Callable[[argparse.Namespace], int] = options.command
     try:
@@ -62,12 +70,16 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="substructures", description="Couple stored formulas of mechanisms.")
     parser.add_argument("--version", action="version", version=__version__)
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    named = next((word for word in words if not word.startswith("-")), None)
+    named = _named(words)
     for each in COMMANDS:
         command = commands.add_parser(each.name, help=each.text, description=each.text)
         if each.name == named:
             import_module(f"service.cli.{each.module}").ADD[each.name](command)
     return parser
+
+
+def _named(words: Sequence[str]) -> str | None:
+    return next((word for word in words if not word.startswith("-")), None)
 
 
 if __name__ == "__main__":

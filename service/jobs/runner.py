@@ -18,11 +18,12 @@ from time import monotonic
 from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.kinds import failed, run
 from service.jobs.wire import Message, MessageReader, read_work, report_frame
+from service.lifetime import end_with
 from service.refusals import Refused
 
 CHUNK = 2**20
 NICE = 10  # a service that answers requests goes first
-PR_SET_PDEATHSIG, PR_SET_NO_NEW_PRIVS = 1, 38  # <linux/prctl.h>
+PR_SET_NO_NEW_PRIVS = 38  # <linux/prctl.h>
 FILE = 2**24  # bytes that it may write to a file; items need none
 INTERVAL = 0.2  # between reports of progress, seconds
 
@@ -30,7 +31,7 @@ INTERVAL = 0.2  # between reports of progress, seconds
 def main(arguments: list[str]) -> int:
     """Serve until the input ends."""
     reports, parent = map(int, arguments)
-    _end_with(parent)
+    end_with(parent)  # elsewhere than on Linux the end of the input does
     _give_up_rights()
     os.nice(NICE)
     _send(reports, Message({"ready": os.getpid()}))
@@ -41,14 +42,6 @@ def main(arguments: list[str]) -> int:
             if not _serve(read_work(frame, blobs), reports):
                 return 0
     return 0
-
-
-def _end_with(parent: int) -> None:
-    """Let the kernel end this process when the thread that started it is gone; elsewhere the input does."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
-    if os.getppid() != parent:
-        sys.exit(0)
 
 
 def _give_up_rights() -> None:

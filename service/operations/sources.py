@@ -18,7 +18,13 @@ from substructures.tree.plausibility import Plausibility
 
 def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     """What quantities of a tree are computed from."""
-    return Sources(model, store.derived, lambda: _regressor(store, tree), lambda: plausibility_of(store, tree, model))
+    return Sources(
+        model,
+        store.derived,
+        lambda: _regressor(store, tree),
+        lambda: plausibility_of(store, tree, model),
+        lambda values, names, states: _numeric(store, tree).answer(values, names, states),
+    )
 
 
 def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
@@ -33,14 +39,20 @@ def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
 
 def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
     """What computes them: a tree whose parts have kernels answers before it has one of its own."""
+    found = _numeric(store, tree)
+    parts_used = [m.part for m in found.assembly.mounted]
+    return store.kernels.of_tree(model.program, parts_used, lambda: found)
+
+
+def _numeric(store: Store, tree: Tree) -> NumericTree:
+    """The tree over the numbers of its parts."""
     found = store.caches.numeric_trees.get(tree.digest)
     if found is None:
         spec, parts = tree_parts(store, tree)
         store.kernels.prepare(parts.values())
         found = NumericTree(spec, parts, store.kernels.of_part)
         store.caches.numeric_trees.put(tree.digest, found)
-    parts_used = [m.part for m in found.assembly.mounted]
-    return store.kernels.of_tree(model.program, parts_used, lambda: found)
+    return found
 
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 
 from fastapi import APIRouter, Response
@@ -40,7 +41,7 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Res
         """Compile what the quantities come from."""
         quantities = read_quantities(EvaluationRequest.read(body).quantities)  # also the body of an evaluation
         rows = []
-        for source, program, names in steps(sources_of(store, tree, model), quantities):
+        for source, program, names in steps(replace(sources_of(store, tree, model), numbers=None), quantities):
             if program is not None:
                 start = perf_counter()
                 kernel, is_new = store.kernels.compiled(program, names)

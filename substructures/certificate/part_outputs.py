@@ -26,6 +26,9 @@ from substructures.certificate.potentials import gradient_instead, is_found
 from substructures.certificate.slopes import at_start
 from substructures.expr.operations import Output
 
+#: with more Christoffel symbols than this a part or tree is stored without them (notation.md, section 6)
+MOST_CHRISTOFFEL = 100_000
+
 
 def part_symbols(definition: Plain) -> dict[str, str]:
     """Every symbol that a stored program of the part may have: its kind by its name."""
@@ -52,7 +55,7 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     carried, result = carried_by_joints(bodies, masses), Outputs()
     _joints(result, bodies, masses, carried)
     _factors(result, len(bodies.joints), stored)
-    _interface(result, carried)
+    _interface(result, carried, is_large(bodies))
     equations(result, bodies, carried)
     _frames(result, bodies, definition)
     lengths = [x for frame in bodies.frames.values() for x in frame.p.entries()]
@@ -147,17 +150,19 @@ def _inertia(result: Outputs, prefix: str, shape: tuple[int, ...], some: list[tu
         result.matrix(names[2], (*shape, 3, 3), lead, x.J)
 
 
-def _interface(result: Outputs, carried: list[Carried]) -> None:
+def _interface(result: Outputs, carried: list[Carried], large: bool) -> None:
     """What couples the part to any host, in the interface frame about its origin."""
     n = len(carried)
     for name, shape in (("f", (n, 3)), ("n", (n, 3)), ("K", (n, 3, 3))):
         result.array(name, shape)
-    for name in ("kappa", "F", "N"):
+    for name in () if large else ("kappa", "F", "N"):
         result.array(name, (n, n, 3))
     for c, some in enumerate(carried):
         result.matrix("f", (n, 3), (c,), some.f)
         result.matrix("n", (n, 3), (c,), some.n)
         result.matrix("K", (n, 3, 3), (c,), some.K)
+        if large:
+            continue
         F, N = some.forces()
         at = [(b, c) for b in some.path]
         result.columns("F", (n, n, 3), at, F)
@@ -168,9 +173,11 @@ def _interface(result: Outputs, carried: list[Carried]) -> None:
 
 
 def equations(result: Outputs, bodies: Bodies, carried: list[Carried]) -> None:
-    """Metric, and the independent Christoffel symbols: a < c, b <= c."""
+    """Metric, and the independent Christoffel symbols: a < c, b <= c; of a large system without these."""
     n = len(carried)
     result.array("metric", (n, n), "symmetric").update(_metric(bodies, carried))
+    if is_large(bodies):
+        return
     gamma = result.array("christoffel", (n, n, n), "christoffel")
     for c, some in enumerate(carried):
         block = some.christoffel()
@@ -186,6 +193,13 @@ def _metric(bodies: Bodies, carried: list[Carried]) -> dict[tuple[int, ...], Bal
         g |= {(a, c): row[0, i] for i, a in enumerate(some.path)}
         g[c, c] += bodies.joints[c].armature
     return g
+
+
+def is_large(bodies: Bodies) -> bool:
+    """Whether formulas of the Christoffel symbols, and of products of columns, are more than are stored."""
+    paths = [bodies.path(c) for c in range(len(bodies.joints))]
+    turning = [sum(not bodies.joints[b].prismatic for b in path) for path in paths]
+    return sum(len(path) * b for path, b in zip(paths, turning, strict=True)) > MOST_CHRISTOFFEL
 
 
 def _frames(result: Outputs, bodies: Bodies, definition: Plain) -> None:

@@ -19,6 +19,8 @@ from substructures.expr.program import Output, Program
 
 #: outputs of which only the independent elements are wanted: all, none, or these
 Packed = bool | Collection[str]
+#: of a decoded program, as measured: a tuple with its numbers
+OPERATION_BYTES = 200
 
 
 def is_packed(name: str, packed: Packed) -> bool:
@@ -73,6 +75,11 @@ class Kernel(ABC):
     @abstractmethod
     def compiled(self) -> bool:
         """False for the reference interpreter."""
+
+    @property
+    @abstractmethod
+    def held(self) -> int:
+        """Bytes that this kernel holds in memory at most, about."""
 
     def shape(self, name: str, packed: bool = False) -> tuple[int, ...]:
         """Shape of one state's output; packed: the elements of ``outputs[name].index`` only."""
@@ -203,6 +210,11 @@ class InterpretedKernel(Kernel):
     def compiled(self) -> bool:
         """False."""
         return False
+
+    @property
+    def held(self) -> int:
+        """Those of its program."""
+        return OPERATION_BYTES * len(self.program)
 
     def blocks(
         self,

@@ -28,6 +28,8 @@ MAX_GROUP = 16
 THREADED = 1024
 #: scratch arrays kept for the next call
 KEPT = 4
+#: bytes of an engine of LLVM with its target machine and pages, as measured
+ENGINE_BYTES = 50_000
 NO_OUTPUTS = WordTable.written(())
 
 
@@ -65,9 +67,17 @@ class MachineKernel(Kernel):
         self._stages = Stages(recipe, runtime, self._code.names)
         # a zero, and the results
         self._o_row = width * (1 + self._stages.results[-1])
-        self.group = min(MAX_GROUP, max(1, GROUP_BYTES // (8 * (sum(self._stages.rows[1:]) + self._o_row))))
+        row = 8 * (sum(self._stages.rows[1:]) + self._o_row)
+        self.group = min(MAX_GROUP, max(1, GROUP_BYTES // row))
         self._layouts: dict[tuple[str, bool], tuple[Layout, tuple[int, ...]]] = {}
         self._scratch: list[list[Scratch]] = []
+        # the object code lies in memory about twice: as it is loaded, and as tables
+        self._held = ENGINE_BYTES + 2 * len(code) + KEPT * self.group * row
+
+    @property
+    def held(self) -> int:
+        """With all scratch that is kept between calls."""
+        return self._held
 
     @property
     def compiled(self) -> bool:

@@ -97,7 +97,9 @@ class Loaded:
         """The addresses of the named functions. Raises RuntimeError when one is missing."""
         # in LLVM's global context: the collector of garbage could dispose of another one before the engine
         empty = llvm.parse_assembly(f'target triple = "{host().triple}"')
-        engine = llvm.create_mcjit_compiler(empty, new_machine())
+        # in one area of memory: LLVM's own manager looks for a place for each section, and code that finds its
+        # constants more than 2 GiB away ends the process
+        engine = llvm.create_mcjit_compiler(empty, new_machine(), use_lmm=True)
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         addresses = {name: int(engine.get_function_address(name)) for name in names}

@@ -27,6 +27,9 @@ frame.E .position  frames ...  constant placement of bodies and ports in their c
 port.R .r .U .Omega ports ...  ports with respect to I; own base functions in port axes
 load.at, .vector   loads 3     point (carrier's body frame) and vector of forces and torques
 =================  ==========  ===========================================================================
+
+A part with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols is stored without
+christoffel, kappa, F and N.
 """
 
 from __future__ import annotations
@@ -94,8 +97,8 @@ def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinemati
     return Kinematics(chain, columns, poses)
 
 
-def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
-    """All outputs of the table above.
+def formulas(m: Mechanism, loads: Loads, large: bool = False) -> dict[str, Formulas]:
+    """All outputs of the table above; of a ``large`` part without christoffel, kappa, F and N.
 
     Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
     """
@@ -103,7 +106,7 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     columns = base_functions(chain)
     carried = composites(m.joints, inertia_symbols(m))
     momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
-    outputs = own_dynamics(m, columns, momenta)
+    outputs = own_dynamics(m, columns, momenta, large)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])
@@ -111,7 +114,7 @@ def formulas(m: Mechanism, loads: Loads) -> dict[str, Formulas]:
     outputs |= _inertia_outputs("composite", [carried[INTERFACE] + m.base], scalar=True)
     outputs |= _inertia_outputs("base", [m.base], scalar=True)
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
-    outputs |= _interface_outputs(k, momenta)
+    outputs |= _interface_outputs(k, momenta, large)
     # what acts between bodies of the part does no work when the interface alone moves: complete without a host
     forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(k, carrier, at))
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
@@ -169,10 +172,11 @@ def _inertia_outputs(prefix: str, values: list[Inertia], scalar: bool = False) -
     }
 
 
-def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str, Formulas]:
+def _interface_outputs(k: Kinematics, momenta: list[JointMomentum], large: bool) -> dict[str, Formulas]:
     """What couples the part to any host, in the interface frame about its origin (notation.md, section 6)."""
     n = len(momenta)
-    values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in ("f", "n", "kappa", "F", "N")}
+    names = ("f", "n") if large else ("f", "n", "kappa", "F", "N")
+    values: dict[str, dict[tuple[int, ...], Vector]] = {name: {} for name in names}
     K: list[Matrix] = []
     for c, momentum in enumerate(momenta):
         R, r = k.poses[c].R, k.poses[c].r
@@ -184,7 +188,7 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
         values["n"][(c,)] = add(apply(back, momentum.H), cross(r, f))
         # K_c^I = R_c^T K_c R_c - skew(r_c) skew(f_c)
         K.append(subtract(multiply(back, multiply(K_c, R)), multiply(skew(r), skew(f))))
-        for a, twist in k.columns[c].items():
+        for a, twist in () if large else k.columns[c].items():
             # F_ac = R_c^T (Omega_ca x p_c),   N_ac = R_c^T K_c Omega_ca + r_c x F_ac
             F = apply(back, cross(twist.Omega, momentum.p))
             values["F"][a, c] = F
@@ -202,8 +206,12 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum]) -> dict[str,
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
 
 
-def own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum]) -> dict[str, Formulas]:
-    """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5)."""
+def own_dynamics(
+    m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum], large: bool = False
+) -> dict[str, Formulas]:
+    """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5); of a ``large`` one
+    the metric alone.
+    """
     n = len(momenta)
     g: dict[tuple[int, ...], Scalar] = {}
     gamma: dict[tuple[int, ...], Scalar] = {}
@@ -211,8 +219,10 @@ def own_dynamics(m: Mechanism, columns: dict[int, Columns], momenta: list[JointM
         g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
         # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
-        gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
-    return {"metric": Formulas((n, n), g, "symmetric"), "christoffel": Formulas((n, n, n), gamma, "christoffel")}
+        if not large:
+            gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
+    metric = {"metric": Formulas((n, n), g, "symmetric")}
+    return metric if large else metric | {"christoffel": Formulas((n, n, n), gamma, "christoffel")}
 
 
 def _frame_link(k: Kinematics, frame: Frame) -> Link:

@@ -20,7 +20,7 @@ from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
-from substructures.part.topology import BASE, Topology, christoffel_entries, expected_operations, topology
+from substructures.part.topology import BASE, Topology, entries_of, expected_operations, topology
 from substructures.part.units import check_units
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
@@ -28,8 +28,6 @@ INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position",
 
 #: most operations of a program by default
 MAX_NODES = 1_000_000
-#: most Christoffel symbols; known before anything is derived
-MAX_ENTRIES = 100_000
 
 
 @dataclass(frozen=True)
@@ -80,6 +78,11 @@ class Part:
     def dof(self) -> int:
         """Number of coordinates."""
         return len(self.topology.joints)
+
+    @property
+    def has_christoffel(self) -> bool:
+        """Whether formulas of its Christoffel symbols are stored; not of a large part."""
+        return "christoffel" in self.program.outputs
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -213,14 +216,13 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[
     units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
     joints = [(j.parent, j.s) for j in m.topology.joints]
-    entries = christoffel_entries(joints)
-    if entries > MAX_ENTRIES:
-        raise TooLarge("the mechanism (in Christoffel symbols)", entries, MAX_ENTRIES)
+    entries = entries_of(joints)
+    entries.require("the mechanism")
     if admit is not None:
         admit(expected_operations(joints))
     loads = read_loads(m)
     try:
-        outputs = formulas(m, loads)
+        outputs = formulas(m, loads, entries.is_large)
     except ZeroDivisionError:
         raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
     result = program(m.graph, outputs, m.scope.symbols)
@@ -255,4 +257,5 @@ def recheck(part: Part) -> dict[str, Any]:
 
 def told_operations(operations: Mapping[str, int]) -> str:
     """How much metric and Christoffel symbols take, in words."""
-    return f"operations: metric {operations['metric']}, christoffel {operations['christoffel']}"
+    counts = (f"{name} {operations.get(name, 'not stored')}" for name in ("metric", "christoffel"))
+    return f"operations: {', '.join(counts)}"

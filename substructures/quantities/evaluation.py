@@ -34,6 +34,8 @@ from substructures.quantities.states import (
 )
 from substructures.quantities.table import (
     CONDITION,
+    MODEL,
+    PARTS,
     QUANTITIES,
     REGRESSOR,
     Quantity,
@@ -177,6 +179,9 @@ def _computed(
     look = _looking(model, values, count)
     found: dict[str, dict[str, Array]] = {}
     for source, program, names in steps(sources, quantities):
+        if source == PARTS and sources.numbers is not None:
+            found[MODEL] = sources.numbers(values, names, count)
+            continue
         if program is None:
             nothing = {name: np.full((count, model.dof), np.nan) for name in names}
             found[source] = nothing | {"pivots": np.zeros((count, model.dof))}
@@ -189,7 +194,7 @@ def _computed(
         elif program is model.program and source == FD:
             found[source] = accelerations(model, values, evaluator, count)
         else:
-            found[source] = evaluator(program, values, names, count)
+            found[source] = found.get(source, {}) | evaluator(program, values, names, count)
             if "inertias" in names:
                 found[source] = solved_anew(found[source], source, look)
     return found

@@ -13,7 +13,7 @@ from substructures.quantities import derivatives
 from substructures.quantities.certificate import certified
 from substructures.quantities.memo import ProgramCache
 from substructures.quantities.workspace import ID, Workspace, vector
-from substructures.tree.model import Model
+from substructures.tree.model import Model, require_stored
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
 DYNAMICS = ("metric", "bias", "forces")
@@ -21,6 +21,7 @@ DYNAMICS = ("metric", "bias", "forces")
 
 def _coriolis(model: Model, max_nodes: int) -> Program:
     """C_ab = Gamma_abc q'^c."""
+    require_stored(model.program, ["christoffel"])
     products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
     if products > max_nodes:
         raise TooLarge("the Coriolis matrix (in operations)", products, max_nodes)

@@ -27,7 +27,7 @@ from substructures.part.part import Part
 from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
 from substructures.quantities.states import default_number
 from substructures.tree.assembly import assemble
-from substructures.tree.coupling import ASKED, couple_parts
+from substructures.tree.coupling import asked, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
 from substructures.tree.model import model_outputs
@@ -43,6 +43,8 @@ FOUND = "found_potential"
 ASKED_FOR = {"limits": "limits", FOUND: "potential_energy"}
 #: states that are coupled at a time: their numbers stay in the second-level cache
 BLOCK = 2048
+#: elements of dense Christoffel symbols at a time
+DENSE = 20_000_000
 
 
 class CompiledParts:
@@ -64,7 +66,7 @@ class CompiledParts:
 
     def warm(self, part: Part) -> None:
         """Compile all that coupling can ask of a part."""
-        for names in ASKED:
+        for names in asked(part):
             key = part.program.digest, names
             self._kernels[key] = compile_program(part.program, names, self.folder)
 
@@ -126,8 +128,9 @@ class NumericTree:
             self._block(values, batch, slice(None), quantities, result)
             return result
         arrays = {name: np.asarray(x) for name, x in values.items()}
-        for start in range(0, max(1, batch[0]), BLOCK):
-            part = slice(start, start + BLOCK)
+        size = max(1, min(BLOCK, DENSE // max(1, len(self.coordinates)) ** 3)) if "christoffel" in quantities else BLOCK
+        for start in range(0, max(1, batch[0]), size):
+            part = slice(start, start + size)
             some = {name: x[part] if x.shape == batch else x for name, x in arrays.items()}
             self._block(some, batch, part, quantities, result)
         return result

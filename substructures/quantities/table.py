@@ -7,16 +7,21 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
+from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
-from substructures.tree.model import KINEMATICS, Model
+from substructures.tree.model import KINEMATICS, Model, require_stored
 from substructures.tree.plausibility import Plausibility
 
 MODEL, REGRESSOR, CONDITION = "model", "regressor", "condition"
+#: outputs that a large model does not have as formulas, in numbers from the parts of the tree
+PARTS = "parts"
+#: about what an element of them takes
+PRODUCT = 30
 
 
 @dataclass(frozen=True)
@@ -61,13 +66,15 @@ class Sources:
 
     ``derive``: a program of :data:`substructures.quantities.formulas.DERIVED`; ``regressor``: for the quantities
     ``regressor`` and ``inertial_parameters``, which need the parts of the tree; ``plausibility``: of values, from the
-    definitions of these.
+    definitions of these; ``numbers``: outputs of the model that it does not have as formulas, for (values, names,
+    number of states).
     """
 
     model: Model
     derive: Callable[[Model, str], Program] = kept
     regressor: Callable[[], RegressorModel] | None = None
     plausibility: Callable[[], Plausibility] | None = None
+    numbers: Callable[[Mapping[str, Any], list[str], int], dict[str, Array]] | None = None
 
     @property
     def judge(self) -> Plausibility | None:
@@ -113,6 +120,10 @@ def cost(sources: Sources, quantities: Sequence[str]) -> tuple[int, int]:
     operations = numbers = 0
     n = sources.model.dof
     for source, program, names in steps(sources, quantities):
+        if source == PARTS:
+            numbers += len(names) * n**3
+            operations += PRODUCT * len(names) * n**3
+            continue
         # without a program the answer is one row of NaN by coordinate; a condition number is one number
         shapes = {} if program is None else {name: program.outputs[name].shape for name in names}
         shapes["condition"] = ()
@@ -132,7 +143,7 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
 
 
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
-    """(source, program, its outputs); no program: no state has a result.
+    """(source, program, its outputs); no program: no state has a result, or numbers come from PARTS.
 
     Forward dynamics of a tree with closures, or of one too large for formulas of it, and condition numbers come from
     outputs of the model.
@@ -141,6 +152,7 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
     for name in quantities:
         quantity = QUANTITIES[name]
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
+    yield from _numbers(sources, wanted)
     for source, names in wanted.items():
         if source == CONDITION:
             yield source, sources.program(MODEL), ["metric"]
@@ -149,10 +161,22 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
             yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
             continue
         try:
-            yield source, sources.program(source), sorted(names)
+            program = sources.program(source)
+            require_stored(program, sorted(names))
+            yield source, program, sorted(names)
         except SingularMetric:
             yield source, None, sorted(names)
         except TooLarge:
             if source != FD:
                 raise
             yield source, sources.model.program, list(DYNAMICS)
+
+
+def _numbers(sources: Sources, wanted: dict[str, set[str]]) -> Iterator[tuple[str, None, list[str]]]:
+    """What comes from the parts, which is wanted of the model then no longer."""
+    absent = wanted.get(MODEL, set()) - sources.model.program.outputs.keys()
+    if absent and sources.numbers is not None:
+        yield PARTS, None, sorted(absent)
+        wanted[MODEL] -= absent
+        if not wanted[MODEL]:
+            del wanted[MODEL]

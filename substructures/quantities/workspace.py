@@ -16,7 +16,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.part.scope import Scope
-from substructures.tree.model import KINEMATICS, Model
+from substructures.tree.model import KINEMATICS, Model, require_stored
 
 #: of coordinates by the letter of their joint
 UNITS = {"R": "rad", "P": "m"}
@@ -128,6 +128,7 @@ class Workspace:
         return program(self.graph, outputs, self.symbols)
 
     def _replayed(self, names: Sequence[str], bindings: Mapping[str, Expr] | None) -> dict[str, Formulas]:
+        require_stored(self.model.program, names)
         bound = dict.fromkeys(self.zero, self.graph.zero) | dict(bindings or {})
         try:
             return replay(self.model.program, self.graph, bound, names)

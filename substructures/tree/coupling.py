@@ -26,6 +26,7 @@ from substructures.mechanics.kinematics import (
 from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, dot, transpose
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
+from substructures.part.part import Part
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: outputs of a stored program that coupling uses
@@ -38,8 +39,11 @@ WITHOUT_CHRISTOFFEL = tuple(name for name in USED if name != "christoffel")
 FRAMES = ("frame.E", "frame.position")
 OWN = (*OWN_INERTIA, "armature")
 
-#: all lists of outputs that coupling asks a part for
-ASKED = (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED)
+
+def asked(part: Part) -> tuple[tuple[str, ...], ...]:
+    """All lists of outputs that coupling asks a part for."""
+    return (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED) if part.has_christoffel else (OWN, FRAMES, WITHOUT_CHRISTOFFEL)
+
 
 #: what a part has to carry, by carrier, about its body frame origin (of the interface: about its own)
 Payload = dict[int, Inertia]
@@ -50,7 +54,7 @@ class Coupled:
     """The result, by indices of the tree's coordinates."""
 
     metric: dict[tuple[int, ...], Scalar]
-    christoffel: dict[tuple[int, ...], Scalar]
+    christoffel: dict[tuple[int, ...], Scalar] | None
     gravity: list[Scalar]
     forces: list[Scalar]
     potential: Scalar
@@ -79,7 +83,7 @@ def couple_parts(run: Run, mounted: Sequence[MountedPart], gravity: Vector, chri
         _add_gravity(here, Q_gravity, Q)
         V = V + part.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
-    return Coupled(g_ab, gamma_abc, Q_gravity, Q, V, placed)
+    return Coupled(g_ab, gamma_abc if christoffel else None, Q_gravity, Q, V, placed)
 
 
 def evaluate_parts(
@@ -118,6 +122,7 @@ def _evaluated(run: Run, m: MountedPart, payload: Payload, names: Sequence[str])
     """The stored formulas with own inertia + payload for the inertia symbols of every body."""
     own = run(m.part, m.bindings, OWN)
     inertias = {k: own.own_inertia(k) + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
+    names = names if m.part.has_christoffel else [name for name in names if name != "christoffel"]
     outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, inertias)}, names)
     joints = m.part.topology.joints
     links = links_of(m.part, outputs)
@@ -164,16 +169,19 @@ def _add_inertial(
     first, outside = here.first, here.columns[INTERFACE]
     # a, b <= c in S: as stored
     g_ab |= {(first + a, first + c): x for (a, c), x in here.outputs.entries("metric").items()}
-    if gamma_abc is not None:
+    # a large part has none that are stored: those of its own coordinates are found as those of its host
+    is_stored = here.part.has_christoffel
+    anew = gamma_abc is not None and not is_stored
+    if gamma_abc is not None and is_stored:
         stored = here.outputs.entries("christoffel")
         gamma_abc |= {(first + a, first + b, first + c): x for (a, b, c), x in stored.items()}
-    for c, momentum in enumerate(here.evaluated.momenta if outside else ()):
+    for c, momentum in enumerate(here.evaluated.momenta if outside or anew else ()):
         columns = here.columns[c]
         # a host, c in S:   g_ac = U_ca . p_c + Omega_ca . H_c
         g_ab |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in outside}
         if gamma_abc is not None:
             # a or b host, or both, c in S:   Gamma_abc = U_ca . (Omega_cb x p_c) + Omega_ca^T K_c Omega_cb
-            block = christoffel_block(first + c, columns, momentum, inside=first)
+            block = christoffel_block(first + c, columns, momentum, inside=first if is_stored else 0)
             gamma_abc |= {(a, b, first + c): x for (a, b), x in block.items()}
 
 

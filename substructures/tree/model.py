@@ -18,11 +18,13 @@ U, Omega               frames n 3   partial velocities of the origin, partial an
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
 limits                 n 2          lowest and highest value of the coordinates that have limits
 =====================  ===========  ==========================================================================
+
+A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
@@ -36,8 +38,8 @@ from substructures.expr.syntax import RESERVED
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.certificate import told_agreement
 from substructures.part.outputs import over_formulas
-from substructures.part.part import MAX_ENTRIES, MAX_NODES, Part, recheck, told_operations
-from substructures.part.topology import christoffel_entries, expected_operations
+from substructures.part.part import MAX_NODES, Part, recheck, told_operations
+from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
 from substructures.tree.closures import ClosureRows, closure_formulas
@@ -81,7 +83,8 @@ class Model:
     @cached_property
     def operations(self) -> dict[str, int]:
         """Arithmetic operations of every output alone; ``total``: of metric, christoffel and forces together."""
-        return self.program.totals() | {"total": self.program.count(["metric", "christoffel", "forces"])["total"]}
+        together = [name for name in ("metric", "christoffel", "forces") if name in self.program.outputs]
+        return self.program.totals() | {"total": self.program.count(together)["total"]}
 
     @property
     def dof(self) -> int:
@@ -142,6 +145,18 @@ class Model:
         return cls(Program.from_bytes(program_bytes), *names, *described, closures, inputs, limited)
 
 
+def require_stored(program: Program, names: Iterable[str]) -> None:
+    """Raises InvalidDocument (``not-stored``) for outputs that a model of many coordinates does not have."""
+    missing = [name for name in names if name not in program.outputs]
+    if missing:
+        message = (
+            f"of more than {MOST_CHRISTOFFEL:,} Christoffel symbols no formulas are stored, so there is no "
+            f"{listed(missing)}, but in numbers by an evaluation of a stored tree; velocity forces are found without "
+            "them (bias, inverse_dynamics, forward_dynamics)"
+        )
+        raise InvalidDocument.at("", "not-stored", message)
+
+
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
     """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
     if closures:
@@ -172,16 +187,16 @@ def couple(
     units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()})
     units.require()
     joints_of = joint_parents(assembly.mounted)
-    entries = christoffel_entries(joints_of)
-    if entries > MAX_ENTRIES:
-        raise TooLarge("the tree (in Christoffel symbols)", entries, MAX_ENTRIES)
+    entries = entries_of(joints_of)
+    entries.require("the tree")
     if admit is not None:
         admit(expected_operations(joints_of))
     names = [
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
+    run = over_formulas(assembly.scope.graph)
     try:
-        coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity)
+        coupled = couple_parts(run, assembly.mounted, assembly.gravity, not entries.is_large)
         found = found_potential(assembly.scope.graph, coupled.placed, names)
         coupled = replace(coupled, potential=coupled.potential + found)
         outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
@@ -242,9 +257,10 @@ def model_outputs(
         """Whether all outputs are wanted, or one of these."""
         return names is None or not names.isdisjoint(some)
 
-    outputs = {
-        "metric": Formulas((n, n), coupled.metric, "symmetric"),
-        "christoffel": Formulas((n, n, n), coupled.christoffel, "christoffel"),
+    outputs = {"metric": Formulas((n, n), coupled.metric, "symmetric")}
+    if coupled.christoffel is not None:
+        outputs["christoffel"] = Formulas((n, n, n), coupled.christoffel, "christoffel")
+    outputs |= {
         "gravity": array((n,), lambda a: coupled.gravity[a]),
         "forces": array((n,), lambda a: coupled.forces[a]),
         "potential_energy": array((), lambda: coupled.potential),

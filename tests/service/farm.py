@@ -82,9 +82,13 @@ class Server:
         self.process.terminate()
         return self.process.wait(30)
 
+    def serving(self) -> list[int]:
+        """The process that answers, while there is one: the child of the one that was started."""
+        return children(self.process.pid) if self.process is not None and self.process.poll() is None else []
+
     def workers(self) -> list[int]:
         """The processes that compute for it."""
-        return children(self.process.pid) if self.process is not None and self.process.poll() is None else []
+        return [worker for pid in self.serving() for worker in children(pid)]
 
 
 @contextlib.contextmanager

@@ -77,10 +77,10 @@ def test_watching_goes_on_when_the_server_returns(
     until("the server answers again after")
     shown = ""
     until("queued  0 of 1")
-    assert server.process is not None
-    os.kill(server.process.pid, signal.SIGSTOP)  # it is there, and silent
+    [serving] = server.serving()
+    os.kill(serving, signal.SIGSTOP)  # it is there, and silent
     until("cannot be reached")
-    os.kill(server.process.pid, signal.SIGCONT)
+    os.kill(serving, signal.SIGCONT)
     until("the server answers again after")
     with Client(server.address) as client:
         assert client.cancel_job(job)["state"] == "cancelled"

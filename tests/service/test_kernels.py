@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from pathlib import Path
 from threading import Event
 from time import monotonic, sleep
@@ -10,11 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from machine_code import NEEDS_MACHINE_CODE
 
 from service import kernels
 from service.kernels import Kernels
 from service.settings import Settings
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.compile import compile_program
+from substructures.part.part import Part
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.from_parts import NumericTree
 
@@ -166,3 +171,57 @@ def test_refused_requests_for_kernels(filled: TestClient, body: Any) -> None:
 )
 def test_folder(database: str, folder: str, expected: Path | None) -> None:
     assert Settings(database=database, kernels=folder).kernel_folder == expected
+
+
+def pendulums(count: int) -> list[Part]:
+    """Parts that differ by a number in their formulas."""
+    document = catalogue.load("simple-pendulum")
+    loads = [{"type": "joint", "coordinate": "q1", "force": f"-{k}*q1^3"} for k in range(1, count + 1)]
+    return [derive(Definition.read({**document, "loads": [load]})) for load in loads]
+
+
+@NEEDS_MACHINE_CODE
+def test_kernels_in_memory_are_bounded_and_come_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Room for three: the one that was not used for longest is unloaded, and read from the folder when it is asked."""
+    parts, names = pendulums(5), ["metric", "applied"]
+    first = compile_program(parts[0].program, names)
+    monkeypatch.setattr(kernels, "CAPACITY", 3 * first.held + first.held // 2)
+    engine = Kernels(tmp_path)
+    loaded = []
+    for part in parts:
+        loaded.append(weakref.ref(engine.compiled(part.program, names)[0]))
+        assert engine.has(parts[0].program, names)
+    gc.collect()
+    assert [ref() is not None for ref in loaded] == [True, False, False, True, True]
+    values = dict.fromkeys(first.symbols, 0.25) | {"q1": np.linspace(-1, 1, 5)}
+    expected = compile_program(parts[1].program, names).evaluate(values)
+    monkeypatch.setattr("substructures.compile.target.assemble", None)  # all is found
+    kernel, is_new = engine.compiled(parts[1].program, names)
+    assert is_new
+    np.testing.assert_array_equal(kernel.evaluate(values)["applied"], expected["applied"])
+    engine.close()
+
+
+def test_what_waits_for_the_compiler_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Trees beyond that are answered without a kernel, and compiled when they are asked again later."""
+    monkeypatch.setattr(kernels, "QUEUE", 2)
+    engine, gate = Kernels(None), Event()
+    engine._compiler.submit(gate.wait)
+    parts, names = pendulums(4), ["metric"]
+    values = dict.fromkeys((symbol.name for part in parts for symbol in part.program.symbols), 0.5)
+    try:
+        for part in parts:
+            assert engine(part.program, values, names, 1)["metric"].shape == (1, 1, 1)
+        assert len(engine._waiting) == 2
+    finally:
+        gate.set()
+    limit = monotonic() + 30
+    while engine._waiting:
+        assert monotonic() < limit
+        sleep(0.02)
+    engine(parts[3].program, values, names, 1)
+    while engine._waiting:
+        assert monotonic() < limit
+        sleep(0.02)
+    assert [engine.has(part.program, names) for part in parts] == [True, True, False, True]
+    engine.close()

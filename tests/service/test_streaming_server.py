@@ -20,6 +20,7 @@ from service.settings import Limits, Settings
 from substructures.client import Client, ProblemError
 
 from .conftest import PENDULUM, TREE
+from .farm import children
 
 
 def same(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> None:
@@ -28,7 +29,7 @@ def same(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> None:
 
 @contextmanager
 def server(folder: Path, *arguments: str) -> Iterator[tuple[Client, int]]:
-    """The service in a process of its own; a client and the process id."""
+    """The service in a process of its own; a client and the id of the process that answers."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port), *arguments]
@@ -36,7 +37,8 @@ def server(folder: Path, *arguments: str) -> Iterator[tuple[Client, int]]:
     try:
         with Client(f"http://127.0.0.1:{port}", timeout=120) as client:
             wait(client)
-            yield client, process.pid
+            [serving] = children(process.pid)
+            yield client, serving
     finally:
         process.terminate()
         process.wait(20)
