@@ -1,6 +1,6 @@
 """Attacks on a server of this package with another client measuring: what stays answered, and what the log grows by.
 
-python -m benchmarks.siege {heads,drip,readers,streams} [--count N] [--seconds S] [--json FILE]
+python -m benchmarks.siege {heads,drip,readers,streams,derivations} [--count N] [--seconds S] [--json FILE]
 
 The server is a process of its own on 127.0.0.1 with at most 1024 descriptors; nothing else is sent to, and the attack
 ends by itself: at most 2,000 connections, at most 120 seconds.
@@ -9,6 +9,7 @@ heads    requests whose head never ends, all from the address of the client that
 drip     bodies of which a byte arrives every second
 readers  answers that nobody reads
 streams  streams of events of one job; printed besides: the reads of the database, as CPU time of the server
+derivations  definitions of chains of 40 joints, all at once; the server computes jobs
 """
 
 from __future__ import annotations
@@ -37,15 +38,16 @@ PENDULUM = {
     "bodies": [{"name": "a", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}, "mass": 1}],
 }
 CELL = {"name": "cell", "gravity": [0, 0, -9.81], "instances": [{"name": "a", "substructure": "pendulum"}]}
+STATE = {"quantities": ["metric", "forces"], "q": [0.1]}
 JOB = {"kind": "export", "items": [{"tree": "cell", "quantity": "metric", "format": "text"}]}
 
 
 @contextmanager
-def besieged(folder: Path) -> Iterator[tuple[int, int]]:
-    """The port and the process of a server that computes no jobs."""
+def besieged(folder: Path, engine: str) -> Iterator[int]:
+    """The port of a server; ``engine``: none where it computes no jobs."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port), "--engine", "none"]
+    command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port), "--engine", engine]
     command += ["--database", f"sqlite:///{folder}/siege.db"]
     few = (DESCRIPTORS, DESCRIPTORS)
     with (folder / "log").open("wb") as log:
@@ -60,7 +62,7 @@ def besieged(folder: Path) -> Iterator[tuple[int, int]]:
             if ask(port, "/livez")[0] == 200:
                 break
             sleep(0.1)
-        yield port, process.pid
+        yield port
     finally:
         process.terminate()
         try:
@@ -85,10 +87,12 @@ def ask(port: int, path: str, body: object = None) -> tuple[int, dict[str, str]]
         return answer.status, dict(answer.getheaders())
 
 
-def cpu_seconds(process: int) -> float:
-    """CPU time of a process so far."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+def cpu_seconds(port: int) -> float:
+    """CPU time so far of the process that answers."""
+    with closing(HTTPConnection("127.0.0.1", port, timeout=10)) as connection:
+        connection.request("GET", "/metrics")
+        lines = connection.getresponse().read().decode().splitlines()
+    return next(float(line.split()[1]) for line in lines if line.startswith("process_cpu_seconds_total "))
 
 
 def opened(port: int, count: int, text: bytes) -> list[socket.socket]:
@@ -141,8 +145,6 @@ def readers(port: int, count: int, stop: threading.Event) -> None:
 
 def streams(port: int, count: int, stop: threading.Event) -> None:
     """Streams of events of a job that waits."""
-    ask(port, "/v1/substructures", PENDULUM)
-    ask(port, "/v1/trees", CELL)
     location = ask(port, "/v1/jobs", JOB)[1].get("location", "/none")
     held = opened(port, count, f"GET {location}/events HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
     stop.wait()
@@ -150,43 +152,75 @@ def streams(port: int, count: int, stop: threading.Event) -> None:
         one.close()
 
 
+def derivations(port: int, count: int, stop: threading.Event) -> None:
+    """Definitions of chains of 40 joints, each with numbers of its own."""
+
+    def define(k: int) -> None:
+        """Submit one."""
+        ask(port, "/v1/substructures", chain(f"chain{k}", k))
+
+    threads = [threading.Thread(target=define, args=(k,), daemon=True) for k in range(min(count, 64))]
+    for each in threads:
+        each.start()
+    stop.wait()
+
+
+def chain(name: str, k: int) -> dict[str, object]:
+    """40 revolute joints, every second axis turned, and symbols for all masses."""
+    bodies = [
+        {
+            "name": f"b{i}",
+            "parent": f"b{i - 1}" if i else "base",
+            "joint": {"type": "revolute", "coordinate": f"q{i}", "theta": "pi/2" if i % 2 else 0, "d": 0.3 + k / 100},
+            "mass": f"m{i}",
+            "com": [0.1, 0.2, 0.3],
+            "inertia": {"xx": 1, "yy": 1, "zz": 1},
+        }
+        for i in range(40)
+    ]
+    return {"name": name, "parameters": {f"m{i}": {"value": 1, "unit": "kg"} for i in range(40)}, "bodies": bodies}
+
+
 ATTACKS: dict[str, Callable[[int, int, threading.Event], None]] = {
     "heads": heads,
     "drip": drip,
     "readers": readers,
     "streams": streams,
+    "derivations": derivations,
 }
 
 
 def measured(port: int, seconds: float) -> dict[str, float]:
-    """How a client fares that asks ten times a second, each time on a new connection."""
-    times, failed, end = list[float](), 0, perf_counter() + seconds
+    """How a client fares that reads, and evaluates one state, ten times a second, each time on a new connection."""
+    times: dict[str, list[float]] = {"": [], "evaluation_": []}
+    failed, end = 0, perf_counter() + seconds
     while perf_counter() < end:
-        start = perf_counter()
-        is_answered = ask(port, "/v1/trees")[0] == 200
-        times.append((perf_counter() - start) * 1e3)
-        failed += not is_answered
+        for name, path, body in (("", "/v1/trees", None), ("evaluation_", "/v1/trees/cell@1/evaluations", STATE)):
+            start = perf_counter()
+            failed += ask(port, path, body)[0] != 200
+            times[name].append((perf_counter() - start) * 1e3)
         sleep(0.1)
-    times.sort()
-    return {
-        "asked": len(times),
-        "failed": failed,
-        "median_ms": times[len(times) // 2],
-        "p99_ms": times[int(0.99 * (len(times) - 1))],
-    }
+    figures = {"asked": float(sum(map(len, times.values()))), "failed": failed}
+    for name, some in times.items():
+        some.sort()
+        figures |= {f"{name}median_ms": some[len(some) // 2], f"{name}p99_ms": some[int(0.99 * (len(some) - 1))]}
+    return figures
 
 
 def siege(attack: str, count: int, seconds: float) -> dict[str, float]:
     """The figures of one attack."""
-    with tempfile.TemporaryDirectory() as folder, besieged(Path(folder)) as (port, process):
+    engine = "local" if attack == "derivations" else "none"
+    with tempfile.TemporaryDirectory() as folder, besieged(Path(folder), engine) as port:
+        ask(port, "/v1/substructures", PENDULUM)
+        ask(port, "/v1/trees", CELL)
         before = measured(port, 2)
         stop = threading.Event()
         attacker = threading.Thread(target=ATTACKS[attack], args=(port, count, stop), daemon=True)
         attacker.start()
         sleep(1)
-        cpu = cpu_seconds(process)
+        cpu = cpu_seconds(port)
         found = measured(port, seconds)
-        cpu = (cpu_seconds(process) - cpu) / seconds
+        cpu = (cpu_seconds(port) - cpu) / seconds
         stop.set()
         attacker.join(30)
         log = (Path(folder) / "log").stat().st_size
