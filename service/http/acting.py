@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from contextvars import copy_context
 from dataclasses import replace
 from functools import partial, wraps
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Request, Response
 
@@ -30,6 +31,7 @@ from service.store import Store
 
 #: writes what was prepared, in the transaction of the request, and answers
 Commit = Callable[[Connection], Answer]
+Result = TypeVar("Result")
 IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
 ATTEMPTS = 8
 
@@ -46,6 +48,7 @@ class Act:
         self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
         self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
         self._claimed = IdempotencyClaim(request, body, store, key)
+        self._task: Task | None = None
 
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
         """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
@@ -73,7 +76,7 @@ class Act:
 
     async def within_time(self, task: Task, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        threads = self.store.runtime.threads[task]
+        threads, self._task = self.store.runtime.threads[task], task
         return await self._deadline.within(partial(threads.submit, self.principal), endpoint)
 
     def require(self, scope: str) -> None:
@@ -102,9 +105,23 @@ class Act:
             """The work under its deadline."""
             if deadline.is_over or (deferred is not None and self._prefers("respond-async")):
                 return late()
-            return deadline.watched(work, late, instead=lambda: self._finish(late))
+            return deadline.watched(self._in_turn(work), late, instead=lambda: self._finish(late))
 
         return self._finish(watched)
+
+    def _in_turn(self, work: Callable[[], Result]) -> Callable[[], Result]:
+        """The work, of those who derive one at a time, whatever else their requests wait for."""
+        if self._task != "derive":
+            return work
+
+        def begun() -> Result:
+            """The work, unless it is too late to begin."""
+            if self._deadline.is_over:
+                raise TimeoutError
+            return work()
+
+        deriving = self.store.runtime.deriving
+        return lambda: deriving.submit(self.principal, partial(copy_context().run, begun)).result()
 
     def _finish(self, prepare: Callable[[], Commit | Answer | Stream]) -> Response:
         """Commit what was prepared, and keep the answer under the key in the same transaction."""

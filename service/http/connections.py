@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import logging
 import resource
+import socket
 from asyncio import AbstractEventLoop
 from contextvars import copy_context
 from ipaddress import IPv6Address, ip_address
@@ -120,6 +121,10 @@ class Connection(HttpToolsProtocol):
     def connection_made(self, transport: Any) -> None:
         """Enter, or note that there is no room: then the first request is answered 503."""
         super().connection_made(transport)
+        # asyncio does this only where the socket that listens knows its protocol; else bodies wait until heads are confirmed
+        connected = transport.get_extra_info("socket")
+        if connected is not None and connected.family in (socket.AF_INET, socket.AF_INET6):
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.address = network_of(self.client[0]) if self.client else ""
         self._wait("head")
         if not self._all.enter(self):

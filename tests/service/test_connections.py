@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from service.database.connections import Database
-from service.http.connections import Complaints, network_of
+from service.http.connections import Complaints, Connection, network_of
 from service.server import background
 from service.settings import Limits, Settings
 
@@ -262,3 +262,22 @@ def test_addresses() -> None:
     assert network_of("2001:db8::1") == network_of("2001:db8::ffff:1") != network_of("2001:db8:0:1::1")
     assert network_of("fe80::1%eth0") == "fe80::"
     assert network_of("unix") == "unix"
+
+
+def test_answers_are_sent_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A head does not wait until the client confirms it before the body follows (Nagle)."""
+    found: list[int] = []
+
+    class Watched(Connection):
+        """Looks at its socket."""
+
+        def connection_made(self, transport: Any) -> None:
+            super().connection_made(transport)
+            connected = transport.get_extra_info("socket")
+            found.append(connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+
+    monkeypatch.setattr("service.server.Connection", Watched)
+    with serving(tmp_path) as port:
+        assert asked(port).startswith(b"HTTP/1.1 200")
+    assert found
+    assert all(found)

@@ -192,7 +192,7 @@ def test_no_wrong_formula_with_numbers_in_it_is_served(double: TestClient, monke
         with pytest.raises(VerificationFailed, match="numbers in them: metric"):
             binding.bound(source, parameters, text)
     assert len(found) == 5
-    answer = double.get(address, params={"bind": text})
+    answer = double.get(address, params={"bind": ",".join(f"{name}:1.5" for name in parameters)})
     assert answer.status_code == 500
     assert "metric" in answer.json()["detail"]
 

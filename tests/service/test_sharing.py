@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.operations import catalogue
-from service.runtime import THREADS
+from service.runtime import DERIVING
 from service.settings import Limits
 from service.store import Store
 from service.threads import SharedThreads
@@ -54,7 +54,9 @@ def test_what_is_not_begun_is_dropped_at_the_end() -> None:
 
 def test_evaluations_do_not_wait_for_derivations(filled: TestClient, store: Store) -> None:
     gate = Event()
-    waiting = [store.runtime.threads["derive"].submit("other", lambda: gate.wait(10)) for _ in range(THREADS["derive"])]
+    waiting = [store.runtime.deriving.submit("other", lambda: gate.wait(10)) for _ in range(DERIVING)]
+    store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.5)})
+    assert filled.post("/v1/substructures", json=chain(2)).status_code == 202
     assert filled.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0.1]}).status_code == 200
     assert filled.post("/v1/trees/cell/simulations", json={"q": [0.1], "span": [0, 0.1]}).status_code == 200
     gate.set()
