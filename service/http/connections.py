@@ -121,7 +121,7 @@ class Connection(HttpToolsProtocol):
     def connection_made(self, transport: Any) -> None:
         """Enter, or note that there is no room: then the first request is answered 503."""
         super().connection_made(transport)
-        # asyncio does this only where the socket that listens knows its protocol; else bodies wait until heads are confirmed
+        # asyncio does so only where the listening socket knows its protocol; bodies waited until heads were confirmed
         connected = transport.get_extra_info("socket")
         if connected is not None and connected.family in (socket.AF_INET, socket.AF_INET6):
             connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
