@@ -84,7 +84,7 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
         return ["There are no coordinates, so there is no metric to be checked."]
     known = {name: error for name, error in errors.items() if error is not None}
     states = "a random state" if report["states"] == 1 else f"{report['states']} random states"
-    allowed = f"{float(report['tolerance']):g}".replace("e-0", "e-")
+    allowed = f"{float(report['tolerance']):.1e}"
     sentences = [
         f"The {_NAMES.get(name, name)} could not be compared: a formula is singular at the random values."
         for name in errors
@@ -95,8 +95,7 @@ def _agreement(report: Mapping[str, Any]) -> list[str]:
         sentences.insert(
             0,
             f"{len(known)} quantities compared with {_yardstick(report)} at {states}; largest deviation"
-            f" {float(known[worst]):.1e}, of the {_NAMES.get(worst, worst)}"
-            f" (refused beyond {allowed}).",
+            f" {float(known[worst]):.1e}, in {_NAMES.get(worst, worst)} (refused beyond {allowed}).",
         )
     return sentences
 

@@ -223,6 +223,6 @@ def test_certificates_of_older_versions_are_told() -> None:
     errors = {"metric": "1e-16", "christoffel": "2e-16", "bias": None}
     older = {"states": 4, "tolerance": "1e-9", "direct_form": {"max_relative_error": errors}}
     told = str(certificate(older))
-    for words in ("2 quantities", "older version", "2.0e-16, of the Christoffel symbols", "bias could not be compared"):
+    for words in ("2 quantities", "older version", "2.0e-16, in Christoffel symbols", "bias could not be compared"):
         assert words in told, told
     assert "own text" in str(certificate({**older, "compared_with": "documents"}))
