@@ -30,7 +30,7 @@ from substructures.tree.assembly import assemble
 from substructures.tree.coupling import asked, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
-from substructures.tree.model import model_outputs
+from substructures.tree.model_outputs import model_outputs
 from substructures.tree.mounted_part import MountedPart
 
 Scalars = list[Any]

@@ -45,7 +45,8 @@ from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.inverse_dynamics import body_motions
-from substructures.tree.model import Model, rate_symbols
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import MountedPart, PlacedPart
 
 OUTPUTS = ("regressor", "inertial_parameters")

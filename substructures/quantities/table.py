@@ -14,7 +14,8 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
-from substructures.tree.model import KINEMATICS, Model, require_stored
+from substructures.tree.model import Model, require_stored
+from substructures.tree.model_outputs import KINEMATICS
 from substructures.tree.plausibility import Plausibility
 
 MODEL, REGRESSOR, CONDITION = "model", "regressor", "condition"

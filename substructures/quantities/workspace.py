@@ -16,7 +16,8 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.part.scope import Scope
-from substructures.tree.model import KINEMATICS, Model, require_stored
+from substructures.tree.model import Model, require_stored
+from substructures.tree.model_outputs import KINEMATICS
 
 #: of coordinates by the letter of their joint
 UNITS = {"R": "rad", "P": "m"}

@@ -21,7 +21,7 @@ from service.settings import Limits
 from substructures.quantities.evaluation import QUANTITIES as EVALUATED
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
-from substructures.tree.model import KINEMATICS, MOMENTUM
+from substructures.tree.model_outputs import KINEMATICS, MOMENTUM
 
 FOLDER = Path(service.__file__).parent
 PAGE = (FOLDER / "contract.md").read_text()

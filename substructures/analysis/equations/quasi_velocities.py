@@ -46,7 +46,8 @@ from substructures.expr.program import Entries, Formulas, Program, array, progra
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.workspace import Workspace
-from substructures.tree.model import KINEMATICS, Model
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import KINEMATICS
 
 DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
 

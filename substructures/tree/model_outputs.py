@@ -1,0 +1,125 @@
+"""What a coupled model stores, over any scalars.
+
+=====================  ===========  ==========================================================================
+output                 shape        meaning
+=====================  ===========  ==========================================================================
+metric                 n n          g_ab [kg m^2, kg m, kg]
+christoffel            n n n        Gamma_abc, first kind, first index = equation
+gravity                n            generalised gravity forces
+bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
+forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
+inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
+potential_energy                    of gravity (zero at the world's origin) and of all forces that have one [J]
+linear_momentum        n 3          momentum of unit velocity q'^a, world axes
+angular_momentum       n 3          moment of momentum of unit velocity q'^a about the world's origin, world axes
+position               frames 3     origin of every body frame and port in the world [m]
+rotation               frames 3 3   from the axes of the frame to those of the world
+U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
+closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
+limits                 n 2          lowest and highest value of the coordinates that have limits
+=====================  ===========  ==========================================================================
+
+A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, array
+from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.tree.assembly import Assembly
+from substructures.tree.closures import closure_formulas
+from substructures.tree.coupling import Coupled
+from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
+from substructures.tree.mounted_part import PlacedPart
+
+KINEMATICS = ("position", "rotation", "U", "Omega")
+MOMENTUM = ("linear_momentum", "angular_momentum")
+
+
+def model_outputs(
+    assembly: Assembly,
+    coupled: Coupled,
+    rates: Sequence[Scalar],
+    accelerations: Sequence[Scalar],
+    names: frozenset[str] | None = None,
+) -> dict[str, Formulas]:
+    """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""
+    n, placed = len(coupled.gravity), coupled.placed
+
+    def wanted(*some: str) -> bool:
+        """Whether all outputs are wanted, or one of these."""
+        return names is None or not names.isdisjoint(some)
+
+    outputs = {"metric": Formulas((n, n), coupled.metric, "symmetric")}
+    if coupled.christoffel is not None:
+        outputs["christoffel"] = Formulas((n, n, n), coupled.christoffel, "christoffel")
+    outputs |= {
+        "gravity": array((n,), lambda a: coupled.gravity[a]),
+        "forces": array((n,), lambda a: coupled.forces[a]),
+        "potential_energy": array((), lambda: coupled.potential),
+    }
+    # by recursion, so that neither needs the Christoffel symbols
+    if wanted("bias"):
+        bias = bias_forces(placed, rates)
+        outputs["bias"] = array((n,), lambda a: bias[a])
+    if wanted("inverse_dynamics"):
+        inverse = inverse_dynamics(placed, rates, accelerations)
+        outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
+    if wanted(*MOMENTUM):
+        outputs |= _momentum(placed, n)
+    if assembly.limits and wanted("limits"):
+        rows: dict[tuple[int, ...], Scalar] = {
+            (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
+        }
+        outputs["limits"] = Formulas((n, 2), rows)
+    if assembly.cuts and names is None:
+        outputs |= closure_formulas(placed, assembly.cuts, rates)
+    return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
+
+
+def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
+    """The symbols of all velocities and accelerations."""
+    rates: list[Expr] = []
+    accelerations: list[Expr] = []
+    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
+        for joint in m.part.topology.joints:
+            name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
+            rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
+            accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))
+    return rates, accelerations
+
+
+def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
+    """Linear momentum, and angular momentum about the world's origin, in world axes."""
+    linear: dict[tuple[int, ...], Scalar] = {}
+    angular: dict[tuple[int, ...], Scalar] = {}
+    for here in placed:
+        for c, momentum in enumerate(here.evaluated.momenta):
+            # R_c^T p_c   and   R_c^T H_c + r_c x R_c^T p_c
+            pose = here.pose(c)
+            back = transpose(pose.R)
+            p = apply(back, momentum.p)
+            L = add(apply(back, momentum.H), cross(pose.r, p))
+            linear |= {(here.first + c, i): p[i] for i in range(3)}
+            angular |= {(here.first + c, i): L[i] for i in range(3)}
+    return {"linear_momentum": Formulas((n, 3), linear), "angular_momentum": Formulas((n, 3), angular)}
+
+
+def _kinematics(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
+    entries: dict[str, dict[tuple[int, ...], Scalar]] = {name: {} for name in KINEMATICS}
+    f = 0
+    for here in placed:
+        for frame in range(len(here.part.frames)):
+            pose, twists = here.frame_kinematics(frame)
+            entries["position"] |= {(f, i): pose.r[i] for i in range(3)}
+            # from the axes of the frame to those of the world: R^T
+            entries["rotation"] |= {(f, j, i): pose.R[i][j] for i in range(3) for j in range(3)}
+            # U_fa, Omega_fa in the axes of the frame f
+            entries["U"] |= {(f, a, i): t.U[i] for a, t in twists.items() for i in range(3)}
+            entries["Omega"] |= {(f, a, i): t.Omega[i] for a, t in twists.items() for i in range(3)}
+            f += 1
+    shapes = {"position": (f, 3), "rotation": (f, 3, 3), "U": (f, n, 3), "Omega": (f, n, 3)}
+    return {name: Formulas(shapes[name], some) for name, some in entries.items()}
