@@ -115,7 +115,7 @@ def curvature_values(
     values = symbol_values(model, given, states, ("metric",))
     found = engine(curvature(model) if formulas is None else formulas, values, list(OUTPUTS), states.count)
     # g^ab is not finite where det g = 0, and R, S with it
-    good = np.all([np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in found.values()], axis=0)
+    good = np.all([np.isfinite(x).all(axis=tuple(range(1, x.ndim))) for x in found.values()], axis=0)
     failures = tuple(StateFailure(int(i), "not-finite", ADVICE) for i in np.flatnonzero(~good))
     riemann, ricci, scalar, inverse, second = (found[name][0] if states.single else found[name] for name in OUTPUTS)
     return CurvatureValues(riemann, ricci, scalar, inverse, second, failures)

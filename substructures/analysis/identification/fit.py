@@ -22,6 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from substructures.analysis.arguments import positive
+from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.given import StateArray
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.verdict import Check, verdict
@@ -229,6 +230,7 @@ def _explained(W: Array, tau: Array, residual: Array, deviations: Array, limit: 
 def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
     """Outputs of the program along a motion."""
     view = Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+    require_moving(view)
     states = read_states(view, vars(motion), None)
     if states.qdd is None:
         raise InvalidArgument.at("/qdd", "missing", "accelerations 'qdd' are needed")
