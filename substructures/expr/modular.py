@@ -1,15 +1,17 @@
 """Programs over a prime field: exact linear algebra with formulas at a random point.
 
 Unlike fingerprints, which must be quick and only lose simplifications, this evaluation is a homomorphism for everything
-that occurs in mechanisms: square roots of all numbers (of those that have one in the field; else another prime is
-to be drawn), rational multiples of angles, and multiples of pi/12 beside them. Other functions are independent values.
+that occurs in mechanisms: square roots of all numbers (of those in formulas that are known beforehand; else another
+prime may have to be drawn), rational multiples of angles, and multiples of pi/12 beside them. Other functions are
+independent values.
 """
 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from math import lcm
 
 from flint import fmpz
 
@@ -20,6 +22,8 @@ ModularPoint = tuple[int, int]
 #: an angle as multiples of what its sine and cosine are built from, and of pi
 AngleForm = tuple[dict[int, Fraction], Fraction]
 BITS = 100
+#: bits of a prime that is chosen so that numbers have square roots
+MOST_BITS = 4000
 #: multiples with denominators that divide this one are multiples of one point on the circle
 PARTS = 63 * 10**6
 
@@ -29,10 +33,13 @@ class NoSquareRoot(ArithmeticError):
 
 
 class Field:
-    """The integers modulo a random prime of 100 bits, 23 mod 24: 2 and 3 have square roots, -1 has none."""
+    """The integers modulo a random prime, 23 mod 24: 2 and 3 have square roots, -1 has none.
 
-    def __init__(self) -> None:
-        self.prime = _prime()
+    So have all positive numbers under roots in ``programs``, up to MOST_BITS bits together.
+    """
+
+    def __init__(self, programs: Iterable[Program] = ()) -> None:
+        self.prime = _prime(number for program in programs for number in _radicands(program))
         self.points: dict[object, ModularPoint] = {}
         root2, root6, quarter = self.root(2), self.root(6), pow(4, -1, self.prime)
         self.points["pi/12"] = (root6 + root2) * quarter % self.prime, (root6 - root2) * quarter % self.prime
@@ -178,9 +185,26 @@ class _Run:
         return Fraction(int(args[0]), int(args[1]) if op == "rat" else 1) if op in ("int", "rat") else None
 
 
-def _prime() -> int:
-    """A random prime, 23 mod 24."""
+def _radicands(program: Program) -> Iterable[int]:
+    """Numerators and denominators of all numbers under square roots."""
+    operations = program.operations
+    for inner in (operations[operation[1]] for operation in operations if operation[0] == "sqrt"):
+        if inner[0] in ("int", "rat"):
+            yield from (abs(int(x)) for x in inner[1:] if int(x))
+
+
+def _prime(roots: Iterable[int]) -> int:
+    """A random prime, -1 mod 24 and mod every number that is to have a square root.
+
+    With p = -1 mod 4 the Jacobi symbol of an odd n is (n/p) = (-1)^((n - 1)/2) (p/n), and with p = -1 mod n that is
+    (-1)^((n - 1)/2) (-1/n) = 1; (2/p) = 1 with p = -1 mod 8.
+    """
+    modulus = 24
+    for n in roots:
+        more = lcm(modulus, n)
+        # without a number that is too long a field has its root by chance
+        modulus = more if more.bit_length() <= MOST_BITS else modulus
     while True:
-        n = (secrets.randbits(BITS - 5) | 1 << (BITS - 6)) * 24 + 23
-        if fmpz(n).is_prime():
+        n = (secrets.randbits(BITS - 5) | 1 << (BITS - 6)) * modulus - 1
+        if fmpz(n).is_probable_prime():
             return n

@@ -58,6 +58,21 @@ def test_square_roots() -> None:
     assert 0 < found < 60
 
 
+def test_square_roots_of_the_numbers_in_formulas() -> None:
+    """One field has all of them, whatever divides them, and still no root of -1."""
+    texts = ["1.37", "2", "35/6", "43131*x + 374018", "39388521", "9334978122595822", "0.4*0.1"]
+    graph = Graph()
+    roots = [graph.function("sqrt", parse(graph, text, {"x": graph.one}.get)) for text in texts]
+    formulas = program(graph, {"v": Formulas((7,), {(i,): root for i, root in enumerate(roots)})}, {})
+    for _ in range(5):
+        field = Field([formulas])
+        found = field.evaluate(formulas, {}, "v")
+        for i, square in enumerate([(137, 100), (2, 1), (35, 6), (417149, 1), (39388521, 1), (9334978122595822, 1)]):
+            assert (found[i,] ** 2 * square[1] - square[0]) % field.prime == 0
+        with pytest.raises(NoSquareRoot):
+            field.root(-1)
+
+
 def test_other_functions_and_division_by_zero() -> None:
     graph, field = Graph(), Field()
     x = graph.symbol("x")

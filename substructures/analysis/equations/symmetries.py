@@ -186,7 +186,7 @@ class _Search:
         """For the exact search, in a field that holds the square roots of the parameters. Raises TooLarge."""
         angular = [name in self._angles for name in self.varied]
         for _ in range(FIELDS):
-            field = Field()
+            field = Field([self.program])
             symbols = {name: field.draw() for name in self.fixed}
             with suppress(TooLarge):
                 self._random(field, symbols)
