@@ -18,7 +18,7 @@ which is structurally zero where joint a does not carry k, and where the formula
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from substructures.certificate.compare import compare
@@ -29,7 +29,7 @@ from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import Inertia, pairing
-from substructures.mechanics.kinematics import INTERFACE, Columns, constant_rotation, from_body
+from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.certificate import defaults_of
@@ -37,7 +37,7 @@ from substructures.part.certificate import plain as plain_document
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.part.topology import BASE
+from substructures.quantities.regrouping import named_frames, relations
 from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
 from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
@@ -69,7 +69,9 @@ class RegressorModel:
     body frame in its axes. A link is a moving body with all that is fixed to it in the same part; ``instance.base``
     is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
     joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
-    tree; their forces, which Y pi has to balance with the actuators, are not part of it.
+    tree; their forces, which Y pi has to balance with the actuators, are not part of it. ``regrouping``: output
+    ``relations`` (r, 10 links + k): coefficients, functions of the free parameters, with which columns of Y add up to
+    zero, whatever moves; the last k columns are those of massless carriers (:mod:`.regrouping`).
     """
 
     program: Program
@@ -78,6 +80,7 @@ class RegressorModel:
     names: tuple[str, ...]
     units: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    regrouping: Program
     closures: tuple[ClosureRows, ...] = ()
 
     def evaluate(
@@ -154,6 +157,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         tuple(name for name, _ in named),
         tuple(unit for _, unit in named),
         {name: value for name, value in assembly.parameters.items() if name in used},
+        _regrouping(assemble(spec, parts)),
         tuple(cut.rows for cut in assembly.cuts),
     )
 
@@ -177,6 +181,17 @@ def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, names: 
         raise VerificationFailed(f"regressor: {error}") from None
 
 
+def _regrouping(assembly: Assembly) -> Program:
+    """Relations between columns. ``assembly``: one of its own, so that no constant is written in coordinates."""
+    graph = assembly.scope.graph
+    # nothing that is constant depends on where the joints are
+    resting = [replace(m, bindings={**m.bindings, **dict.fromkeys(m.part.coordinates, 0)}) for m in assembly.mounted]
+    run = _bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
+    rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed)
+    entries: dict[tuple[int, ...], Scalar] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
+    return program(graph, {"relations": Formulas((len(rows), columns), entries)}, assembly.scope.symbols)
+
+
 def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, MountedPart]]:
     return zip(assembly.instances, assembly.mounted, strict=True)
 
@@ -198,12 +213,10 @@ def _links(run: Run, assembly: Assembly) -> list[_Link]:
     result: list[_Link] = []
     for (instance, m), here, own_motions in zip(_pairs(assembly), placed, motions, strict=True):
         own = run(m.part, m.bindings, OWN)
-        frames = list(m.part.topology.carrier)
-        named = {c: symbols[0].removesuffix(".m") for c, symbols in sorted(m.part.inertia_symbols.items())}
-        if here.columns[INTERFACE] and m.part.frame_carriers[: len(frames)].count(INTERFACE) > 1:
-            named[INTERFACE] = BASE
+        bodies = list(m.part.topology.carrier)
         result += [
-            _link(f"{instance.name}.{body}", here, frames.index(body), own, own_motions) for body in named.values()
+            _link(f"{instance.name}.{bodies[frame]}", here, frame, own, own_motions)
+            for frame in named_frames(here).values()
         ]
     return result
 
@@ -219,12 +232,12 @@ def _link(name: str, here: PlacedPart, frame: int, own: PartOutputs, motions: Ma
     return _Link(name, inertia, motions[link.parent].at(from_body(here.links, link), link.rotation), columns)
 
 
-def _bare(run: Run) -> Run:
-    """Parts without mass and loads: coupling them gives the kinematics, and the rest is zero at once."""
+def _bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
+    """Parts without these outputs: without masses and loads coupling gives the kinematics, the rest is zero at once."""
 
     def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
         """Outputs of a part, those of its masses empty."""
-        found = run(part, bindings, [name for name in names if name not in DYNAMIC])
-        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in DYNAMIC}})
+        found = run(part, bindings, [name for name in names if name not in left_out])
+        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in left_out}})
 
     return massless

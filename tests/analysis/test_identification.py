@@ -13,6 +13,7 @@ from random_trees import Kind, Plain, random_definition, tree_of, with_parameter
 
 from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, catalogue, couple, derive
 from substructures.analysis.equations import dependencies
+from substructures.analysis.identification import base_parameters as base_module
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
@@ -82,6 +83,66 @@ def test_general_arm_of_six_revolute_joints() -> None:
     base = base_parameters(regressor(tree_of(document), {"x": derive(Definition.read(document))}))
     assert base.count == 38
     assert base.count == numeric_rank(regressor(tree_of(document), {"x": derive(Definition.read(document))}))
+
+
+OBLIQUE = ("0.3", "1.7", "-9.81")
+
+
+def general(kinds: str, parents: tuple[int, ...]) -> Plain:
+    """Oblique axes of decimals, with two roots each, anywhere; one letter for every joint."""
+    types = {"R": "revolute", "P": "prismatic", "S": "spherical", "U": "universal", "C": "cylindrical", "F": "free"}
+    bodies = []
+    for k, (kind, parent) in enumerate(zip(kinds, parents, strict=True)):
+        placement = {"position": [f"0.{17 + 3 * k}", f"x{k}", f"-0.{29 - k}"], "rpy": [f"0.{k + 1}", "-0.4", f"a{k}"]}
+        joint = {"type": types[kind], "placement": placement}
+        if kind in "RP":
+            joint["axis"] = [f"0.{317 + 211 * k}", f"-0.{523 + 97 * k}", f"0.{119 + 301 * k}"]
+        bodies.append({"name": f"b{k}", "parent": f"b{parent}" if parent >= 0 else "base", "joint": joint})
+    free = {f"{name}{k}": {"value": f"0.{k + 3}"} for name in "ax" for k in range(len(kinds))}
+    return {"name": "arm", "bodies": bodies, "parameters": free}
+
+
+@pytest.mark.parametrize(
+    ("kinds", "parents", "count"),
+    [
+        # 7 N - 4: three of every revolute joint move to the link before; the first link has four
+        ("RRR", (-1, 0, 1), 17),
+        ("RRRR", (-1, 0, 1, 1), 24),
+        ("RRRRRR", (-1, 0, 1, 2, 3, 4), 38),
+        # all ten of a free body; of a link beyond a prismatic joint m and s, of a compound joint all but what stays
+        ("FPRS", (-1, 0, 1, 0), 10 + 4 + 7 + 9),
+        ("FUC", (-1, 0, 1), 10 + 9 + 9),
+    ],
+)
+def test_general_axes(kinds: str, parents: tuple[int, ...], count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All relations follow from the joints, in the first field: nothing is searched for.
+
+    Counts: H. Mayeda, K. Yoshida and K. Osuka, 1990 (revolute joints); M. Gautier and W. Khalil, 1990.
+    """
+    monkeypatch.setattr(base_module, "MAX_FIELDS", 1)
+    document = general(kinds, parents)
+    Y = regressor(tree_of(document, OBLIQUE), {"x": derive(Definition.read(document))})
+    monkeypatch.setattr(dependencies, "MAX_SAMPLES", 0 if kinds[0] == "F" else dependencies.COARSE)
+    base = base_parameters(Y)
+    assert base.count == count
+    assert base.count == numeric_rank(Y)
+
+
+def test_what_is_fixed_to_an_interface_counts_with_its_host() -> None:
+    """All ten of it, also over several instances without joints of their own."""
+    plate: Plain = {"name": "plate", "bodies": [{"name": "p", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
+    plate["ports"] = [{"name": "top", "body": "p", "position": ["0.1", "0.2", "0.3"], "rotation": {"rpy": [1, 2, 3]}}]
+    arm = general("RRR", (-1, 0, 1))
+    arm["ports"] = [{"name": "tip", "body": "b2", "position": ["0.4", "x2", 0], "rotation": {"rpy": ["0.3", "a1", 0]}}]
+    chain = [("x", "arm", None), ("y", "plate", "x.tip"), ("z", "plate", "y.top"), ("w", "arm", "z.top")]
+    instances = [{"name": n, "substructure": s} | ({"at": at} if at else {}) for n, s, at in chain]
+    spec = TreeSpec.read({"name": "t", "gravity": list(OBLIQUE), "instances": instances})
+    parts = {name: derive(Definition.read(arm if s == "arm" else plate)) for name, s, _ in chain}
+    Y = regressor(spec, parts)
+    assert [name for name in Y.names if name.endswith(".m")][3:5] == ["y.base.m", "z.base.m"]
+    base = base_parameters(Y)
+    assert base.count == 7 * 6 - 4
+    assert base.count == numeric_rank(Y)
 
 
 def test_combinations_of_the_planar_arm() -> None:
@@ -281,6 +342,6 @@ def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InvalidInput) as error:
         base_parameters(regressor(*tree("planar-2r")), ("stiction",))
     assert error.value.faults[0].pointer == "/drives/0"
-    monkeypatch.setattr(dependencies, "MAX_SAMPLES", 1)
+    monkeypatch.setattr(dependencies, "MAX_SAMPLES", 0)
     with pytest.raises(TooLarge):
         base_parameters(regressor(*tree("puma560")))

@@ -1,13 +1,14 @@
 """Linear dependencies with constant coefficients between columns of functions, exactly.
 
-Columns F_1(q), ..., F_m(q) are given as rows of formulas for exact values of q. Two facts are combined:
+Columns F_1(q), ..., F_m(q) are given as rows of formulas for exact values of q. These are combined:
 
 * over a prime field (:mod:`substructures.expr.modular`) the rank of samples at random points is that of the functions,
   with an error probability of about degree / 2**100; so are the reduced echelon form, the columns that take part in
   each dependency, and the values of their coefficients at one point;
-* the coefficients themselves, functions of whatever symbols are not coordinates, follow from samples at exact points
-  (angles that are multiples of a quarter turn, then of an eighth), where every row is a small formula in these
-  symbols: one small linear system for each dependent column. They are compared with their values in the field.
+* the coefficients themselves, functions of whatever symbols are not coordinates, follow from relations that are known
+  beforehand, by elimination in sparse rows (:mod:`.relations`). Where these do not suffice, they follow from samples at
+  exact points (angles that are multiples of a quarter turn, then of an eighth), where every row is a small formula in
+  these symbols: one small linear system for each dependent column. They are compared with their values in the field.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from substructures.analysis.equations.relations import Entry, Relations
 from substructures.errors import TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.modular import Field
@@ -32,7 +34,8 @@ COARSE = 8
 class Functions:
     """The columns. ``angular``: for every coordinate, whether it is an angle; ``random``: rows of values at a new
     random point of the field (with fixed values of all other symbols); ``exact``: rows of formulas in a graph for
-    values of the coordinates; ``symbols``: values in the field of all symbols that are not coordinates.
+    values of the coordinates; ``symbols``: values in the field of all symbols that are not coordinates; ``known``:
+    rows of formulas r with sum_j r_j F_j = 0, if any are known; columns beyond the last one are to be eliminated.
     """
 
     columns: int
@@ -41,6 +44,7 @@ class Functions:
     random: Callable[[], list[dict[int, int]]]
     exact: Callable[[Graph, Sequence[Expr]], list[dict[int, Expr]]]
     symbols: Mapping[str, int]
+    known: Callable[[Graph], list[dict[int, Expr]]] | None = None
 
 
 @dataclass(frozen=True)
@@ -58,12 +62,35 @@ def dependencies(functions: Functions) -> Dependencies:
     while idle < 2:
         found = [echelon.add(row) for row in functions.random()]
         idle = 0 if any(found) else idle + 1
-    reduced, search = echelon.reduced(), _Search(functions)
-    others = {}
-    for j in range(functions.columns):
-        if j not in reduced:
-            others[j] = search.coefficients(j, {b: row[j] for b, row in sorted(reduced.items()) if j in row})
-    return Dependencies(tuple(sorted(reduced)), others)
+    reduced = echelon.reduced()
+    expected = {
+        j: {b: row[j] for b, row in sorted(reduced.items()) if j in row}
+        for j in range(functions.columns)
+        if j not in reduced
+    }
+    return Dependencies(tuple(sorted(reduced)), _solved(functions, expected))
+
+
+def _solved(functions: Functions, expected: Mapping[int, Mapping[int, int]]) -> dict[int, dict[int, Expr]]:
+    """Formulas of all coefficients, from their values: by what is known of the columns, and the rest by samples."""
+    search, prime = _Search(functions), functions.field.prime
+    one, known = Entry(search.graph.one, 1), search.known()
+    auxiliary = {j for row in known for j in row if j >= functions.columns}
+    relations = Relations(prime, expected, auxiliary)
+    # columns that are zero first: nothing else is to be written in them
+    for row in [*({j: one} for j, coefficients in expected.items() if not coefficients), *known]:
+        relations.add(row)
+    for j, coefficients in expected.items():
+        if j not in relations.rows:
+            found = search.coefficients(j, coefficients)
+            relations.add({j: one, **{b: Entry(-x.formula, -x.value % prime) for b, x in found.items()}})
+    result = {}
+    for j, coefficients in expected.items():
+        row = {b: x for b, x in sorted(relations.rows[j].items()) if b != j}
+        if {b: -x.value % prime for b, x in row.items()} != coefficients:
+            raise ArithmeticError("the coefficients of a dependency differ from their values in the field")
+        result[j] = {b: -x.formula for b, x in row.items()}
+    return result
 
 
 class _Echelon:
@@ -108,27 +135,23 @@ class _Echelon:
         return result
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """A formula with its value in the field."""
-
-    formula: Expr
-    value: int
-
-
 class _Search:
     """Exact samples, made as they are needed."""
 
     def __init__(self, functions: Functions) -> None:
         # a graph of its own: no constant may be written in the symbols of other formulas
         self.functions, self.graph, self.prime = functions, Graph(), functions.field.prime
-        self.rows: list[dict[int, _Entry]] = []
+        self.rows: list[dict[int, Entry]] = []
         self.number, self.random = 0, np.random.default_rng(0)
 
-    def coefficients(self, j: int, expected: Mapping[int, int]) -> dict[int, Expr]:
+    def known(self) -> list[dict[int, Entry]]:
+        """Rows of relations that need no search."""
+        return self._entries(self.functions.known(self.graph)) if self.functions.known else []
+
+    def coefficients(self, j: int, expected: Mapping[int, int]) -> dict[int, Entry]:
         """c with F_j = sum c_b F_b, by as many independent rows as there are coefficients."""
         support, echelon, at = list(expected), _Echelon(self.prime), 0
-        chosen: list[dict[int, _Entry]] = []
+        chosen: list[dict[int, Entry]] = []
         while len(chosen) < len(support):
             while at == len(self.rows):
                 self._more()
@@ -136,11 +159,9 @@ class _Search:
             at += 1
             if echelon.add({b: row[b].value for b in support if b in row}):
                 chosen.append(row)
-        zero = _Entry(self.graph.zero, 0)
+        zero = Entry(self.graph.zero, 0)
         found = self._solved([[row.get(b, zero) for b in (*support, j)] for row in chosen], len(support))
-        if any(x.value != expected[b] for b, x in zip(support, found, strict=True)):
-            raise ArithmeticError("the coefficients of a dependency differ from their values in the field")
-        return {b: x.formula for b, x in zip(support, found, strict=True)}
+        return dict(zip(support, found, strict=True))
 
     def _more(self) -> None:
         if self.number == MAX_SAMPLES:
@@ -155,18 +176,18 @@ class _Search:
         self.rows += sorted(self._entries(rows), key=len)
         self.number += 1
 
-    def _entries(self, rows: list[dict[int, Expr]]) -> list[dict[int, _Entry]]:
+    def _entries(self, rows: list[dict[int, Expr]]) -> list[dict[int, Entry]]:
         """Formulas with their values."""
         index: dict[tuple[int, ...], Expr | int] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
-        size = (len(rows), self.functions.columns)
+        size = (len(rows), max((j for row in rows for j in row), default=0) + 1)
         symbols = {name: Symbol(name, "parameter") for name in self.functions.symbols}
         formulas = program(self.graph, {"rows": Formulas(size, index)}, symbols)
         values = self.functions.field.evaluate(formulas, self.functions.symbols, "rows")
         return [
-            {j: _Entry(x, values[r, j]) for j, x in row.items() if values.get((r, j), 0)} for r, row in enumerate(rows)
+            {j: Entry(x, values[r, j]) for j, x in row.items() if values.get((r, j), 0)} for r, row in enumerate(rows)
         ]
 
-    def _solved(self, system: list[list[_Entry]], size: int) -> list[_Entry]:
+    def _solved(self, system: list[list[Entry]], size: int) -> list[Entry]:
         """Gaussian elimination; pivots are numbers where there are any."""
         place: dict[int, int] = {}
         for _ in range(size):
@@ -179,16 +200,16 @@ class _Search:
             place[c] = r
             pivot = system[r][c]
             inverse = pow(pivot.value, -1, self.prime)
-            system[r] = [_Entry(x.formula / pivot.formula, x.value * inverse % self.prime) for x in system[r]]
+            system[r] = [Entry(x.formula / pivot.formula, x.value * inverse % self.prime) for x in system[r]]
             for other in range(size):
                 if other != r and system[other][c].value:
                     system[other] = self._without(system[other], system[other][c], system[r])
         return [system[place[c]][-1] for c in range(size)]
 
-    def _without(self, row: list[_Entry], factor: _Entry, other: list[_Entry]) -> list[_Entry]:
+    def _without(self, row: list[Entry], factor: Entry, other: list[Entry]) -> list[Entry]:
         result = []
         for x, y in zip(row, other, strict=True):
             value = (x.value - factor.value * y.value) % self.prime
             # what is zero in the field is zero
-            result.append(_Entry(x.formula - factor.formula * y.formula if value else self.graph.zero, value))
+            result.append(Entry(x.formula - factor.formula * y.formula if value else self.graph.zero, value))
         return result

@@ -12,8 +12,9 @@ models, the same issue). The parts of Y that are quadratic in q' are Christoffel
     Y c = 0 for all q, q', q''    if and only if    sum_i c_i g^i_ab(q) = 0  and  sum_i c_i G_ai(q) = 0
 
 with the metric g^i and the gravity forces G_i of parameter i put to one: functions of q alone, whose dependencies
-are found by :mod:`.dependencies`. C is a function of the kinematic parameters that are free, and these count as
-general: bind parameters to numbers where special ones (a zero, a right angle) matter.
+are found by :mod:`.dependencies`, most of them from what joints do not move
+(:mod:`substructures.quantities.regrouping`). C is a function of the kinematic parameters that are free, and these count
+as general: bind parameters to numbers where special ones (a zero, a right angle) matter.
 
 Drives add columns: ``armature`` q'' [kg m^2, kg], ``viscous`` q' [N m s, N s/m], ``coulomb`` sign(q') [N m, N] and
 ``offset`` 1 [N m, N] of every joint.
@@ -24,6 +25,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
 
@@ -33,6 +35,7 @@ from substructures.certificate.outputs import Outputs
 from substructures.certificate.regressed import base_outputs
 from substructures.certificate.states import states_between
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
+from substructures.expr.bind import bind
 from substructures.expr.direct import ball
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
@@ -156,6 +159,11 @@ class _Columns:
         self.names = (*Y.names, *(f"{Y.coordinates[a]}.{kind}" for kind, a in pairs))
         self.units = (*Y.units, *(DRIVE_UNITS[kind][Y.joints[a] == "P"] for kind, a in pairs))
         self.pairs = list(enumerate(pairs, len(Y.names)))
+        # coefficients do not depend on what Y does not depend on (a height along gravity): any value does
+        known = {s.name for s in Y.program.symbols}
+        self.regrouping = bind(
+            Y.regrouping, {s.name: Fraction(113, 355) for s in Y.regrouping.symbols if s.name not in known}
+        )
 
     def regressor(self, graph: Graph, bindings: Mapping[str, Expr]) -> dict[tuple[int, int], Expr]:
         """[a, i] of Y for these values of symbols."""
@@ -182,13 +190,14 @@ class _Columns:
         names = [s.name for s in self.Y.program.symbols if s.kind == "parameter"]
         angular = [joint == "R" for joint in self.Y.joints]
         for _ in range(MAX_FIELDS):
-            field = Field()
+            field = Field([self.Y.program, self.regrouping])
             symbols = {name: field.draw() for name in names}
             # a trial finds out whether the field holds the roots
             with suppress(NoSquareRoot, ZeroDivisionError):
                 self._random(field, symbols)
+                field.evaluate(self.regrouping, symbols, "relations")
                 random = partial(self._random, field, symbols)
-                return Functions(len(self.names), angular, field, random, self._exact, symbols)
+                return Functions(len(self.names), angular, field, random, self._exact, symbols, self._known)
         raise TooLarge("the search for a field with all square roots (in primes)", MAX_FIELDS + 1, MAX_FIELDS)
 
     def _random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
@@ -205,6 +214,14 @@ class _Columns:
         """Rows of formulas at q."""
         at = dict(zip(self.Y.coordinates, q, strict=True))
         return self._rows(lambda motion: self.regressor(graph, {**at, **motion}), graph.zero, graph.one)
+
+    def _known(self, graph: Graph) -> list[dict[int, Expr]]:
+        """Rows of what joints do not move."""
+        rows: dict[int, dict[int, Expr]] = {}
+        for (r, j), x in replay(self.regrouping, graph, {}, ["relations"])["relations"].entries.items():
+            # carriers without mass come after the drives
+            rows.setdefault(r, {})[j if j < len(self.Y.names) else j + len(self.pairs)] = graph.lift(x)
+        return [rows[r] for r in sorted(rows)]
 
     def _rows(self, regressor: Callable[[Mapping[str, X]], Mapping[Any, X]], zero: X, one: X) -> list[dict[int, X]]:
         """g^i_ab (a <= b) and G_ai, and one row for each friction."""
