@@ -19,6 +19,7 @@ from service.metrics import Metrics
 from service.operations.seed import import_catalogue
 from service.pages import routes as pages
 from service.queries import idempotency
+from service.respawn import Kept
 from service.routes import (
     aliases,
     analyses,
@@ -53,24 +54,28 @@ DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: 
 
 
 @contextmanager
-def open_store(settings: Settings) -> Iterator[Store]:
+def open_store(settings: Settings, kept: Kept | None = None) -> Iterator[Store]:
     """The store of a server: claimed, migrated and with the shipped catalogue in it before anybody can ask.
 
-    Raises DatabaseError, MigrationError.
+    ``kept``: what this process shares with others of the server. Raises DatabaseError, MigrationError.
     """
-    database = Database(settings.database)
-    store = Store(settings, database, Metrics())
+    kept = kept or Kept()
+    database = Database(settings.database, claim=kept.claim)
+    label = str(kept.number) if settings.processes > 1 else ""
+    store = Store(settings, database, Metrics(label))
     try:
-        _prepare(store)
+        if kept.number == 0:
+            _prepare(store, is_alone=kept.is_start or settings.processes == 1)
         yield store
     finally:
         store.close()
 
 
-def _prepare(store: Store) -> None:
+def _prepare(store: Store, is_alone: bool) -> None:
+    """``is_alone``: no other process of this server is at work."""
     settings, database = store.settings, store.database
     try:
-        if database.is_sqlite:  # this is the only server: whatever is in flight died with the last one
+        if database.is_sqlite and is_alone:  # nor of another one: whatever is in flight died with the last one
             with database.write() as connection:
                 idempotency.forget(connection, timedelta(hours=settings.limits.idempotency_hours), timedelta(0))
         if settings.catalogue:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from prometheus_client import (
     CONTENT_TYPE_LATEST,
@@ -10,6 +10,7 @@ from prometheus_client import (
     Counter,
     Gauge,
     Histogram,
+    Metric,
     ProcessCollector,
     generate_latest,
 )
@@ -17,11 +18,30 @@ from prometheus_client import (
 CONTENT_TYPE = CONTENT_TYPE_LATEST
 
 
-class Metrics:
-    """The counters of one app, in a registry of its own."""
+class _Labelled(CollectorRegistry):
+    """A registry whose samples all have the label ``process``."""
 
-    def __init__(self) -> None:
-        self._registry = CollectorRegistry()
+    def __init__(self, process: str) -> None:
+        super().__init__()
+        self._process = process
+
+    def collect(self) -> Iterator[Metric]:
+        """All metrics, with the label."""
+        for metric in super().collect():
+            metric.samples = [
+                each._replace(labels={"process": self._process, **each.labels}) for each in metric.samples
+            ]
+            yield metric
+
+
+class Metrics:
+    """The counters of one app, in a registry of its own.
+
+    ``process``: its number where a server has several; each shows its own counters, under this label.
+    """
+
+    def __init__(self, process: str = "") -> None:
+        self._registry = _Labelled(process) if process else CollectorRegistry()
         ProcessCollector(registry=self._registry)  # CPU time, memory, descriptors
         self._requests = Counter(
             "substructures_requests", "Requests answered", ["method", "route", "status"], registry=self._registry

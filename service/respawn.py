@@ -4,6 +4,10 @@ Native code, or a system that is short of memory, can end a process at any momen
 what was acknowledged is in the database; connections that come meanwhile wait in the sockets, which stay open. Whoever
 ends the server on purpose, and a server that ends by itself, with whatever status, is not started again; nor is one
 that died before it listened.
+
+A server may be several processes. The first prepares the store, listens, and says how many there are to be; the parent
+starts the others then. All accept from the same sockets, each is started again for itself, and all end together. What
+the parent holds it hands to all: the sockets, and the file that is locked for the server as a whole (its claim).
 """
 
 from __future__ import annotations
@@ -14,26 +18,29 @@ import logging
 import os
 import signal
 import socket
+import stat
 import sys
 import threading
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from selectors import EVENT_READ, DefaultSelector
 from typing import Any
 
 from service.lifetime import end_with
 
 logger = logging.getLogger(__name__)
 
-#: of a server: process of its parent, descriptors of the channel to it and of the sockets that it holds
+#: of a server: process of its parent, its number, descriptors of the channel to the parent and of what that holds
 VARIABLE = "_SUBSTRUCTURES_PARENT"
-MOST = 64  # sockets
+MOST = 64  # descriptors
 #: seconds until a server that died is started again: none at first, more for one that dies young again and again
 YOUNG, FIRST, LONGEST = 30.0, 0.5, 10.0
 
 
 def keep() -> int:
-    """Run the command of this process, a server, in another one, again when that is killed; its exit status.
+    """Run the command of this process, a server, in others, each again when it is killed; its exit status.
 
     Signals to end are passed on.
     """
@@ -46,78 +53,160 @@ def is_kept() -> bool:
     return VARIABLE in os.environ
 
 
+@dataclass(eq=False)
+class _Child:
+    """One process of the server; ``pid`` None: it died, and is ``due`` to be started again."""
+
+    number: int
+    pid: int | None = None
+    start: float = 0.0
+    pause: float = 0.0
+    due: float = 0.0
+
+
 class _Parent:
-    """Starts the process, holds its sockets, waits."""
+    """Starts the processes, holds what they share, waits."""
 
     def __init__(self, command: Sequence[str]) -> None:
         self.command = command
-        self.sockets: list[int] = []
-        self.child: int | None = None
-        self.stopping = 0  # the signal that said so
+        self.held: list[int] = []
+        self.children = [_Child(0)]
+        self.stopping = False
+        self.status = 0
+        self._selector = DefaultSelector()
+        self._ended: dict[int, int] = {}  # exit statuses of processes that were waited for
 
     def run(self) -> int:
         """Until the server ends by itself or is told to end."""
+        told, tells = socket.socketpair()
+        tells.setblocking(False)
+        signal.set_wakeup_fd(tells.fileno())  # it is told of a signal in a byte
         for each in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(each, self._pass_on)
-        pause = 0.0
-        while True:
-            start = time.monotonic()
-            code = self._life()
-            if code >= 0:
-                return code
-            if self.stopping or not self.sockets:
-                return 128 - code  # as shells tell it
-            pause = 0.0 if time.monotonic() - start > YOUNG else pause
-            logger.error("the server was killed by signal %d and is started again in %g s", -code, pause)
-            time.sleep(pause)
-            pause = min(max(FIRST, 2 * pause), LONGEST)
+            signal.signal(each, lambda *_: None)
+        self._selector.register(told, EVENT_READ)
+        while not self.stopping or self._running():
+            for child in self.children:
+                if child.pid is None and not self.stopping and child.due <= time.monotonic():
+                    self._start(child)
+            for key, _ in self._selector.select(self._rest()):
+                if key.data is None:
+                    self._pass_on(told.recv(1)[0])
+                else:
+                    self._hear(*key.data)
+        return self.status
 
-    def _life(self) -> int:
-        """The exit status of the server from its start to its end; of one that was killed minus the signal."""
+    def _running(self) -> list[_Child]:
+        return [child for child in self.children if child.pid is not None]
+
+    def _rest(self) -> float | None:
+        """Seconds until a process is due."""
+        due = [child.due for child in self.children if child.pid is None]
+        return max(0.0, min(due) - time.monotonic()) if due and not self.stopping else None
+
+    def _start(self, child: _Child) -> None:
         ours, theirs = socket.socketpair()
-        with ours:
-            with theirs:
-                self.child = self._started(theirs.fileno())
-            if not self.sockets:
-                self.sockets = list(socket.recv_fds(ours, 1, MOST)[1])
-            return self._end()
+        with theirs:
+            for each in (theirs.fileno(), *self.held):
+                os.set_inheritable(each, True)
+            told = (os.getpid(), child.number, theirs.fileno(), *self.held)
+            environment = {**os.environ, VARIABLE: " ".join(map(str, told))}
+            # a group of its own: what a terminal sends to its group comes once, through here
+            child.pid = os.posix_spawn(self.command[0], list(self.command), environment, setpgroup=0)
+        child.start = time.monotonic()
+        self._selector.register(ours, EVENT_READ, (child, ours))
 
-    def _started(self, channel: int) -> int:
-        for each in (channel, *self.sockets):
-            os.set_inheritable(each, True)
-        environment = {**os.environ, VARIABLE: " ".join(map(str, (os.getpid(), channel, *self.sockets)))}
-        # a group of its own: what a terminal sends to its group comes once, through here
-        return os.posix_spawn(self.command[0], list(self.command), environment, setpgroup=0)
+    def _hear(self, child: _Child, channel: socket.socket) -> None:
+        """What the first process hands over, once; nothing else comes from any but the end."""
+        message, descriptors, *_ = socket.recv_fds(channel, 16, MOST)
+        if message and not self.stopping:
+            self.held = list(descriptors)
+            self.children += [_Child(number) for number in range(1, int(message))]
+        elif message:  # nobody would let go of them
+            for each in descriptors:
+                os.close(each)
+        else:
+            self._selector.unregister(channel)
+            channel.close()
+            self._end(child)
 
-    def _end(self) -> int:
-        """Wait for the server, and for others whose parents have gone where this is the first process of all."""
-        while True:
+    def _end(self, child: _Child) -> None:
+        """A process has ended: by itself, or as it was told to; otherwise it is started again."""
+        code = self._status_of(child)
+        if code >= 0 or self.stopping or not self.held:
+            self.status = max(self.status, code if code >= 0 else 128 - code)  # as shells tell it
+            if not self.stopping:
+                self._stop(signal.SIGTERM)
+            return
+        now = time.monotonic()
+        child.pause = 0.0 if now - child.start > YOUNG else child.pause
+        logger.error("the server was killed by signal %d and is started again in %g s", -code, child.pause)
+        child.due = now + child.pause
+        child.pause = min(max(FIRST, 2 * child.pause), LONGEST)
+
+    def _status_of(self, child: _Child) -> int:
+        """Wait for it, and for others whose parents have gone where this is the first process of all; the exit status,
+        minus the signal of one that was killed.
+        """
+        pid, child.pid = child.pid, None
+        while pid not in self._ended:
             ended, status = os.wait()
-            if ended == self.child:
-                self.child = None
-                return os.waitstatus_to_exitcode(status)
+            self._ended[ended] = os.waitstatus_to_exitcode(status)
+        code = self._ended[pid]
+        known = {each.pid for each in self._running()}
+        self._ended = {each: status for each, status in self._ended.items() if each in known}
+        return code
 
-    def _pass_on(self, received: int, _frame: object = None) -> None:
-        self.stopping = received
-        if self.child is None:
-            sys.exit(128 + received)
-        while self.sockets:  # nobody waits in them any longer
-            os.close(self.sockets.pop())
-        with suppress(ProcessLookupError):  # it has just ended
-            os.kill(self.child, received)
+    def _pass_on(self, received: int) -> None:
+        if not self._running():  # all wait to be started again
+            self.status = 128 + received
+        self._stop(received)
+
+    def _stop(self, received: int) -> None:
+        self.stopping = True
+        while self.held:  # nobody waits in them any longer
+            os.close(self.held.pop())
+        for child in self._running():
+            if child.pid is not None and child.pid not in self._ended:
+                with suppress(ProcessLookupError):
+                    os.kill(child.pid, received)
 
 
-_held: list[socket.socket] = []  # the channel, while this process lives
+@dataclass
+class Kept:
+    """What a process of a server has from its parent, or nothing.
+
+    ``number``: from 0; the first one looks after the store. ``claim``: the descriptor of the file that is locked for
+    the server, None at its first start and where there is none.
+    """
+
+    number: int = 0
+    sockets: list[int] = field(default_factory=list)
+    claim: int | None = None
+    channel: socket.socket | None = None
+
+    @property
+    def is_start(self) -> bool:
+        """Whether no process of this server has been at work before."""
+        return not self.sockets
+
+
+kept = Kept()
 
 
 def end_with_parent() -> None:
     """Let this process, a server that is kept, end with its parent, whatever it does."""
-    parent, channel, *_ = map(int, os.environ[VARIABLE].split())
+    parent, number, channel, *held = map(int, os.environ[VARIABLE].split())
     end_with(parent)
-    os.set_inheritable(channel, False)
+    for each in (channel, *held):
+        os.set_inheritable(each, False)
     faulthandler.enable()  # native code that fails tells where
-    _held[:] = [socket.socket(fileno=channel)]
-    threading.Thread(target=_end_with, args=_held, daemon=True).start()
+    kept.number, kept.channel = number, socket.socket(fileno=channel)
+    for each in held:
+        if stat.S_ISSOCK(os.fstat(each).st_mode):
+            kept.sockets.append(each)
+        else:
+            kept.claim = each
+    threading.Thread(target=_end_with, args=(kept.channel,), daemon=True).start()
 
 
 def _end_with(channel: socket.socket) -> None:
@@ -126,17 +215,16 @@ def _end_with(channel: socket.socket) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def listeners(host: str, port: int) -> list[socket.socket]:
-    """The sockets that the parent holds; at the first time new ones, for it to hold. Raises OSError."""
-    if not _held:
-        return bound(host, port)
-    descriptors = list(map(int, os.environ[VARIABLE].split()[2:]))
-    if descriptors:
-        for each in descriptors:
-            os.set_inheritable(each, False)
-        return [socket.socket(fileno=each) for each in descriptors]
+def listeners(host: str, port: int, claim: int | None = None, processes: int = 1) -> list[socket.socket]:
+    """The sockets that the parent holds; at the first time new ones, for it to hold together with the descriptor
+    ``claim``, and to start so many processes on. Raises OSError.
+    """
+    if kept.sockets:
+        return [socket.socket(fileno=each) for each in kept.sockets]
     sockets = bound(host, port)
-    socket.send_fds(_held[0], [b"."], [each.fileno() for each in sockets])
+    if kept.channel is not None:
+        held = [each.fileno() for each in sockets] + ([] if claim is None else [claim])
+        socket.send_fds(kept.channel, [str(processes).encode()], held)
     return sockets
 
 

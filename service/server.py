@@ -23,7 +23,7 @@ from service.jobs.engine import Engine
 from service.queries.keys import any_key
 from service.queue.engines import engine_of
 from service.queue.supervisor import Supervisor
-from service.respawn import listeners
+from service.respawn import kept, listeners
 from service.settings import Settings, SettingsError
 from service.store import Store
 
@@ -36,18 +36,30 @@ AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait
 
 def serve(settings: Settings) -> None:
     """Serve until interrupted. Raises SettingsError rather than to listen beyond loopback without API keys."""
-    with open_store(settings) as store:
+    with open_store(settings, kept) as store:
+        _check_processes(store)
         check_exposure(store)
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
         _prepare_to_answer()
-        with supervised(store, engine_of(settings)):
-            _server(store).run(sockets=_listeners(settings))
+        # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
+        with supervised(store, engine_of(settings) if kept.number == 0 else None):
+            _server(store).run(sockets=_listeners(settings, store.database.claim))
 
 
-def _listeners(settings: Settings) -> list[socket.socket]:
+def _check_processes(store: Store) -> None:
+    """Raise SettingsError where several processes are asked for and cannot be."""
+    if store.settings.processes == 1:
+        return
+    if kept.channel is None:
+        raise SettingsError("several processes are started by the command 'substructures serve' alone")
+    if store.database.is_sqlite and store.database.claim is None:
+        raise SettingsError("several processes share an SQLite file on Linux only; use PostgreSQL")
+
+
+def _listeners(settings: Settings, claim: int | None) -> list[socket.socket]:
     """Raises SettingsError for an address that cannot be listened on."""
     try:
-        found = listeners(settings.host, settings.port)
+        found = listeners(settings.host, settings.port, claim, settings.processes)
     except OSError as error:
         raise SettingsError(f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}") from None
     logger.info("listening on %s", ", ".join(f"{name[0]}:{name[1]}" for name in (s.getsockname() for s in found)))
@@ -133,7 +145,7 @@ class _Server(uvicorn.Server):
 
 
 def _server(store: Store) -> uvicorn.Server:
-    settings, connections = store.settings, Connections(store.settings.limits)
+    settings, connections = store.settings, Connections(store.settings.limits_of_process)
     return _Server(
         store,
         connections,

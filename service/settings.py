@@ -16,6 +16,8 @@ LIMIT_PREFIX = "LIMIT_"
 CLIENT = ("key",)  # variables of the commands that talk to a server; no settings of a server
 #: variables of the compiler of kernels, see :mod:`substructures.compile.setting`
 COMPILER = tuple(name[len(PREFIX) :].lower() for name in VARIABLES)
+#: limits that several processes share out
+SHARED = ("connections", "connections_per_address", "event_streams", "event_streams_per_key")
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 # Bounds of limits are what a database, a kernel and a clock can still be told: 2^62, a year, a century.
@@ -92,6 +94,7 @@ class Settings(BaseModel):
     cache_nodes: int = Field(2_000_000, ge=0, le=2**62, description="operations of decoded programs kept in memory")
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
+    processes: int = Field(1, ge=1, le=256, description="processes that answer requests")
     workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
     runner_user: str = Field("", description="user of the processes that compute jobs; empty: that of the server")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
@@ -105,6 +108,13 @@ class Settings(BaseModel):
             return None if self.kernels == "-" else Path(self.kernels)
         file = self.database.removeprefix("sqlite:///")
         return Path(f"{file}.kernels") if file not in (self.database, "", ":memory:") else None
+
+    @property
+    def limits_of_process(self) -> Limits:
+        """The limits with this process's share of what is open at a time, at least one of each."""
+        limits = self.limits
+        shares = {name: -(-getattr(limits, name) // self.processes) for name in SHARED}
+        return limits.model_copy(update=shares)
 
     @property
     def is_loopback(self) -> bool:

@@ -48,7 +48,7 @@ def add_database(command: argparse.ArgumentParser) -> None:
 
 def settings_of(options: argparse.Namespace) -> Settings:
     """Settings from the environment, with those of the command line in their place. Raises SettingsError."""
-    names = ("host", "port", "database", "engine", "engine_address", "workers")
+    names = ("host", "port", "database", "engine", "engine_address", "workers", "processes")
     return from_environment(os.environ, **{name: getattr(options, name, None) for name in names})
 
 

@@ -13,6 +13,7 @@ def _add_serve(command: argparse.ArgumentParser) -> None:
     command.set_defaults(command=_serve)
     command.add_argument("--host", help="address to listen on (127.0.0.1)")
     command.add_argument("--port", type=int, help="port to listen on (8000)")
+    command.add_argument("--processes", type=int, help="processes that answer requests (1)")
     _add_engine(command)
     add_database(command)
 

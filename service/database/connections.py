@@ -30,19 +30,21 @@ __all__ = ["Connection", "Database", "DatabaseError", "normalised", "told"]
 class Database:
     """The store. Use ``read()`` and ``write()``; a ``write()`` commits as a whole or not at all."""
 
-    def __init__(self, address: str, *, exclusive: bool = True) -> None:
+    def __init__(self, address: str, *, exclusive: bool = True, claim: int | None = None) -> None:
         """Open and migrate the database at an SQLAlchemy URL.
 
-        ``exclusive`` claims an SQLite file for this process, since its one writer must be the only server's. Raises
-        DatabaseError when another server holds it, when it is damaged, when it does not answer and for an unknown kind
-        of URL, MigrationError for a database of a newer version.
+        ``exclusive`` claims an SQLite file for this server; ``claim``: the descriptor of a claim that another of its
+        processes has made, known as ``self.claim`` here. Raises DatabaseError when another server holds it, when it is
+        damaged, when it does not answer and for an unknown kind of URL, MigrationError for one of a newer version.
         """
         self.url = normalised(address)
+        self.claim: int | None = None
         self._watch: Watch | None = None
         with ExitStack() as opened:
             if exclusive and self.is_sqlite:
-                claim = opened.enter_context(closing(Claim(self.file)))
-                self._watch = opened.enter_context(closing(Watch(claim.path)))
+                claimed = opened.enter_context(closing(Claim(self.file, claim)))
+                self.claim = claimed.shared
+                self._watch = opened.enter_context(closing(Watch(claimed.path)))
             self.writer = _engine(self.url, writer=True)
             opened.callback(self.writer.dispose)
             self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)

@@ -23,12 +23,23 @@ class Claim:
     """The right to write to a file, by its inode: other names of it, and links to it, are the same file.
 
     The operating system drops it when the process dies. Beside the file stands one for a lock of SQLite's own, which
-    holds on every system; on the file itself is a lock of Linux (flock), which SQLite does not know of.
+    holds on every system; on the file itself is a lock of Linux (flock), which SQLite does not know of, and which
+    belongs to all processes that have its descriptor, until the last of them has ended.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Create the file if there is none. Raises DatabaseError when another process has it."""
+    def __init__(self, path: Path, held: int | None = None) -> None:
+        """Create the file if there is none. ``held``: the descriptor of a claim that this process shares.
+
+        Raises DatabaseError when others have it.
+        """
         self.path = path.resolve()
+        self._lock: sqlite3.Connection | None = None
+        if held is not None:
+            self._file = held
+            found = os.fstat(held)
+            if _identity(self.path) != (found.st_dev, found.st_ino):
+                raise DatabaseError(f"{path} was deleted or replaced; restart the server")
+            return
         beside = self.path.with_name(f"{self.path.name}.lock")
         try:
             self._lock = sqlite3.connect(beside, timeout=0, isolation_level=None, check_same_thread=False)
@@ -45,10 +56,16 @@ class Claim:
             self._lock.close()
             raise DatabaseError(f"cannot open {path}: {error.strerror}") from None
 
+    @property
+    def shared(self) -> int | None:
+        """The descriptor that lets another process share it, where the system can."""
+        return self._file if sys.platform == "linux" else None
+
     def close(self) -> None:
         """Give it up, after all connections: to close a file drops all locks that this process has on it."""
         os.close(self._file)
-        self._lock.close()
+        if self._lock is not None:
+            self._lock.close()
 
 
 def _locked(path: Path) -> int:

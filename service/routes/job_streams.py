@@ -51,7 +51,7 @@ def events(
         jobs.find(connection, job, viewer)
     seq = int(last_event_id) if last_event_id and last_event_id.isascii() and last_event_id.isdigit() else 0
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    limits, principal = store.settings.limits, request.state.principal
+    limits, principal = store.settings.limits_of_process, request.state.principal
     store.feed.enter(principal, limits.event_streams_per_key, limits.event_streams)
     return _EventStream(store, principal, _events(store, job, min(seq, 2**31 - 1)), headers)
 
