@@ -1,6 +1,6 @@
 """Times of the service over HTTP on loopback, from a second process' point of view.
 
-python -m benchmarks.http [--json FILE]
+python -m benchmarks.http [--processes] [--json FILE]
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from statistics import median
 from time import perf_counter, sleep
 from typing import Any
@@ -30,11 +30,20 @@ from substructures.formats.arrays import read_npz, view_npz, write_npz
 from substructures.quantities.evaluation import evaluate
 
 STATES = 100_000
+TURNS, SECONDS = 5, 3.0
+SERVERS = {"one process": [1], "two processes": [2], "two servers": [1, 1]}  # by their processes
 
 
 @contextmanager
 def server(folder: str, **settings: str) -> Iterator[Client]:
     """The service in a process of its own, on the database of the folder."""
+    with serving(folder, **settings) as (client, _):
+        yield client
+
+
+@contextmanager
+def serving(folder: str, **settings: str) -> Iterator[tuple[Client, int]]:
+    """The same, and its port."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port)]
@@ -44,7 +53,7 @@ def server(folder: str, **settings: str) -> Iterator[Client]:
     try:
         with Client(f"http://127.0.0.1:{port}") as client:
             wait(client)
-            yield client
+            yield client, port
     finally:
         process.terminate()
         process.wait(30)
@@ -168,10 +177,53 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         print(f"  {name}: {each:.0f} ms ({one / each:.2f} of the rate of one thread, {every / each:.2f} of all)")
 
 
+def processes(figures: dict[str, float]) -> None:
+    """Answers per second of a server with one process, of one with two, and of two servers on databases of their own,
+    in turn: ``http_two_processes_*`` is the rate of two processes over that of one, ``http_two_servers_*`` that of two
+    servers. Clients are in a process of their own, with so many connections.
+    """
+    ways: dict[str, list[str]] = {}
+    with ExitStack() as opened:
+        for name, counts in SERVERS.items():
+            ways[name] = []
+            for count in counts:
+                folder = opened.enter_context(tempfile.TemporaryDirectory())
+                client, port = opened.enter_context(serving(folder, processes=str(count)))
+                arm = {"name": "arm", "substructure": "ur5", "at": "world"}
+                client.create_tree({"name": "cell", "gravity": [0, 0, "-9.81"], "instances": [arm]})
+                ways[name].append(str(port))
+        sleep(5)  # until all processes answer
+        for kind, connections in (("evaluations", 16), ("trees", 8)):
+            rates: dict[str, list[float]] = {name: [] for name in ways}
+            for turn in range(TURNS + 1):  # the first one warms up
+                for name, ports in ways.items():
+                    rates[name].append(answers(kind, connections, f"turn{turn}", ports))
+            found = {name: median(each[1:]) for name, each in rates.items()}
+            print(f"{kind}, {connections} connections: " + ", ".join(f"{n} {rate:.1f}/s" for n, rate in found.items()))
+            figures[f"http_two_processes_{kind}"] = found["two processes"] / found["one process"]
+            figures[f"http_two_servers_{kind}"] = found["two servers"] / found["one process"]
+            print(
+                f"  two processes {figures[f'http_two_processes_{kind}']:.2f} times one,"
+                f" two servers {figures[f'http_two_servers_{kind}']:.2f} times"
+            )
+
+
+def answers(kind: str, connections: int, name: str, ports: Sequence[str]) -> float:
+    """Answers per second."""
+    command = [sys.executable, "-m", "benchmarks.load", kind, f"{SECONDS:g}", str(connections), name, *ports]
+    return int(subprocess.run(command, check=True, capture_output=True, text=True).stdout) / SECONDS
+
+
 def main() -> None:
     """Print the table; with --json FILE write the figures."""
-    arguments = options(__doc__).parse_args()
+    parser = options(__doc__)
+    parser.add_argument("--processes", action="store_true", help="only one process beside two")
+    arguments = parser.parse_args()
     figures: dict[str, float] = {}
+    processes(figures)
+    if arguments.processes:
+        keep(figures, arguments.json)
+        return
     with tempfile.TemporaryDirectory() as folder, server(folder) as client:
         figures["http_get_ms"] = milliseconds(lambda: client.substructure("puma560"), 200)
         print(f"GET a catalogue entry: {figures['http_get_ms']:.1f} ms")

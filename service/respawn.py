@@ -28,11 +28,13 @@ from dataclasses import dataclass, field
 from selectors import EVENT_READ, DefaultSelector
 from typing import Any
 
+from service import turns
 from service.lifetime import end_with
+from service.turns import Listener, Turns
 
 logger = logging.getLogger(__name__)
 
-#: of a server: process of its parent, its number, descriptors of the channel to the parent and of what that holds
+#: of a server: process of its parent, its number, descriptors of the channel to the parent, of turns, of what it holds
 VARIABLE = "_SUBSTRUCTURES_PARENT"
 MOST = 64  # descriptors
 #: seconds until a server that died is started again: none at first, more for one that dies young again and again
@@ -74,6 +76,8 @@ class _Parent:
         self.stopping = False
         self.status = 0
         self._selector = DefaultSelector()
+        self._shared = turns.new()
+        self._turns = Turns(self._shared)
         self._ended: dict[int, int] = {}  # exit statuses of processes that were waited for
 
     def run(self) -> int:
@@ -106,9 +110,9 @@ class _Parent:
     def _start(self, child: _Child) -> None:
         ours, theirs = socket.socketpair()
         with theirs:
-            for each in (theirs.fileno(), *self.held):
+            for each in (theirs.fileno(), self._shared, *self.held):
                 os.set_inheritable(each, True)
-            told = (os.getpid(), child.number, theirs.fileno(), *self.held)
+            told = (os.getpid(), child.number, theirs.fileno(), self._shared, *self.held)
             environment = {**os.environ, VARIABLE: " ".join(map(str, told))}
             # a group of its own: what a terminal sends to its group comes once, through here
             child.pid = os.posix_spawn(self.command[0], list(self.command), environment, setpgroup=0)
@@ -132,6 +136,7 @@ class _Parent:
     def _end(self, child: _Child) -> None:
         """A process has ended: by itself, or as it was told to; otherwise it is started again."""
         code = self._status_of(child)
+        self._turns.note(child.number)
         if code >= 0 or self.stopping or not self.held:
             self.status = max(self.status, code if code >= 0 else 128 - code)  # as shells tell it
             if not self.stopping:
@@ -183,6 +188,12 @@ class Kept:
     sockets: list[int] = field(default_factory=list)
     claim: int | None = None
     channel: socket.socket | None = None
+    turns: Turns | None = None
+
+    def note(self, count: int) -> None:
+        """So many connections are open."""
+        if self.turns is not None:
+            self.turns.note(self.number, count)
 
     @property
     def is_start(self) -> bool:
@@ -195,12 +206,12 @@ kept = Kept()
 
 def end_with_parent() -> None:
     """Let this process, a server that is kept, end with its parent, whatever it does."""
-    parent, number, channel, *held = map(int, os.environ[VARIABLE].split())
+    parent, number, channel, shared, *held = map(int, os.environ[VARIABLE].split())
     end_with(parent)
-    for each in (channel, *held):
+    for each in (channel, shared, *held):
         os.set_inheritable(each, False)
     faulthandler.enable()  # native code that fails tells where
-    kept.number, kept.channel = number, socket.socket(fileno=channel)
+    kept.number, kept.channel, kept.turns = number, socket.socket(fileno=channel), Turns(shared)
     for each in held:
         if stat.S_ISSOCK(os.fstat(each).st_mode):
             kept.sockets.append(each)
@@ -219,13 +230,13 @@ def listeners(host: str, port: int, claim: int | None = None, processes: int = 1
     """The sockets that the parent holds; at the first time new ones, for it to hold together with the descriptor
     ``claim``, and to start so many processes on. Raises OSError.
     """
-    if kept.sockets:
-        return [socket.socket(fileno=each) for each in kept.sockets]
-    sockets = bound(host, port)
-    if kept.channel is not None:
-        held = [each.fileno() for each in sockets] + ([] if claim is None else [claim])
+    if kept.channel is None or kept.turns is None:
+        return bound(host, port)
+    if not kept.sockets:
+        kept.sockets += [each.detach() for each in bound(host, port)]
+        held = kept.sockets + ([] if claim is None else [claim])
         socket.send_fds(kept.channel, [str(processes).encode()], held)
-    return sockets
+    return [Listener(each, kept.turns, kept.number) for each in kept.sockets]
 
 
 def bound(host: str, port: int) -> list[socket.socket]:

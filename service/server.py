@@ -128,6 +128,7 @@ class _Server(uvicorn.Server):
         """Listen; the loop accepts few connections at a stretch, while many may wait."""
         asyncio.get_running_loop().set_exception_handler(Complaints())
         await super().startup(sockets)
+        kept.note(0)
         for listener in (one for server in self.servers for one in server.sockets):
             with socket.socket(fileno=os.dup(listener.fileno())) as same:
                 same.listen(WAITING)
@@ -145,14 +146,14 @@ class _Server(uvicorn.Server):
 
 
 def _server(store: Store) -> uvicorn.Server:
-    settings, connections = store.settings, Connections(store.settings.limits_of_process)
+    settings, connections = store.settings, Connections(store.settings.limits_of_process, kept.note)
     return _Server(
         store,
         connections,
         uvicorn.Config(
             create_app(store),
             http=cast(type[asyncio.Protocol], partial(Connection, connections)),
-            backlog=AT_A_STRETCH,
+            backlog=AT_A_STRETCH if settings.processes == 1 else 1,
             host=settings.host,
             port=settings.port,
             log_config=None,

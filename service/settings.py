@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from service.turns import PROCESSES
 from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
 
@@ -94,7 +95,7 @@ class Settings(BaseModel):
     cache_nodes: int = Field(2_000_000, ge=0, le=2**62, description="operations of decoded programs kept in memory")
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
-    processes: int = Field(1, ge=1, le=256, description="processes that answer requests")
+    processes: int = Field(1, ge=1, le=PROCESSES, description="processes that answer requests")
     workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
     runner_user: str = Field("", description="user of the processes that compute jobs; empty: that of the server")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")

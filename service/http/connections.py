@@ -21,6 +21,7 @@ import logging
 import resource
 import socket
 from asyncio import AbstractEventLoop
+from collections.abc import Callable
 from contextvars import copy_context
 from ipaddress import IPv6Address, ip_address
 from typing import Any
@@ -44,8 +45,9 @@ _log = logging.getLogger(__name__)
 class Connections:
     """The open connections of a server, by address and in the order in which they came."""
 
-    def __init__(self, limits: Limits) -> None:
-        self.limits = limits
+    def __init__(self, limits: Limits, note: Callable[[int], None] = lambda _: None) -> None:
+        """``note`` is told how many there are."""
+        self.limits, self._note = limits, note
         descriptors, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
         # the other half: the database, runners, spooled bodies, and connections that were accepted a moment ago
         self.most = min(limits.connections, descriptors // 2)
@@ -62,6 +64,7 @@ class Connections:
         given_up = min(crowd, key=lambda each: each.left, default=None) if is_full else None
         same[connection] = None
         self._count += 1
+        self._note(self._count)
         if given_up is None or given_up.left == float("inf"):
             return not is_full
         given_up.end(too_many())
@@ -74,6 +77,7 @@ class Connections:
         if connection in same:
             del same[connection]
             self._count -= 1
+            self._note(self._count)
             if not same:
                 del self._open[connection.address]
 

@@ -17,10 +17,12 @@ from typing import Any
 import httpx2
 import pytest
 
+from service import turns
 from service.cli.main import main
 from service.database.connections import Database, DatabaseError
 from service.database.file import Claim
 from service.queries import idempotency
+from service.respawn import bound
 from service.settings import Limits, Settings
 from substructures.client import Client
 
@@ -52,7 +54,7 @@ def answering(server: Server) -> set[str]:
     """The numbers of the processes that answer new connections."""
     found = set[str]()
     for _ in range(10):
-        with contextlib.ExitStack() as opened:  # one that is open already makes a process hesitate before the next
+        with contextlib.ExitStack() as opened:  # whoever has fewer takes the next
             for _ in range(4):
                 client = opened.enter_context(httpx2.Client(timeout=60))
                 text = client.get(f"{server.address}/metrics").text
@@ -236,6 +238,40 @@ def test_limits_are_shared_out() -> None:
     share = Settings(limits=limits, processes=2).limits_of_process
     assert (share.connections, share.connections_per_address, share.event_streams) == (3, 128, 1)
     assert Settings(limits=limits).limits_of_process == limits
+
+
+def test_whoever_has_fewest_takes_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr(turns, "monotonic", lambda: now[0])
+    descriptor = turns.new()
+    shared, others = turns.Turns(descriptor), turns.Turns(descriptor)
+    os.close(descriptor)
+    [free] = bound("127.0.0.1", 0)
+    free.setblocking(False)
+    address = free.getsockname()
+    with turns.Listener(free.detach(), shared, 1) as listener, contextlib.ExitStack() as opened:
+
+        def is_taken() -> bool:
+            try:
+                opened.enter_context(listener.accept()[0])
+            except BlockingIOError:
+                return False
+            return True
+
+        for _ in range(4):
+            opened.enter_context(socket.create_connection(address))
+        shared.note(1, 0)
+        assert is_taken()  # nobody else is there
+        others.note(0, 1)
+        assert is_taken()  # as many as the other
+        assert not is_taken()
+        now[0] += turns.PATIENCE / 2
+        assert not is_taken()
+        now[0] += turns.PATIENCE
+        assert is_taken()  # the other one does not come
+        assert not is_taken()
+        others.note(0)  # it died
+        assert is_taken()
 
 
 def test_only_as_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

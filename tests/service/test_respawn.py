@@ -117,8 +117,9 @@ def test_told_to_end_when_it_is_dead(server: Server) -> None:
         assert server.process is not None
         for _ in range(2):  # after the second the next one is waited for
             until(lambda: len(server.serving()) == 1)
-            os.kill(server.serving()[0], signal.SIGKILL)
-            until(lambda: not server.serving())
+            [serving] = server.serving()
+            os.kill(serving, signal.SIGKILL)
+            until(lambda serving=serving: serving not in server.serving())
         server.process.send_signal(signal.SIGTERM)
         assert server.process.wait(30) == 128 + signal.SIGTERM
     assert "in 0.5 s" in server.log.read_text()
