@@ -92,6 +92,7 @@ class Writer(threading.Thread):
         return False
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
 def test_writes_of_all_processes_while_they_are_killed(kind: str, tmp_path: Path) -> None:
     """All that is acknowledged is there, once; the other process answers all the while, and a job ends."""
@@ -135,6 +136,7 @@ def test_writes_of_all_processes_while_they_are_killed(kind: str, tmp_path: Path
     assert "Traceback" not in log
 
 
+@pytest.mark.deep
 def test_no_second_server(tmp_path: Path) -> None:
     """Nor while one process, whichever, is dead, nor after each has been started again."""
     address = f"sqlite:///{tmp_path}/store.db"
@@ -168,6 +170,7 @@ def test_all_end_together(tmp_path: Path, how: signal.Signals, status: int) -> N
     assert not (tmp_path / "store.db-wal").exists()  # the last one has put the log away
 
 
+@pytest.mark.deep
 def test_one_that_ends_ends_all(tmp_path: Path) -> None:
     """And with the parent, however it dies."""
     with serving(f"sqlite:///{tmp_path}/store.db", tmp_path) as server:
@@ -181,6 +184,7 @@ def test_one_that_ends_ends_all(tmp_path: Path) -> None:
         server.start()
 
 
+@pytest.mark.deep
 def test_claims_of_others_stay(tmp_path: Path) -> None:
     """A process that starts again forgets no idempotency key that another one is at work under."""
     address = f"sqlite:///{tmp_path}/store.db"
