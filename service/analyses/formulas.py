@@ -5,7 +5,7 @@ Options are texts by name, as in a query: ``{"controls": ("tau.arm.q1",), "runni
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -82,15 +82,19 @@ def made(source: Source, name: str, options: Options) -> Made:
     """
     quantity = _QUANTITIES[name]
     given = {key: texts for key, texts in options.items() if texts}
-    for key in given:
-        if key not in quantity.options:
-            known = ", ".join(quantity.options) or "none"
-            message = f"'{name}' has no option '{key}'; it has {known}"
-            raise InvalidDocument.at(f"/query/{key}", "unknown-option", message)
+    check_options(name, given, quantity.options)
     found = _remembered(source, quantity, given)
     if not quantity.outputs:
         return found
     return Made(found.program.select(list(quantity.outputs)), found.members, found.value)
+
+
+def check_options(name: str, given: Iterable[str], known: Sequence[str] = ()) -> None:
+    """Raise InvalidDocument for an option that a quantity does not have."""
+    for key in given:
+        if key not in known:
+            message = f"'{name[:80]}' has no option '{key}'; it has {', '.join(known) or 'none'}"
+            raise InvalidDocument.at(f"/query/{key}", "unknown-option", message)
 
 
 def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:

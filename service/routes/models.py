@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
-from service.analyses.formulas import QUANTITIES, Options
+from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, media_type, needs
@@ -111,6 +111,7 @@ def _quantity(
         tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
         return conditional(request, tag, is_pinned(ref), lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
+    check_options(quantity, options)
     tag = etag(tree.digest, quantity, *style.identity)
 
     def make() -> Answer:

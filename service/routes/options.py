@@ -8,7 +8,7 @@ from fastapi import Depends, Query
 
 from service.analyses.formulas import OPTIONS, Options
 
-Texts = list[Annotated[str, Query(max_length=10_000)]] | None
+Texts = list[Annotated[str, Query(max_length=5_000)]] | None
 
 
 def _query(name: str) -> Any:

@@ -21,7 +21,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 POSE = "pose: a number for every coordinate, in order, separated by commas; rad or m, or with a unit: 30 deg"
-Q = Annotated[str | None, Query(max_length=100_000, description=POSE)]
+Q = Annotated[str | None, Query(max_length=50_000, description=POSE)]
 DRAWN: dict[int | str, dict[str, Any]] = {
     200: {"description": "The picture", "content": {MEDIA_TYPE: {"schema": {"type": "string"}}}}
 }

@@ -19,7 +19,7 @@ async def style_of(
         str, Query(description="compact (shared subexpressions) or expanded", json_schema_extra={"enum": [*FORMS]})
     ] = "compact",
     bind: Annotated[
-        str, Query(max_length=100_000, description="name:value,... or defaults; a value may be 1200 mm")
+        str, Query(max_length=50_000, description="name:value,... or defaults; a value may be 1200 mm")
     ] = "",
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:

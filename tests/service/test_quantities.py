@@ -217,3 +217,9 @@ def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypa
             assert filled.get("/v1/trees/cell").status_code == 200
     finally:
         let_go.set()
+
+
+def test_options_of_other_quantities_are_refused(filled: TestClient) -> None:
+    answer = filled.get("/v1/trees/cell/metric?inputs=tau.arm.q")
+    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "unknown-option")
+    assert answer.json()["errors"][0]["pointer"] == "/query/inputs"
