@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from service import keys
 from service.operations import at_hand
 from service.store import Store
 
@@ -82,6 +83,17 @@ def test_faults_are_the_same(warm: TestClient, threads: list[object], fault: dic
     assert (quick.status_code, quick.json()["errors"]) == (422, slow.json()["errors"])
     assert len(threads) == 2
     assert warm.post(URL, content=b"{", headers={"Content-Type": "application/json"}).status_code == 422
+
+
+def test_only_keys_that_may_read_are_answered(warm: TestClient, store: Store, threads: list[object]) -> None:
+    warm.post(URL, json=STATE)
+    with store.database.write() as connection:
+        reader, writer = (keys.create(connection, "test", [scope], None) for scope in ("read", "write"))
+    before = len(threads)
+    for key, status in (("", 401), ("sub_x_y", 401), (writer, 403), (reader, 200)):
+        answer = warm.post(URL, json=STATE, headers={"Authorization": f"Bearer {key}"} if key else {})
+        assert answer.status_code == status
+    assert len(threads) == before
 
 
 def test_it_is_counted_under_its_route(warm: TestClient) -> None:

@@ -14,8 +14,9 @@ from sqlalchemy import Engine, event
 
 from service import claims
 from service.app import open_store
-from service.operations import trees
+from service.operations import jobs, trees
 from service.queries import idempotency
+from service.refusals import StaleError
 from service.runtime import COMPUTED, Computed
 from service.settings import Settings
 
@@ -164,6 +165,23 @@ def test_a_computation_becomes_one_job(filled: TestClient) -> None:
     assert filled.post("/v1/trees/cell/evaluations", json=body, headers=KEY).content == first.content
     other = filled.post("/v1/trees/cell/evaluations", json={**body, "q": [0.2]}, headers=headers)
     assert (other.status_code, other.json()["code"]) == (422, "idempotency-key-reused")
+
+
+def test_a_job_that_is_tried_again_keeps_its_key(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Others have changed something meanwhile: the claim is ours already."""
+    submit, tries = jobs.submit, list[int]()
+
+    def stale(*given: Any) -> Any:
+        tries.append(1)
+        if len(tries) == 1:
+            raise StaleError
+        return submit(*given)
+
+    monkeypatch.setattr(jobs, "submit", stale)
+    body = {"quantities": ["metric"], "q": [0.1]}
+    headers = {**KEY, "Prefer": "respond-async"}
+    first, second = (filled.post("/v1/trees/cell/evaluations", json=body, headers=headers) for _ in range(2))
+    assert (first.status_code, second.content, len(tries)) == (202, first.content, 2)
 
 
 def test_a_process_remembers_some_computations() -> None:

@@ -63,6 +63,21 @@ def test_evaluations_do_not_wait_for_derivations(filled: TestClient, store: Stor
     assert all(each.result(10) for each in waiting)
 
 
+def test_what_has_waited_too_long_is_not_begun(
+    client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[Any] = []
+    monkeypatch.setattr("service.operations.catalogue.derive", lambda *given: begun.append(given))
+    store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.3)})
+    gate = Event()
+    waiting = store.runtime.deriving.submit("other", lambda: gate.wait(10))
+    assert client.post("/v1/substructures", json=chain(2)).status_code == 202
+    gate.set()
+    assert waiting.result(10)
+    store.runtime.deriving.submit("local", lambda: None).result(10)  # whatever waited before it has had its turn
+    assert begun == []
+
+
 def test_what_is_large_becomes_a_job_before_it_is_begun(
     client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
