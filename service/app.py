@@ -101,6 +101,7 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
+        telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics and the log are our own
         responses=openapi.PROBLEM,
     )
     routers = [module.router for module in ROUTES]

@@ -49,6 +49,7 @@ class Metrics:
         self._seconds = Histogram(
             "substructures_request_seconds", "Time to answer", ["method", "route"], registry=self._registry
         )
+        self._series: dict[tuple[str, str, int], tuple[Counter, Histogram]] = {}
         self._cache = Counter(
             "substructures_cache", "Look-ups of decoded programs", ["kind", "result"], registry=self._registry
         )
@@ -66,8 +67,12 @@ class Metrics:
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count a request; ``route`` is the pattern, so that the number of series stays small."""
         known = method if method in ("GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH") else "other"
-        self._requests.labels(known, route, str(status)).inc()
-        self._seconds.labels(known, route).observe(seconds)
+        series = self._series.get((known, route, status))
+        if series is None:
+            series = self._requests.labels(known, route, str(status)), self._seconds.labels(known, route)
+            self._series[known, route, status] = series
+        series[0].inc()
+        series[1].observe(seconds)
 
     def cache(self, kind: str, hit: bool) -> None:
         """Count a look-up in the cache of decoded programs."""

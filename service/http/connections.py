@@ -17,6 +17,7 @@ which only hold connections lock nobody out. Where all are being served the newc
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import resource
 import socket
@@ -24,7 +25,7 @@ from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from contextvars import copy_context
 from ipaddress import IPv6Address, ip_address
-from typing import Any
+from typing import Any, cast
 
 import httptools
 from fastapi import Response
@@ -38,6 +39,7 @@ from service.http.request_id import begin_request
 from service.refusals import Refused
 from service.settings import Limits
 
+AT_ONCE = 2**16  # bytes of a body that leave with its head
 RATE = 500  # bytes a second that a body has to have in the long run
 _log = logging.getLogger(__name__)
 
@@ -171,6 +173,7 @@ class Connection(HttpToolsProtocol):
         self._is_open, self._unused = True, 0
         self._waits, self.patience = "", float("inf")  # until time passes it is we who are waited for
         super().on_headers_complete()
+        self.cycle.transport = cast(asyncio.Transport, Joined(self.loop, self.transport))
 
     def on_body(self, body: bytes) -> None:
         """Note that a body goes on."""
@@ -242,6 +245,39 @@ class Connection(HttpToolsProtocol):
             "rest": limits.body_seconds,
             "answer": limits.answer_seconds,
         }.get(waits, float("inf"))
+
+
+class Joined:
+    """The transport of an answer, whose head leaves with the first piece of its body: two sends would cost twice."""
+
+    def __init__(self, loop: AbstractEventLoop, transport: asyncio.Transport) -> None:
+        self._loop, self._transport, self._held = loop, transport, b""
+        self._is_begun = False
+
+    def write(self, data: bytes | bytearray | memoryview) -> None:
+        """Hold the first one back, at most until the loop goes on."""
+        if not self._is_begun:
+            self._is_begun, self._held = True, bytes(data)
+            self._loop.call_soon(self._send)
+        elif len(data) <= AT_ONCE:
+            self._send(data)
+        else:
+            self._send()
+            self._transport.write(data)
+
+    def _send(self, more: bytes | bytearray | memoryview = b"") -> None:
+        held, self._held = self._held, b""
+        if held or more:
+            self._transport.write(b"".join((held, more)) if held else more)
+
+    def is_closing(self) -> bool:
+        """As of the connection."""
+        return self._transport.is_closing()
+
+    def close(self) -> None:
+        """Send, and close."""
+        self._send()
+        self._transport.close()
 
 
 def _too_long_head(limit: int) -> Refused:

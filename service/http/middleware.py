@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from time import perf_counter
 
-from starlette.datastructures import Headers, MutableHeaders
+from starlette.datastructures import Headers
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -16,6 +16,7 @@ from service.refusals import Refused
 
 #: nothing that is served is anything else than it says, or a page that may load something, unless it says so
 GUARDED = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}
+_ID, _GUARDS = b"x-request-id", [(name.lower().encode(), value.encode()) for name, value in GUARDED.items()]
 GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
@@ -35,6 +36,7 @@ class Conventions:
 
     async def _serve(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = Headers(scope=scope)
+        host = headers.get("host", "")
         identifier = begin_request(headers.get("x-request-id"))
         start = perf_counter()
         status = 0
@@ -44,20 +46,18 @@ class Conventions:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                told = MutableHeaders(scope=message)
-                told["X-Request-Id"] = identifier
-                for name, value in GUARDED.items():
-                    told.setdefault(name, value)
+                given = [pair for pair in message.get("headers", ()) if pair[0] != _ID]
+                told = {name for name, _ in given}
+                guards = [pair for pair in _GUARDS if pair[0] not in told]
+                message["headers"] = [*given, (_ID, identifier.encode()), *guards]
             await send(message)
 
         try:
-            if self._accepts(headers.get("host", "")):
+            if self._accepts(host):
                 await self.app(scope, receive, send_with_id)
             else:
-                named = headers.get("host", "")[:80]
-                detail = (
-                    f"the Host header names '{named}', which is not served here; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
-                )
+                detail = f"the Host header names '{host[:80]}', which is not served here"
+                detail += "; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
                 raise Refused(400, "host-not-allowed", detail)
         except ClientDisconnect:  # it went before it had sent all, and nobody is there to be told
             status = status or GONE

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from service.answers import JSON, Answer, Stream
+from service.answers import Answer
 from service.operations.exchange import TreeEvaluation
 from service.schemas.numbers import EvaluationRequest
 from service.store import Store
@@ -40,19 +40,22 @@ class AtHand:
         return sum(len(program) for program, _ in self.programs.values())
 
 
-def answer(store: Store, ref: str, body: bytes) -> Answer | Stream | None:
-    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.whole`."""
+def answer(store: Store, ref: str, body: bytes) -> Answer | None:
+    """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.json`."""
     data = read_json(body)
     names = data.get("quantities") if isinstance(data, Mapping) else None
     found: AtHand | None = store.caches.evaluations.get(_key(ref, names)) if isinstance(names, list) else None
     if found is None or not found.is_ready(store):
         return None
-    request = EvaluationRequest.read(data)
-    return found.evaluation.whole(request, JSON) if longest(request.arguments()) == 1 else None
+    arguments = EvaluationRequest.read(data).arguments()
+    return found.evaluation.json(arguments) if longest(arguments) == 1 else None
 
 
 def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:
-    """Keep what answers the same quantities of a pinned tree for another state, if that is short work."""
+    """Keep what answers the same quantities of a pinned tree for another state, if that is short work.
+
+    The size of one state was checked for the request that comes to be remembered.
+    """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
     if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures:

@@ -26,6 +26,8 @@ _EXTRA = "this server has no Arrow: install it with the extra 'substructures[arr
 
 def choose_media_type(accept: str, sent: str) -> str:
     """The media type of the answer; that of the request if all are welcome. Raises Refused 406."""
+    if accept in ("*/*", sent) and sent in (JSON, arrays.MEDIA_TYPE):
+        return sent
     for pattern in by_preference(accept or "*/*"):
         found = next((media for media in (sent, *MEDIA_TYPES) if _matches(pattern, media)), None)
         if found == arrow.MEDIA_TYPE and not arrow.is_available():
@@ -74,11 +76,14 @@ class TreeEvaluation:
         """The answer to one request in one piece, as JSON or npz. Raises as :meth:`answer`."""
         arguments = request.arguments()
         evaluations.check_size(self.sources, request.quantities, longest(arguments), self.limits)
-        result = self._evaluated(arguments)
         if wanted == arrays.MEDIA_TYPE:
-            file = arrays.as_npz(result.plain(self.digest))
+            file = arrays.as_npz(self._evaluated(arguments).plain(self.digest))
             return Stream(iter(file.pieces), {"Content-Type": wanted, "Content-Length": str(file.size)})
-        return json_answer(evaluations.as_json(result, self.digest))
+        return self.json(arguments)
+
+    def json(self, arguments: Mapping[str, Any]) -> Answer:
+        """The answer to arguments of a size that was checked, as JSON. Raises InvalidInput, MissingValue."""
+        return json_answer(evaluations.as_json(self._evaluated(arguments), self.digest))
 
     def _arrow(self, requests: Iterator[EvaluationRequest]) -> Iterator[memoryview | bytes]:
         first = next(requests)

@@ -28,11 +28,10 @@ def read_json(data: bytes) -> Any:
     Raises :class:`InvalidDocument` with a pointer and, in the message, line and column.
     """
     text = decoded(data)
-    _check_nesting(text)
+    if text.count("[") + text.count("{") > MAX_DEPTH:  # otherwise nothing can be nested deeper
+        _check_nesting(text)
     try:
-        value = json.loads(
-            text, parse_int=integer, parse_float=decimal, parse_constant=not_finite, object_pairs_hook=_mapping
-        )
+        value = _DECODER.decode(text)
     except json.JSONDecodeError as error:
         raise fault_at(error.lineno, error.colno, "syntax", error.msg) from None
     except (_DuplicateKeyError, RefusedNumberError):
@@ -47,6 +46,11 @@ def _mapping(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(result) != len(pairs):
         raise _DuplicateKeyError
     return result
+
+
+_DECODER = json.JSONDecoder(
+    parse_int=integer, parse_float=decimal, parse_constant=not_finite, object_pairs_hook=_mapping
+)
 
 
 def _words(text: str) -> Iterator[tuple[str, int, int]]:

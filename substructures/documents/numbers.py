@@ -25,6 +25,8 @@ def integer(text: str) -> int:
 
 def decimal(text: str) -> Decimal:
     """The exact decimal of a literal. Raises :class:`RefusedNumberError` when it is too long."""
+    if len(text) <= MAX_DIGITS and text.isascii() and "e" not in text and "E" not in text:
+        return Decimal(text)
     mantissa, _, exponent = text.lower().partition("e")
     # the exponent is bounded before Decimal sees it: 1e999999999 must never be written out
     if len(exponent.lstrip("+-0")) > 4 or len(mantissa) > 2 * MAX_DIGITS:

@@ -222,7 +222,9 @@ def _values(
     needed = {field: name for name in reversed(quantities) for field in QUANTITIES[name].requires}
     if "qdd" in needed and states.qdd is None and model.dof:
         raise InvalidArgument.at("/qdd", "missing", f"{needed['qdd']} needs accelerations 'qdd'")
-    values = known_values(model, given, states, sources.parameters(quantities))
+    parameters = sources.parameters(quantities)
+    defaults = sources.defaults if parameters is model.parameters else None
+    values = known_values(model, given, states, parameters, defaults)
     if "along" in needed:
         values |= direction_values(model, along, states)
     return values

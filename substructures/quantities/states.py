@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
@@ -84,23 +85,29 @@ def argument_units(model: Model) -> dict[str, PlaceUnits]:
 def longest(given: ArgumentsByName) -> int:
     """The length of the longest list of states, times, inputs or parameters, at least 1; nothing is checked."""
     lengths = [1, _entries(given.get("t"))]
-    for name in STATE:
-        rows = given.get(name)
-        rows = rows.get("value") if isinstance(rows, Mapping) else rows
-        if isinstance(rows, list | tuple | np.ndarray) and _entries(rows) and _entries(rows[0]):
-            lengths.append(len(rows))
     for name in (*STATE, "inputs", "parameters"):
-        columns = given.get(name)
-        if isinstance(columns, Mapping) and (name not in STATE or "value" not in columns):
-            lengths += map(_entries, columns.values())
+        found = given.get(name)
+        if found is None:
+            continue
+        if isinstance(found, Mapping) and (name not in STATE or "value" not in found):
+            lengths += map(_entries, found.values())
+        elif name in STATE:
+            rows = found.get("value") if isinstance(found, Mapping) else found
+            if isinstance(rows, list | tuple | np.ndarray) and _entries(rows) and _entries(rows[0]):
+                lengths.append(len(rows))
     return max(lengths)
 
 
 def _entries(given: Any) -> int:
     """The length of a list, also of one with a unit, 0 if it is none."""
-    if isinstance(given, Mapping):
-        given = given.get("value")
-    return len(given) if isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim) else 0
+    if isinstance(given, list | tuple):
+        return len(given)
+    if isinstance(given, np.ndarray):
+        return len(given) if given.ndim else 0
+    # most are numbers, whose types are told sooner than that they are no mapping
+    if isinstance(given, float | int | Decimal) or not isinstance(given, Mapping) or "value" not in given:
+        return 0
+    return 0 if isinstance(given["value"], Mapping) else _entries(given["value"])
 
 
 def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
@@ -147,10 +154,14 @@ def symbol_values(model: Model, given: ArgumentsByName, states: States, needs: I
 
 
 def known_values(
-    model: Model, given: ArgumentsByName, states: States, parameters: Mapping[str, Mapping[str, Any]]
+    model: Model,
+    given: ArgumentsByName,
+    states: States,
+    parameters: Mapping[str, Mapping[str, Any]],
+    defaults: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
     """Values of coordinates, velocities, accelerations if given, time, inputs, and of ``parameters`` with a default or
-    a value among the arguments. Raises InvalidArgument.
+    a value among the arguments; ``defaults``: these, where they are at hand. Raises InvalidArgument.
     """
     count = states.count
     values: dict[str, Any] = {}
@@ -165,13 +176,17 @@ def known_values(
         values["t"] = np.broadcast_to(values["t"], (count,))
     inputs = model.input_names
     values |= dict.fromkeys(inputs, 0.0)
-    # default values, correctly rounded
-    values |= {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
+    values |= default_numbers(parameters) if defaults is None else defaults
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
     if given.get("parameters") is not None:
         units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
         values |= given_values(given["parameters"], "parameters", "/parameters", count, parameters, units)
     return values
+
+
+def default_numbers(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """The default values of parameters that have one, correctly rounded, in SI."""
+    return {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
 
 
 def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import prod
 from typing import Any
 
@@ -14,6 +15,7 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.states import default_numbers
 from substructures.tree.model import Model, require_stored
 from substructures.tree.model_outputs import KINEMATICS
 from substructures.tree.plausibility import Plausibility
@@ -81,6 +83,11 @@ class Sources:
     def judge(self) -> Plausibility | None:
         """What says whether values are plausible; None of a model out of a store without its parts."""
         return self.model.plausibility if self.plausibility is None else self.plausibility()
+
+    @cached_property
+    def defaults(self) -> Mapping[str, float]:
+        """The default values of the model's parameters."""
+        return default_numbers(self.model.parameters)
 
     def program(self, source: str) -> Program:
         """The program of this name. Raises TooLarge, and InvalidInput for closures and trees without their parts."""
