@@ -7,7 +7,6 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
 ::
 
     substructures --< versions >-- parts --- programs
-          |                          | \\--< formulas
           '--< aliases --< history   '--< tags
     tree_names --< trees --< tree_parts >-- parts
                      '------------------- programs
@@ -75,6 +74,11 @@ parts = Table(  # a derived definition: everything that depends on its content a
     _text("operations"),
     _text("certificate"),
     _text("created"),
+    # the index of the formulas, JSON, of which the view ``formulas`` makes a row for each
+    Column("outputs", Text, nullable=False, server_default="[]"),  # [quantity, output, shape of a formula, symmetry]
+    Column(
+        "formulas", Text, nullable=False, server_default="[]"
+    ),  # [place in outputs, body, coordinate, entry, operations]
 )
 
 tags = Table(
@@ -82,22 +86,6 @@ tags = Table(
     metadata,
     _text("part", ForeignKey("parts.digest"), primary_key=True),
     _text("tag", primary_key=True),
-)
-
-formulas = Table(  # one row for every stored formula of a part
-    "formulas",
-    metadata,
-    _text("part", ForeignKey("parts.digest"), primary_key=True),
-    _number("position", primary_key=True),
-    _text("quantity"),
-    _text("body", nullable=True),
-    _text("coordinate", nullable=True),
-    _text("shape"),
-    _text("symmetry"),
-    _number("operations"),
-    _text("output"),
-    _text("entry"),  # leading index of the formula within the output, JSON
-    Index(None, "part", "quantity", "body", "coordinate"),
 )
 
 substructures = Table(  # one row a name; locked while a version number is allocated

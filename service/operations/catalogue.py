@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from service.database.connections import Connection
 from service.paging import read_token, write_token
 from service.queries import aliases, catalogue, content
+from service.queries.formulas import FormulaRow
 from service.references import ALIAS, Reference, parse_reference
 from service.refusals import Refused, not_found, unprocessable
 from service.store import Store
@@ -57,12 +58,12 @@ def prepare(store: Store, definition: Definition) -> PartSubmission:
 def store_part(connection: Connection, part: PartContent) -> None:
     """Write a part with its program and formulas; content that is there already stays as it is."""
     content.put_program(connection, part.row["program"], part.program, part.nodes)
-    content.put_part(connection, part.row, part.tags, [content.FormulaRow(*values) for values in part.formulas])
+    content.put_part(connection, part.row, part.tags, [FormulaRow(*values) for values in part.formulas])
 
 
 def mend_part(connection: Connection, part: PartContent) -> None:
     """Write a part that was derived anew over what is stored."""
-    formulas = [content.FormulaRow(*values) for values in part.formulas]
+    formulas = [FormulaRow(*values) for values in part.formulas]
     content.replace_part(connection, part.row, part.program, part.nodes, formulas)
 
 

@@ -13,7 +13,7 @@ from service.analyses.binding import bound
 from service.analyses.printing import Style, check_quantity, described, model_quantity, quantities, text_of
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
-from service.queries.content import FormulaRow
+from service.queries.formulas import FormulaRow
 from service.refusals import unprocessable
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part

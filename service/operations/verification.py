@@ -11,6 +11,7 @@ from service.database.packed import pack
 from service.integrity import checked, digest_of
 from service.operations.catalogue import mend_part
 from service.queries import catalogue, content, trees
+from service.queries.formulas import FormulaRow, list_formulas
 from service.queries.trees import Tree
 from service.refusals import Refused
 from service.summaries import part_content, tree_summary
@@ -107,7 +108,7 @@ def _check_part(connection: Connection, digest: str) -> None:
     wrong = [name for name in FOLLOWS if row[name] != expected.row[name]]
     if wrong:
         raise ValueError(f"what is stored beside its formulas is wrong: {', '.join(wrong)}")
-    if content.list_formulas(connection, digest) != [content.FormulaRow(*values) for values in expected.formulas]:
+    if list_formulas(connection, digest) != [FormulaRow(*values) for values in expected.formulas]:
         raise ValueError("the index of its formulas is wrong")
 
 

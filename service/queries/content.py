@@ -1,4 +1,4 @@
-"""Content by digest: programs, parts and their formulas. Immutable; inserting twice changes nothing."""
+"""Content by digest: programs and parts. Immutable; inserting twice changes nothing."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, delete, insert, select, update
+from sqlalchemy import Connection, select, update
 
 from service.database.packed import unpack
-from service.database.tables import formulas, parts, programs, tags
+from service.database.tables import parts, programs, tags
 from service.integrity import checked, missing, reading
 from service.queries.common import insert_missing, now
+from service.queries.formulas import FormulaRow, packed
 from service.queries.uploads import get_upload
 
 
@@ -22,21 +23,6 @@ class StoredPart:
     definition: bytes
     program: bytes
     certificate: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class FormulaRow:
-    """One stored formula; ``shape`` and ``entry`` (its leading index within the output) are JSON."""
-
-    position: int
-    quantity: str
-    body: str | None
-    coordinate: str | None
-    shape: str
-    symmetry: str
-    operations: int
-    output: str
-    entry: str
 
 
 def put_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
@@ -60,14 +46,8 @@ def put_part(
     connection: Connection, row: Mapping[str, Any], tag_names: Sequence[str], formula_rows: Sequence[FormulaRow]
 ) -> None:
     """Store a part whose program is stored already, with its tags and formulas, unless it is there."""
-    if not insert_missing(connection, parts, [{**row, "created": now()}]):
-        return
-    digest = row["digest"]
-    insert_missing(connection, tags, [{"part": digest, "tag": tag} for tag in tag_names])
-    if formula_rows:
-        names = FormulaRow.__slots__
-        values = [{"part": digest, **{name: getattr(formula, name) for name in names}} for formula in formula_rows]
-        connection.execute(insert(formulas), values)
+    if insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}]):
+        insert_missing(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
 
 
 def replace_part(
@@ -78,14 +58,9 @@ def replace_part(
     formula_rows: Sequence[FormulaRow],
 ) -> None:
     """Put a part that was derived anew in the place of what is stored under its digest, with its packed program."""
-    digest = row["digest"]
     replace_program(connection, row["program"], program, nodes)
-    connection.execute(update(parts).where(parts.c.digest == digest).values(**row))
-    connection.execute(delete(formulas).where(formulas.c.part == digest))
-    if formula_rows:
-        names = FormulaRow.__slots__
-        values = [{"part": digest, **{name: getattr(formula, name) for name in names}} for formula in formula_rows]
-        connection.execute(insert(formulas), values)
+    chosen = update(parts).where(parts.c.digest == row["digest"])
+    connection.execute(chosen.values(**row, **packed(formula_rows)))
 
 
 def replace_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
@@ -130,21 +105,3 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
         found = get_upload(connection, digest)
         return None if found is None else checked("uploaded states", digest, found)
     return found
-
-
-def list_formulas(
-    connection: Connection,
-    part: str,
-    quantities: Sequence[str] = (),
-    body: str | None = None,
-    coordinate: str | None = None,
-) -> list[FormulaRow]:
-    """The stored formulas of a part in their order: all, or those of these quantities, body and coordinate."""
-    wanted = {"body": body, "coordinate": coordinate}
-    query = select(*(formulas.c[name] for name in FormulaRow.__slots__)).where(formulas.c.part == part)
-    if quantities:
-        query = query.where(formulas.c.quantity.in_(quantities))
-    for name, value in wanted.items():
-        if value is not None:
-            query = query.where(formulas.c[name] == value)
-    return [FormulaRow(*row) for row in connection.execute(query.order_by(formulas.c.position))]

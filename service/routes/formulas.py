@@ -11,7 +11,7 @@ from service.http.requests import StoreOf, needs
 from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
-from service.queries import content
+from service.queries import formulas as index
 from service.references import is_pinned
 from service.refusals import not_found
 from service.routes.bodies import printed
@@ -32,7 +32,7 @@ def list_formulas(ref: str, request: Request, store: StoreOf) -> Response:
     """The index of the stored formulas."""
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
-        rows = content.list_formulas(connection, version.digest)
+        rows = index.list_formulas(connection, version.digest)
     tag = etag(version.digest, "formulas")
     return conditional(request, tag, is_pinned(ref), lambda: json_answer(dump(formulas_view(version, rows))))
 
@@ -52,7 +52,7 @@ def get_formula(
     """The formulas of one quantity, all or those of one body, coordinate and component."""
     with store.database.read() as connection:
         version = catalogue.find(connection, ref)
-        rows = content.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
+        rows = index.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
         part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, body, coordinate, component)
     chosen = models.part_formulas(part, rows, wanted, first_index(style.format))

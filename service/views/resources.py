@@ -11,7 +11,7 @@ from service.addresses import BASE, tree_path, version_path
 from service.operations.catalogue import Page
 from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.catalogue import Version
-from service.queries.content import FormulaRow
+from service.queries.formulas import FormulaRow
 from service.queries.trees import Tree
 from substructures.expr.unit_check import Notice
 from substructures.part.parameters import uncounted

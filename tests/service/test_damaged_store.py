@@ -198,7 +198,7 @@ def other_defaults(connection: sqlite3.Connection) -> None:
 
 
 def other_index(connection: sqlite3.Connection) -> None:
-    connection.execute("UPDATE formulas SET body = 'nose' WHERE body = 'rod' AND output = 'R'")
+    connection.execute("""UPDATE parts SET formulas = replace(formulas, '"rod"', '"nose"')""")
 
 
 def other_columns(connection: sqlite3.Connection) -> None:

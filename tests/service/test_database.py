@@ -36,7 +36,7 @@ def test_migrated_schema_is_the_one_in_the_code(database: Database) -> None:
 def test_migrating_again_changes_nothing(database: Database) -> None:
     upgrade(database.writer)
     with database.read() as connection:
-        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0007"]
+        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0008"]
 
 
 def test_newer_databases_are_refused(tmp_path: Path) -> None:

@@ -1,0 +1,85 @@
+"""The index of a part's formulas: two columns of JSON, of which the view ``formulas`` makes a row for each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+from sqlalchemy import Connection, select
+
+from service.database.tables import parts
+from service.integrity import reading
+
+
+@dataclass(frozen=True, slots=True)
+class FormulaRow:
+    """One stored formula; ``shape`` and ``entry`` (its leading index within the output) are JSON."""
+
+    position: int
+    quantity: str
+    body: str | None
+    coordinate: str | None
+    shape: str
+    symmetry: str
+    operations: int
+    output: str
+    entry: str
+
+
+def packed(rows: Sequence[FormulaRow]) -> dict[str, str]:
+    """The columns for formulas in their order: what those of an output have in common, and what each has for itself."""
+    outputs = list(dict.fromkeys((row.quantity, row.output, row.shape, row.symmetry) for row in rows))
+    number = {output: k for k, output in enumerate(outputs)}
+    common = [(quantity, output, orjson.Fragment(shape), symmetry) for quantity, output, shape, symmetry in outputs]
+    own = [
+        (
+            number[row.quantity, row.output, row.shape, row.symmetry],
+            row.body,
+            row.coordinate,
+            orjson.Fragment(row.entry),
+            row.operations,
+        )
+        for row in rows
+    ]
+    return {"outputs": _json(common), "formulas": _json(own)}
+
+
+def list_formulas(
+    connection: Connection,
+    part: str,
+    quantities: Sequence[str] = (),
+    body: str | None = None,
+    coordinate: str | None = None,
+) -> list[FormulaRow]:
+    """The stored formulas of a part in their order: all, or those of these quantities, body and coordinate.
+
+    Raises Refused (``damaged-content``).
+    """
+    stored = connection.execute(select(parts.c.outputs, parts.c.formulas).where(parts.c.digest == part)).first()
+    if stored is None:
+        return []
+    with reading("the index of the formulas of a part", part):
+        rows = _unpacked(orjson.loads(stored.outputs), orjson.loads(stored.formulas))
+    return [
+        row
+        for row in rows
+        if (not quantities or row.quantity in quantities)
+        and body in (None, row.body)
+        and coordinate in (None, row.coordinate)
+    ]
+
+
+def _unpacked(outputs: list[list[Any]], formulas: list[list[Any]]) -> list[FormulaRow]:
+    common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in outputs]
+    rows = []
+    for position, (number, body, coordinate, entry, operations) in enumerate(formulas):
+        quantity, output, shape, symmetry = common[number]
+        place = position, quantity, body, coordinate
+        rows.append(FormulaRow(*place, shape, symmetry, operations, output, _json(entry)))
+    return rows
+
+
+def _json(value: object) -> str:
+    return orjson.dumps(value).decode()

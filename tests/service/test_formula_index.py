@@ -1,0 +1,136 @@
+"""The index of formulas: its rows for whoever reads the store, and stores of older versions, killed or not."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sqlalchemy as sa
+
+from service.database.connections import Database
+from service.database.migrate import upgrade
+from service.database.tables import metadata
+from service.operations.catalogue import store_part
+from service.operations.verification import verify_all
+from service.queries.formulas import FormulaRow, list_formulas
+from service.summaries import PartContent, part_content
+from substructures import Definition, catalogue, derive
+
+from .databases import fresh
+
+NAMES = ("puma560", "free-body", "parallel-gripper", "camera")
+COLUMNS = ("position", "quantity", "body", "coordinate", "shape", "symmetry", "operations", "output", "entry")
+VIEW = sa.table("formulas", *map(sa.column, ("part", *COLUMNS)))
+KILLED = """
+import os, signal, sys
+import sqlalchemy as sa
+from service.database.connections import Database
+@sa.event.listens_for(sa.engine.Engine, "before_cursor_execute")
+def kill(connection, cursor, statement, *_):
+    if statement.split()[:3] == sys.argv[2].split():
+        os.kill(os.getpid(), signal.SIGKILL)
+Database(sys.argv[1])
+"""
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def address(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    with fresh(request.param, tmp_path) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def contents() -> list[PartContent]:
+    return [part_content(derive(Definition.read(catalogue.load(name)))) for name in NAMES]
+
+
+def rows_of(connection: sa.Connection, part: str) -> list[FormulaRow]:
+    """Out of the table of older versions, or the view."""
+    query = sa.select(*(VIEW.c[name] for name in COLUMNS)).where(VIEW.c.part == part).order_by(VIEW.c.position)
+    return [FormulaRow(*row) for row in connection.execute(query)]
+
+
+def old_store(address: str, contents: list[PartContent]) -> None:
+    """A store of revision 0007 with these parts."""
+    engine = sa.create_engine(address)
+    upgrade(engine, "0007")
+    with engine.begin() as connection:
+        for content in contents:
+            program = {"digest": content.row["program"], "content": content.program, "nodes": content.nodes}
+            connection.execute(sa.insert(metadata.tables["programs"]).values(**program, created="then"))
+            old = sa.table("parts", *map(sa.column, (*content.row, "created")))
+            connection.execute(sa.insert(old).values(**content.row, created="then"))
+            rows = [{"part": content.digest, **dict(zip(COLUMNS, row, strict=True))} for row in content.formulas]
+            connection.execute(sa.insert(VIEW), rows)
+    engine.dispose()
+
+
+def expected(content: PartContent) -> list[FormulaRow]:
+    return [FormulaRow(*row) for row in content.formulas]
+
+
+def test_the_view_has_a_row_for_every_formula(address: str, contents: list[PartContent]) -> None:
+    database = Database(address)
+    with database.write() as connection:
+        for content in contents:
+            store_part(connection, content)
+    with database.read() as connection:
+        for content in contents:
+            assert rows_of(connection, content.digest) == expected(content)
+            assert list_formulas(connection, content.digest) == expected(content)
+        [(place, entry)] = connection.exec_driver_sql(
+            "SELECT output, entry FROM formulas WHERE quantity = 'U' AND body = 'link3' AND coordinate = 'q1'"
+        ).all()
+        assert (place, entry) == ("U", "[2,0]")
+    database.close()
+
+
+def test_chosen_formulas(address: str, contents: list[PartContent]) -> None:
+    database = Database(address)
+    with database.write() as connection:
+        store_part(connection, contents[0])
+    digest, rows = contents[0].digest, expected(contents[0])
+    with database.read() as connection:
+        for quantities, body, coordinate in ((("U",), None, None), ((), "link3", None), (("U", "F"), "link3", "q1")):
+            found = list_formulas(connection, digest, quantities, body, coordinate)
+            assert found
+            assert found == [
+                row
+                for row in rows
+                if (row.quantity in quantities or not quantities)
+                and (row.body == body or body is None)
+                and (row.coordinate == coordinate or coordinate is None)
+            ]
+        assert list_formulas(connection, "sha256:none") == []
+    database.close()
+
+
+@pytest.mark.parametrize("moment", ["", "UPDATE parts SET", "DROP TABLE formulas", "CREATE VIEW formulas"])
+def test_an_older_store_is_carried_over_as_a_whole(address: str, moment: str, contents: list[PartContent]) -> None:
+    """Killed at some moment, it is as it was; then everything is there."""
+    old_store(address, contents)
+    if moment:
+        command = [sys.executable, "-c", KILLED, address, moment]
+        assert subprocess.run(command, check=False).returncode == -signal.SIGKILL
+        engine = sa.create_engine(address)
+        with engine.connect() as connection:
+            assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar() == "0007"
+            assert "formulas" in sa.inspect(connection).get_table_names()
+            for content in contents:
+                assert rows_of(connection, content.digest) == expected(content)
+        engine.dispose()
+    database = Database(address)
+    with database.read() as connection:
+        assert "formulas" not in sa.inspect(connection).get_table_names()
+        for content in contents:
+            assert rows_of(connection, content.digest) == expected(content)
+            assert list_formulas(connection, content.digest) == expected(content)
+            written: Any = connection.exec_driver_sql("SELECT created FROM parts").scalars().all()
+            assert written == ["then"] * len(contents)
+    assert [finding.fault for finding in verify_all(database)] == [""] * len(contents)
+    database.close()
