@@ -27,7 +27,9 @@ from substructures.certificate.slopes import at_start
 from substructures.expr.operations import Output
 
 #: with more Christoffel symbols than this a part or tree is stored without them (notation.md, section 6)
-MOST_CHRISTOFFEL = 100_000
+MOST_CHRISTOFFEL = 23_000
+#: older versions stored them up to here
+ONCE_CHRISTOFFEL = 100_000
 
 
 def part_symbols(definition: Plain) -> dict[str, str]:
@@ -44,7 +46,8 @@ def part_symbols(definition: Plain) -> dict[str, str]:
 def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[str, Output]) -> Outputs:
     """All outputs; ``values``: of all symbols. The inertia symbols stand for what every carrier has to carry.
 
-    ``stored``: which of the factors of a rotation E are stored is the derivation's choice, what they have to be is not.
+    ``stored``: which of the factors of a rotation E are stored is the derivation's choice, what they have to be is not;
+    and whether it has the Christoffel symbols of a part that is large today, and was not when it was stored.
     """
     numbers, bodies = Numbers(values), Bodies()
     bodies.add(definition, numbers, Frame(GROUND, identity(), zeros(3, 1)))
@@ -55,8 +58,8 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     carried, result = carried_by_joints(bodies, masses), Outputs()
     _joints(result, bodies, masses, carried)
     _factors(result, len(bodies.joints), stored)
-    _interface(result, carried, is_large(bodies))
-    equations(result, bodies, carried)
+    _interface(result, carried, is_large(bodies, stored))
+    equations(result, bodies, carried, stored)
     _frames(result, bodies, definition)
     lengths = [x for frame in bodies.frames.values() for x in frame.p.entries()]
     extent = sum((abs(x) for joint in bodies.joints for x in joint.O.entries()), sum(map(abs, lengths), arb(0)))
@@ -172,11 +175,11 @@ def _interface(result: Outputs, carried: list[Carried], large: bool) -> None:
             del result["kappa"].entries[c, c, i]
 
 
-def equations(result: Outputs, bodies: Bodies, carried: list[Carried]) -> None:
+def equations(result: Outputs, bodies: Bodies, carried: list[Carried], stored: Mapping[str, Output]) -> None:
     """Metric, and the independent Christoffel symbols: a < c, b <= c; of a large system without these."""
     n = len(carried)
     result.array("metric", (n, n), "symmetric").update(_metric(bodies, carried))
-    if is_large(bodies):
+    if is_large(bodies, stored):
         return
     gamma = result.array("christoffel", (n, n, n), "christoffel")
     for c, some in enumerate(carried):
@@ -195,11 +198,12 @@ def _metric(bodies: Bodies, carried: list[Carried]) -> dict[tuple[int, ...], Bal
     return g
 
 
-def is_large(bodies: Bodies) -> bool:
+def is_large(bodies: Bodies, stored: Mapping[str, Output]) -> bool:
     """Whether formulas of the Christoffel symbols, and of products of columns, are more than are stored."""
+    most = ONCE_CHRISTOFFEL if "christoffel" in stored else MOST_CHRISTOFFEL
     paths = [bodies.path(c) for c in range(len(bodies.joints))]
     turning = [sum(not bodies.joints[b].prismatic for b in path) for path in paths]
-    return sum(len(path) * b for path, b in zip(paths, turning, strict=True)) > MOST_CHRISTOFFEL
+    return sum(len(path) * b for path, b in zip(paths, turning, strict=True)) > most
 
 
 def _frames(result: Outputs, bodies: Bodies, definition: Plain) -> None:

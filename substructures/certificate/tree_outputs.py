@@ -21,7 +21,7 @@ from substructures.certificate.bodies import (
     massless,
 )
 from substructures.certificate.closures import ROWS, closure_outputs
-from substructures.certificate.dynamics import carried_by_joints, velocity_forces
+from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
@@ -29,6 +29,7 @@ from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
 from substructures.certificate.potentials import gradient_instead, is_found
 from substructures.certificate.slopes import at_start
+from substructures.expr.operations import Output
 
 
 def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
@@ -46,13 +47,18 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
     return kinds
 
 
-def tree_outputs(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Outputs:
-    """All outputs of the model; ``values``: of all symbols."""
+def tree_outputs(
+    tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball], stored: Mapping[str, Output]
+) -> Outputs:
+    """All outputs of the model; ``values``: of all symbols; ``stored``: see
+    :func:`substructures.certificate.part_outputs.part_outputs`."""
     result = Outputs()
     numbers, bodies, loads, acting = built(tree, definitions, values)
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
     gravity = numbers.vector(tree.get("gravity", NONE))
-    _equations(result, bodies, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
+    carried = carried_by_joints(bodies, bodies.own)
+    equations(result, bodies, carried, stored)
+    _forces(result, bodies, carried, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
     for each in acting:
         each.bent += each.steady
     if is_found(acting):
@@ -149,18 +155,17 @@ def _seat(bodies: Bodies, instance: Plain, numbers: Numbers) -> Frame:
     return host.placed(A, numbers.vector(placement.get("position", NONE)))
 
 
-def _equations(
+def _forces(
     result: Outputs,
     bodies: Bodies,
+    carried: list[Carried],
     gravity: Ball,
     Q: Mapping[int, Ball],
     rates: list[Ball],
     second: list[Ball],
 ) -> None:
-    """Metric, Christoffel symbols, momenta, forces."""
-    n, carried = len(bodies.joints), carried_by_joints(bodies, bodies.own)
-    equations(result, bodies, carried)
-    bias = velocity_forces(bodies, bodies.own, rates)
+    """Forces and momenta."""
+    n, bias = len(bodies.joints), velocity_forces(bodies, bodies.own, rates)
     weight = [dot(gravity, some.f) for some in carried]
     total = [w + Q.get(a, arb(0)) for a, w in enumerate(weight)]
     inertia = [arb(0)] * n

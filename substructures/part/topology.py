@@ -14,7 +14,7 @@ from substructures.part.definition import Body, Definition
 BASE = "base"
 
 #: with more Christoffel symbols than this no formulas of them are stored, nor of what is larger than the metric
-MOST_CHRISTOFFEL = 100_000
+MOST_CHRISTOFFEL = 23_000
 #: most elements of the metric
 MOST_METRIC = 10_000
 
@@ -102,7 +102,7 @@ def entries_of(joints: Sequence[tuple[int, int]]) -> Entries:
 def expected_operations(joints: Sequence[tuple[int, int]]) -> int:
     """About how long the program of joints (parent, kind) with symbols for all inertias becomes.
 
-    Fitted to chains of 6 to 40 and of 80 to 100 general joints, to 20 %; parallel axes and numbers make it shorter.
+    Fitted to chains of 6 to 100 general joints, to 20 %; parallel axes and numbers make it shorter.
     """
     entries = entries_of(joints)
     return (38 * entries.metric if entries.is_large else 5 * entries.christoffel) + 400 * len(joints)

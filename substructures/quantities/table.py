@@ -153,8 +153,8 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
 def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Program | None, list[str]]]:
     """(source, program, its outputs); no program: no state has a result, or numbers come from PARTS.
 
-    Forward dynamics of a tree with closures, or of one too large for formulas of it, and condition numbers come from
-    outputs of the model.
+    Forward dynamics of a tree with closures, or of one of which no Christoffel symbols are stored, or too large for
+    formulas of it, and condition numbers come from outputs of the model.
     """
     wanted: dict[str, set[str]] = {}
     for name in quantities:
@@ -167,6 +167,9 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
             continue
         if source == FD and sources.model.closures:
             yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
+            continue
+        if source == FD and "christoffel" not in sources.model.program.outputs:
+            yield source, sources.model.program, list(DYNAMICS)
             continue
         try:
             program = sources.program(source)

@@ -45,7 +45,7 @@ def certify_tree(
 
     def expected(values: Mapping[str, Any]) -> Outputs:
         """All that a model of its version has."""
-        outputs = tree_outputs(tree, parts, values)
+        outputs = tree_outputs(tree, parts, values, result.outputs)
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
     states = states_needed(result.operations, [tree, *parts.values()])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,10 +22,12 @@ from substructures import (
 from substructures.analysis.equations.curvature import curvature
 from substructures.certificate import part_outputs
 from substructures.errors import VerificationFailed
+from substructures.expr.program import Program
 from substructures.part import topology
 from substructures.part.part import recheck
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import Sources, evaluate, steps
 from substructures.quantities.from_parts import NumericTree
+from substructures.tree.recheck import recheck_tree
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
@@ -117,7 +121,8 @@ def test_numbers_of_the_christoffel_symbols_come_from_the_parts(part: Part, mode
 def lower(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
     """Another limit, for the derivation and for its certificate."""
     monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", most)
-    monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", most)
+    for name in ("MOST_CHRISTOFFEL", "ONCE_CHRISTOFFEL"):
+        monkeypatch.setattr(part_outputs, name, most)
 
 
 def test_large_parts_couple_with_small_ones(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,15 +171,48 @@ def test_what_has_to_be_stored_is_not_left_to_the_derivation(monkeypatch: pytest
     monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
     with pytest.raises(VerificationFailed):
         derive(definition)
+    lower(monkeypatch, 50)
     monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 100_000)
-    monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 50)
     with pytest.raises(VerificationFailed, match="no output that the documents know of"):
         derive(definition)
 
 
+def test_what_older_versions_stored_is_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of parts and trees that are large today, and were not; their Christoffel symbols are compared like all else."""
+    tree = TreeSpec.read({**TREE, "instances": [{"name": "a", "substructure": "one"}]})
+    old = derive(Definition.read(chain(6, "one")))
+    model = couple(tree, {"a": old})
+    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
+    monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 50)
+    tree_again = partial(recheck_tree, tree, {"a": old.definition}, model.summary())
+    assert "christoffel" in recheck(old)["direct_form"]["max_relative_error"]
+    assert "christoffel" in tree_again(model.program)["direct_form"]["max_relative_error"]
+    assert "christoffel" not in couple(tree, {"a": old}).program.outputs
+    with pytest.raises(VerificationFailed, match="christoffel"):
+        recheck(replace(old, program=spoilt(old.program)))
+    with pytest.raises(VerificationFailed, match="christoffel"):
+        tree_again(spoilt(model.program))
+
+
+def spoilt(program: Program) -> Program:
+    """Two Christoffel symbols have changed places."""
+    output = program.outputs["christoffel"]
+    first, second, *others = output.entries
+    return replace(
+        program, outputs={**program.outputs, "christoffel": replace(output, entries=(second, first, *others))}
+    )
+
+
+def test_accelerations_need_no_formulas_of_them(model: Model) -> None:
+    """The metric is solved by numbers: its factors would be a million operations."""
+    [(_, program, names)] = steps(Sources(model), ["forward_dynamics"])
+    assert program is model.program
+    assert names == ["metric", "bias", "forces"]
+
+
 @pytest.mark.parametrize("quantity", ["christoffel", "coriolis"])
 def test_what_needs_formulas_of_them_says_so(model: Model, quantity: str) -> None:
-    with pytest.raises(InvalidDocument, match=r"more than 100,000 Christoffel symbols no formulas are stored"):
+    with pytest.raises(InvalidDocument, match=r"more than 23,000 Christoffel symbols no formulas are stored"):
         evaluate(model, quantity, np.zeros(80))
     with pytest.raises(InvalidDocument, match="there is no christoffel"):
         curvature(model)
