@@ -17,12 +17,14 @@ from service.http.middleware import Conventions
 from service.http.short_way import ShortWay
 from service.metrics import Metrics
 from service.operations.seed import import_catalogue
+from service.pages import account
 from service.pages import routes as pages
 from service.queries import idempotency
 from service.respawn import Kept
 from service.routes import (
     aliases,
     analyses,
+    audit,
     formulas,
     job_streams,
     jobs,
@@ -32,6 +34,7 @@ from service.routes import (
     substructures,
     system,
     trees,
+    visibility,
 )
 from service.settings import Settings
 from service.store import Store
@@ -39,6 +42,7 @@ from service.store import Store
 ROUTES = (
     substructures,
     aliases,
+    visibility,
     formulas,
     pictures,
     trees,
@@ -48,6 +52,8 @@ ROUTES = (
     jobs,
     job_streams,
     system,
+    audit,
+    account,
     pages,
 )
 DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: metric, Christoffel symbols, forces."

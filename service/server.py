@@ -95,7 +95,7 @@ def check_exposure(store: Store) -> None:
             return
     raise SettingsError(
         f"refusing to listen on {store.settings.host} without API keys; create one with"
-        " 'substructures key create --scope admin' or listen on 127.0.0.1"
+        " 'substructures key create --owner TEAM --scope admin' or listen on 127.0.0.1"
     )
 
 

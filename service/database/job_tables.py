@@ -63,6 +63,7 @@ jobs = Table(
     Column("finished", Text, nullable=True),
     Column("error", Text, nullable=True),  # problem document
     Column("shared", Boolean, nullable=False, server_default=false()),  # whether every key may see it
+    Column("owner", Text, nullable=False, server_default="local"),
     _known("ck_jobs_state", JOB_STATES),
     CheckConstraint("failed <= done AND done <= total", name="ck_jobs_counts"),
     Index(None, "state", "id"),

@@ -46,6 +46,10 @@ def _number(name: str, primary_key: bool = False, nullable: bool = False) -> Col
     return Column(name, Integer, primary_key=primary_key, autoincrement=False, nullable=nullable)
 
 
+def _default(name: str, value: str) -> Column[str]:
+    return Column(name, Text, nullable=False, server_default=value)
+
+
 programs = Table(
     "programs",
     metadata,
@@ -93,6 +97,8 @@ substructures = Table(  # one row a name; locked while a version number is alloc
     metadata,
     _text("name", primary_key=True),
     _number("latest", nullable=True),  # highest version that is not yanked
+    _default("owner", "local"),
+    _default("visibility", "public"),
 )
 
 versions = Table(
@@ -104,6 +110,7 @@ versions = Table(
     _text("created"),
     _text("yanked", nullable=True),
     _text("yank_reason", nullable=True),
+    _default("author", ""),  # id of an API key
     UniqueConstraint("digest"),
     Index(None, "created"),
 )
@@ -136,6 +143,8 @@ tree_names = Table(
     metadata,
     _text("name", primary_key=True),
     _number("latest"),
+    _default("owner", "local"),
+    _default("visibility", "public"),
 )
 
 trees = Table(
@@ -151,6 +160,7 @@ trees = Table(
     _text("created"),
     _number("based_on", nullable=True),  # the revision that was changed
     Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of ``summary``
+    _default("author", ""),
     Index(None, "digest"),
     Index(None, "created"),
 )
@@ -192,4 +202,26 @@ api_keys = Table(
     _text("created"),
     _text("expires", nullable=True),
     _text("revoked", nullable=True),
+    _default("owner", "local"),
+)
+
+sessions = Table(  # of pages, signed in to with a key
+    "sessions",
+    metadata,
+    _text("id", primary_key=True),  # sha256 of the value of the cookie
+    _text("key", ForeignKey("api_keys.id")),
+    _text("created"),
+    _text("expires"),
+)
+
+audit = Table(  # who did what; triggers keep its rows as they are
+    "audit",
+    metadata,
+    _number("seq", primary_key=True),
+    _text("time"),
+    _text("key"),
+    _text("owner"),
+    _text("action"),
+    _text("subject"),
+    _text("detail"),
 )

@@ -16,7 +16,6 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Request, Response
 
-from service import keys
 from service.answers import Answer, Stream
 from service.database.connections import Connection
 from service.http.deadline import Deadline, GivenUp
@@ -28,6 +27,7 @@ from service.refusals import Refused, StaleError
 from service.runtime import Task
 from service.spool import Spool
 from service.store import Store
+from service.viewer import Viewer
 
 #: writes what was prepared, in the transaction of the request, and answers
 Commit = Callable[[Connection], Answer]
@@ -42,7 +42,8 @@ class Act:
     def __init__(self, request: Request, body: Callable[[], Iterable[bytes]], store: Store, key: str | None) -> None:
         """``body``: gives the pieces of the request body."""
         self.store, self._request = store, request
-        self.principal: str = request.state.principal
+        self.viewer: Viewer = request.state.viewer
+        self.principal = self.viewer.key
         limits = store.settings.limits
         wait = self._prefers("wait=([0-9]{1,6})")
         self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
@@ -81,8 +82,7 @@ class Act:
 
     def require(self, scope: str) -> None:
         """Raise Refused 403 unless whoever asks has this scope too."""
-        with self.store.database.read() as connection:
-            keys.authorise(connection, self._request.headers.get("authorization"), scope)
+        self.viewer.require(scope)
 
     def _claiming(self, deferred: Callable[[], Commit]) -> Commit | Answer:
         """The job that a computation becomes, or what it became under the same key."""

@@ -12,12 +12,13 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
+from service.schemas.entries import SubmittedDefinition, SubmittedTree, VisibilityRequest
 from service.schemas.jobs import CancelRequest, JobRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.part.definition import Definition
-from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.document import Instance
 
 TEMPLATE = "#/components/schemas/{model}"
 PROBLEM: dict[int | str, dict[str, Any]] = {
@@ -40,10 +41,11 @@ PREFER = {
     "schema": {"type": "string"},
 }
 _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
-_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest)
+_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest)
 _READ_BY_US: tuple[type[BaseModel], ...] = (
     Definition,
-    TreeSpec,
+    SubmittedDefinition,
+    SubmittedTree,
     Instance,
     *_REQUESTS,
     VelocityConstraints,

@@ -8,15 +8,19 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Request
 from fastapi.concurrency import run_in_threadpool
+from starlette.datastructures import Headers
+from starlette.requests import cookie_parser
 
 from service import keys
 from service.refusals import Refused
 from service.spool import Spool
 from service.store import Store
+from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.formats import arrays, arrow
 
 SUBMISSIONS = "/v1/jobs"  # longer bodies
+SESSION = "substructures_session"  # cookie
 
 
 def store_of(request: Request) -> Store:
@@ -38,37 +42,47 @@ def needs(scope: str) -> Any:
 
     async def authorise(request: Request) -> None:
         """Note who asks, or refuse."""
-        request.state.principal = await principal(store_of(request), request.headers.get("authorization"), scope)
+        viewer = await authenticated(store_of(request), credentials(request.method, request.headers))
+        viewer.require(scope)
+        request.state.viewer, request.state.principal = viewer, viewer.key
 
     return Depends(authorise)
 
 
-async def principal(store: Store, authorization: str | None, scope: str) -> str:
-    """Who asks with this Authorization header. Raises Refused 401 or 403."""
-    known = store.runtime.authorisations.get(authorization, scope)
-    return await run_in_threadpool(_authorised, store, authorization, scope) if known is None else known
+def credentials(method: str, headers: Headers) -> keys.Credentials:
+    """What a request shows. The cookie of a session lets pages and what they link to be read, by our own pages only.
+
+    Raises Refused 403 for a request that another site makes with it.
+    """
+    authorization = headers.get("authorization", "")
+    session = cookie_parser(headers.get("cookie", "")).get(SESSION, "")
+    if authorization or not session or method not in ("GET", "HEAD"):
+        return keys.Credentials(authorization)
+    if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
+        raise Refused(403, "cross-site", "another site asks with the session of a page here")
+    return keys.Credentials(session=session)
 
 
-def _authorised(store: Store, given: str | None, scope: str) -> str:
+async def authenticated(store: Store, given: keys.Credentials) -> Viewer:
+    """Who asks. Raises Refused 401."""
+    known = store.runtime.authorisations.get(given)
+    return await run_in_threadpool(_authenticated, store, given) if known is None else known
+
+
+def _authenticated(store: Store, given: keys.Credentials) -> Viewer:
     with store.database.read() as connection:
-        principal = keys.authorise(connection, given, scope)
-    store.runtime.authorisations.put(given, scope, principal)
-    return principal
+        viewer = keys.authenticate(connection, given, store.settings.is_loopback)
+    store.runtime.authorisations.put(given, viewer)
+    return viewer
 
 
-def viewer(request: Request) -> str | None:
-    """Whose jobs the request may see, besides those that are shared: None for all, as admin or without any keys."""
-    asking: str = request.state.principal
-    if asking == keys.OPEN:
-        return None
-    try:
-        _authorised(store_of(request), request.headers.get("authorization"), "admin")
-    except Refused:
-        return asking
-    return None
+async def viewer(request: Request) -> Viewer:
+    """Who asks, as a dependency of a route with :func:`needs`."""
+    found: Viewer = request.state.viewer
+    return found
 
 
-ViewerOf = Annotated[str | None, Depends(viewer)]
+ViewerOf = Annotated[Viewer, Depends(viewer)]
 
 
 async def raw_body(request: Request) -> bytes:

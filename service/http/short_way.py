@@ -12,12 +12,13 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.answers import JSON, Answer, Stream
-from service.http.requests import principal
+from service.http.requests import authenticated, credentials
 from service.http.responses import response_of
 from service.operations import at_hand
 from service.operations.exchange import choose_media_type
 from service.references import is_pinned
 from service.store import Store
+from service.viewer import Viewer
 
 _PATH = re.compile(r"/v1/trees/([^/]+)/evaluations")
 
@@ -45,9 +46,10 @@ class ShortWay:
         if not _is_short(headers):
             await self.app(scope, receive, send)
             return
-        await principal(store, headers.get("authorization"), "read")
+        viewer = await authenticated(store, credentials(scope["method"], headers))
+        viewer.require("read")
         messages = await _messages(receive)
-        answer = _answer(store, found[1], messages)
+        answer = _answer(store, viewer, found[1], messages)
         if answer is None:
             await self.app(scope, _again(messages, receive), send)
             return
@@ -77,10 +79,10 @@ async def _messages(receive: Receive) -> list[Message]:
     return messages
 
 
-def _answer(store: Store, ref: str, messages: list[Message]) -> Answer | Stream | None:
+def _answer(store: Store, viewer: Viewer, ref: str, messages: list[Message]) -> Answer | Stream | None:
     if messages[-1]["type"] != "http.request":  # the client has gone
         return None
-    return at_hand.answer(store, ref, b"".join(message.get("body", b"") for message in messages))
+    return at_hand.answer(store, viewer, ref, b"".join(message.get("body", b"") for message in messages))
 
 
 def _again(messages: list[Message], receive: Receive) -> Receive:

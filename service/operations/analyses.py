@@ -18,6 +18,7 @@ from service.operations import trees
 from service.operations.sources import sources_of
 from service.queries.trees import Tree
 from service.store import Store
+from service.viewer import Viewer
 from substructures.tree.model import Model
 
 
@@ -36,10 +37,10 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
     return _printed(source, made(source, quantity, options), style)
 
 
-def velocity_equations(store: Store, ref: str, document: Any, style: Style) -> Answer:
+def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, style: Style) -> Answer:
     """The equations of a stored tree with velocity constraints as formulas. Raises as :func:`printed`, Refused 404."""
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, viewer, ref)
         model = store.model(connection, tree)
     source = source_of(store, tree, model)
     return _printed(source, velocity_equations_of(source, document), style)
@@ -50,14 +51,14 @@ def _printed(source: Source, found: Made, style: Style) -> Answer:
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 
-def analyse(store: Store, ref: str, name: str, request: Any, media: str) -> Answer:
+def analyse(store: Store, viewer: Viewer, ref: str, name: str, request: Any, media: str) -> Answer:
     """The result of an analysis of ANALYSES in one of its media types.
 
     Raises Refused 404, InvalidDocument, MissingValue, TooLarge, TimeoutError.
     """
     analysis = ANALYSES[name]
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, viewer, ref)
         model = store.model(connection, tree)
     time_limit = TimeLimit(store.settings.limits.sync_seconds)
     result = analysis.compute(source_of(store, tree, model), request, time_limit)

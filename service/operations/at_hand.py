@@ -13,13 +13,16 @@ from typing import Any
 
 from service.answers import Answer
 from service.operations.exchange import TreeEvaluation
+from service.queries.trees import Tree
 from service.schemas.numbers import EvaluationRequest
 from service.store import Store
+from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import REGRESSOR, Sources, cost, steps
 from substructures.quantities.states import longest
 
+EVERYBODY = ""  # no owner
 BODY = 4096  # bytes of the request
 OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds
 
@@ -40,21 +43,24 @@ class AtHand:
         return sum(len(program) for program, _ in self.programs.values())
 
 
-def answer(store: Store, ref: str, body: bytes) -> Answer | None:
+def answer(store: Store, viewer: Viewer, ref: str, body: bytes) -> Answer | None:
     """The answer to a JSON request, None when it is not at hand. Raises as :meth:`TreeEvaluation.json`."""
     data = read_json(body)
     names = data.get("quantities") if isinstance(data, Mapping) else None
-    found: AtHand | None = store.caches.evaluations.get(_key(ref, names)) if isinstance(names, list) else None
+    found: AtHand | None = None
+    if isinstance(names, list):
+        kept = store.caches.evaluations
+        found = kept.get(_key(EVERYBODY, ref, names)) or kept.get(_key(viewer.owner, ref, names))
     if found is None or not found.is_ready(store):
         return None
     arguments = EvaluationRequest.read(data).arguments()
     return found.evaluation.json(arguments) if longest(arguments) == 1 else None
 
 
-def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:
+def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:
     """Keep what answers the same quantities of a pinned tree for another state, if that is short work.
 
-    The size of one state was checked for the request that comes to be remembered.
+    The size of one state was checked for the request that comes to be remembered. What is private is kept for its owner.
     """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
@@ -67,8 +73,9 @@ def remember(store: Store, ref: str, request: EvaluationRequest, evaluation: Tre
     at_hand = Sources(sources.model, derived, regressor, sources.plausibility)
     found = AtHand(replace(evaluation, sources=at_hand), programs)
     if found.is_ready(store):
-        store.caches.evaluations.put(_key(ref, names), found)
+        whose = EVERYBODY if tree.is_public else tree.owner
+        store.caches.evaluations.put(_key(whose, ref, names), found)
 
 
-def _key(ref: str, quantities: Iterable[Any]) -> tuple[str, ...]:
-    return (ref, *map(str, quantities))
+def _key(owner: str, ref: str, quantities: Iterable[Any]) -> tuple[str, ...]:
+    return (owner, ref, *map(str, quantities))

@@ -7,13 +7,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from service.database.connections import Connection
+from service.operations import owners
 from service.paging import read_token, write_token
-from service.queries import aliases, catalogue, content
+from service.queries import aliases, audit, catalogue, content
 from service.queries.formulas import FormulaRow
+from service.queries.owners import is_version, ownership
 from service.references import ALIAS, Reference, parse_reference
 from service.refusals import Refused, not_found, unprocessable
+from service.schemas.entries import PLAIN, Entry
 from service.store import Store
 from service.summaries import PartContent, part_content
+from service.viewer import Viewer
 from substructures.part.definition import Definition
 from substructures.part.part import derive
 
@@ -27,6 +31,7 @@ class PartSubmission:
     digest: str
     content: PartContent | None
     is_mended: bool = False
+    entry: Entry = PLAIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,21 +43,30 @@ class Page:
     next_token: str | None
 
 
-def prepare(store: Store, definition: Definition) -> PartSubmission:
+def prepare(store: Store, viewer: Viewer, definition: Definition, entry: Entry) -> PartSubmission:
     """Derive, verify and certify a definition unless its content is known and sound.
 
-    Raises InvalidDocument, TooLarge, LongWork.
+    Raises InvalidDocument, TooLarge, LongWork, Refused 403 for a name of others, 409.
     """
     is_mended = False
     with store.database.read() as connection:
+        if not _is_there(connection, viewer, definition.name, definition.digest):
+            owners.wanted(connection, viewer, "substructure", definition.name, entry)
         try:
             if content.get_part(connection, definition.digest) is not None:
-                return PartSubmission(definition.name, definition.digest, None)
+                return PartSubmission(definition.name, definition.digest, None, entry=entry)
         except Refused:  # damaged, or gone in part
             is_mended = True
     part = derive(definition, store.settings.limits.program_nodes, store.admit)
     store.remember_part(part)
-    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended)
+    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended, entry)
+
+
+def _is_there(connection: Connection, viewer: Viewer, name: str, digest: str) -> bool:
+    """Whether the viewer sees a version with this content: then nobody's right to add one is needed."""
+    found = ownership(connection, "substructure", name)
+    is_seen = found is not None and viewer.sees(found.owner, found.visibility)
+    return is_seen and is_version(connection, name, digest)
 
 
 def store_part(connection: Connection, part: PartContent) -> None:
@@ -67,49 +81,57 @@ def mend_part(connection: Connection, part: PartContent) -> None:
     content.replace_part(connection, part.row, part.program, part.nodes, formulas)
 
 
-def submit(connection: Connection, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
-    """Store a submission; the version, and whether it is new."""
+def submit(connection: Connection, viewer: Viewer, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
+    """Store a submission; the version, and whether it is new. Raises Refused 403 for a name of others, 409."""
+    name, digest = submission.name, submission.digest
+    if not _is_there(connection, viewer, name, digest) or submission.entry.visibility is not None:
+        owners.claimed(connection, viewer, "substructure", name, submission.entry)
     if submission.content is not None:
         (mend_part if submission.is_mended else store_part)(connection, submission.content)
-    number, is_new = catalogue.add_version(connection, submission.name, submission.digest)
-    return _resolved(connection, Reference(submission.name, number=number)), is_new
+    number, is_new = catalogue.add_version(connection, name, digest, viewer.key)
+    if is_new:
+        audit.note(connection, viewer, "substructure.submit", f"{name}@{number}", digest=digest)
+    return _resolved(connection, viewer, Reference(name, number=number)), is_new
 
 
-def find(connection: Connection, text: str) -> catalogue.Version:
+def find(connection: Connection, viewer: Viewer, text: str) -> catalogue.Version:
     """The version that a reference means. Raises Refused 404."""
     ref = parse_reference(text)
     if ref is None:
         raise not_found(f"'{text[:80]}' is no reference; expected name, name@3, name@alias or name@sha256:...")
-    return _resolved(connection, ref, text)
+    return _resolved(connection, viewer, ref, text)
 
 
-def _resolved(connection: Connection, ref: Reference, text: str = "") -> catalogue.Version:
-    version = catalogue.resolve(connection, ref)
+def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str = "") -> catalogue.Version:
+    version = catalogue.resolve(connection, viewer, ref)
     if version is None:
         raise not_found(f"there is no substructure '{text}'", "unknown-substructure")
     return version
 
 
-def search(connection: Connection, wanted: catalogue.CatalogueSearch, size: int, token: str | None) -> Page:
+def search(
+    connection: Connection, viewer: Viewer, wanted: catalogue.CatalogueSearch, size: int, token: str | None
+) -> Page:
     """A page of the latest versions. Raises Refused 422 for a token of another search."""
     column = wanted.sort.lstrip("-")
     after = read_token(wanted, token, int if column == "dof" else str, str)
-    found = catalogue.page(connection, wanted, after, size + 1)
+    found = catalogue.page(connection, viewer, wanted, after, size + 1)
     last = found[size - 1] if len(found) > size else None
     following = write_token(wanted, getattr(last, column), last.name) if last else None
-    return Page(found[:size], catalogue.facets(connection, wanted), following)
+    return Page(found[:size], catalogue.facets(connection, viewer, wanted), following)
 
 
 def set_alias(
-    connection: Connection, name: str, alias: str, version: int, if_match: str | None, principal: str
+    connection: Connection, viewer: Viewer, name: str, alias: str, version: int, if_match: str | None
 ) -> aliases.Alias:
     """Point an alias to a version; to move an existing one, ``if_match`` has to be its ETag. Raises Refused."""
     if not re.fullmatch(ALIAS, alias):
         raise unprocessable(
             "alias-name", f"an alias is a letter and up to 63 letters, digits, '-', '_': '{alias[:80]}'"
         )
-    check_name(connection, name)
-    target = catalogue.resolve(connection, Reference(name, number=version))
+    owner = check_name(connection, viewer, name)
+    owners.require(viewer, owner, name, "moves its aliases")
+    target = catalogue.resolve(connection, viewer, Reference(name, number=version))
     if target is None:
         raise unprocessable("unknown-version", f"there is no substructure '{name}@{version}'", "/version")
     current = aliases.get_alias(connection, name, alias)
@@ -120,16 +142,19 @@ def set_alias(
         raise Refused(412, "precondition-failed", f"the alias '{alias}' is not what If-Match says")
     if current is not None and current.version == version:
         return current
-    changed = aliases.set_alias(connection, name, alias, version, current.revision if current else 0, principal)
+    changed = aliases.set_alias(connection, name, alias, version, current.revision if current else 0, viewer.key)
     if changed is None:
         raise Refused(412, "precondition-failed", f"the alias '{alias}' was changed meanwhile")
+    audit.note(connection, viewer, "alias.set", f"{name}@{alias}", version=version)
     return changed
 
 
-def check_name(connection: Connection, name: str) -> None:
-    """Raise Refused 404 unless there is a substructure of this name."""
-    if catalogue.resolve(connection, Reference(name, number=1)) is None:
-        raise not_found(f"there is no substructure '{name[:80]}'", "unknown-substructure")
+def check_name(connection: Connection, viewer: Viewer, name: str) -> str:
+    """The owner of a substructure. Raises Refused 404 unless the viewer sees one of this name."""
+    first = catalogue.resolve(connection, viewer, Reference(name, number=1))
+    if first is not None:
+        return first.owner
+    raise not_found(f"there is no substructure '{name[:80]}'", "unknown-substructure")
 
 
 def alias_tag(alias: aliases.Alias) -> str:
@@ -137,8 +162,10 @@ def alias_tag(alias: aliases.Alias) -> str:
     return f'"{alias.revision}"'
 
 
-def yank(connection: Connection, text: str, reason: str) -> catalogue.Version:
-    """Withdraw a version: it stays where it is used, and no longer is anybody's latest."""
-    version = find(connection, text)
+def yank(connection: Connection, viewer: Viewer, text: str, reason: str) -> catalogue.Version:
+    """Withdraw a version: it stays where it is used, and no longer is anybody's latest. Raises Refused 404, 403."""
+    version = find(connection, viewer, text)
+    owners.require(viewer, version.owner, version.name, "withdraws its versions")
     catalogue.yank(connection, version.name, version.version, reason)
-    return _resolved(connection, Reference(version.name, number=version.version))
+    audit.note(connection, viewer, "substructure.yank", f"{version.name}@{version.version}", reason=reason)
+    return _resolved(connection, viewer, Reference(version.name, number=version.version))

@@ -9,12 +9,15 @@ from typing import Any
 from service.addresses import tree_path, version_path
 from service.database.connections import Connection
 from service.jobs.engine import Outcome
+from service.jobs.kinds.kind import ENTRY
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
 from service.queries import results
 from service.queries.attempts import Attempt
-from service.queries.jobs import principals
+from service.queries.jobs import submitters
+from service.schemas.entries import Entry
 from service.summaries import PartContent
+from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
 #: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned
@@ -31,39 +34,47 @@ def keep(connection: Connection, ended: Iterable[tuple[Attempt, Outcome]], take:
     Raises Refused where there is no room for them.
     """
     ended = list(ended)
-    owners = principals(connection, {attempt.job for attempt, _ in ended})
-    found = [replace(_result(connection, *each), principal=owners.get(each[0].job, "")) for each in ended]
+    viewers = submitters(connection, {attempt.job for attempt, _ in ended})
+    found = [
+        replace(_result(connection, viewers[attempt.job], attempt, outcome), principal=viewers[attempt.job].key)
+        for attempt, outcome in ended
+    ]
     if take is not None:
         for owner in sorted({each.principal for each in found}):
             take(connection, "result", owner, sum(each.size for each in found if each.principal == owner))
     results.put_results(connection, found)
 
 
-def _result(connection: Connection, attempt: Attempt, outcome: Outcome) -> results.Result:
+def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: Outcome) -> results.Result:
     stored: dict[str, Any] = {}
     files: Mapping[str, bytes] = {}
     match attempt.kind:
         case "assemble":
-            stored = _tree(connection, read_json(attempt.item.encode()), outcome)
+            stored = _tree(connection, viewer, read_json(attempt.item.encode()), outcome)
         case "derive":
-            stored = _version(connection, outcome)
+            stored = _version(connection, viewer, read_json(attempt.item.encode()), outcome)
         case _:
             files = outcome.files
     return results.Result(attempt.key, attempt.kind, write_json({**outcome.summary, **stored}).decode(), files)
 
 
-def _tree(connection: Connection, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
+def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     files, told = outcome.files, outcome.summary
     inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
     figures = told["program"], told["nodes"], told["dof"]
     coupled = trees.TreeContent(
         told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
     )
-    tree, _ = trees.store(connection, coupled, item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
+    tree, _ = trees.store(connection, viewer, coupled, _entry(item), item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 
 
-def _version(connection: Connection, outcome: Outcome) -> dict[str, Any]:
+def _version(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     part = PartContent.of_files(outcome.files)
-    version, _ = catalogue.submit(connection, PartSubmission(part.name, part.digest, part))
+    submission = PartSubmission(part.name, part.digest, part, entry=_entry(item))
+    version, _ = catalogue.submit(connection, viewer, submission)
     return {"version": version.version, "location": version_path(version)}
+
+
+def _entry(item: Mapping[str, Any]) -> Entry:
+    return Entry(**item.get(ENTRY, {}))

@@ -11,11 +11,13 @@ from typing import Any
 from service.database.connections import Connection
 from service.jobs import kinds
 from service.operations.library import StoreLibrary
-from service.queries import jobs, uploads
+from service.operations.owners import require
+from service.queries import audit, jobs, uploads
 from service.queries.jobs import Job, NewItem
 from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
 from service.store import Store
+from service.viewer import Viewer
 from substructures.documents import write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
@@ -43,7 +45,7 @@ class Progress:
     eta_seconds: float | None
 
 
-def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -> JobSubmission:
+def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] | None = None) -> JobSubmission:
     """Resolve all items of ``{"kind", "items"}``; ``members`` are added to each.
 
     Raises InvalidDocument or Refused 422 with pointers to the items; nothing is queued then.
@@ -57,27 +59,33 @@ def prepare(store: Store, body: Any, members: Mapping[str, Any] | None = None) -
     if not isinstance(shared, bool):
         raise InvalidDocument.at("/shared", "boolean-expected", "true or false is needed")
     with store.database.read() as connection:
-        library = StoreLibrary(connection)
+        library = StoreLibrary(connection, viewer)
         expanded = kinds.expand(kind, body, store.settings.limits, library)
         items = _resolved(kind, expanded, library, _places(body, len(expanded)), members or {})
+        if shared and library.private:
+            private = ", ".join(f"'{name}'" for name in sorted(library.private)[:SHOWN])
+            message = f"every key would see the results, and private is {private}; make it public, or do not share"
+            raise InvalidDocument.at("/shared", "private-part", message)
         return JobSubmission(kind, items, shared=shared)
 
 
-def prepare_items(store: Store, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]) -> JobSubmission:
+def prepare_items(
+    store: Store, viewer: Viewer, kind: str, items: Sequence[Mapping[str, Any]], digests: Sequence[str]
+) -> JobSubmission:
     """Resolve items that are expanded, and that refer to states uploaded before. Raises as :func:`prepare`."""
     with store.database.read() as connection:
-        resolved = _resolved(kind, items, StoreLibrary(connection), _places({}, len(items)), {})
+        resolved = _resolved(kind, items, StoreLibrary(connection, viewer), _places({}, len(items)), {})
     return JobSubmission(kind, resolved, digests)
 
 
 def prepare_one(
-    store: Store, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
+    store: Store, viewer: Viewer, kind: str, item: Any, step: str = "", members: Mapping[str, Any] | None = None
 ) -> JobSubmission:
     """A job of one item in place of a request; ``step`` is where the body of the request is in the item. Raises as
     :func:`prepare`, with pointers into that body."""
     place = f"/items/0{step}"
     try:
-        return prepare(store, {"kind": kind, "items": [item]}, members)
+        return prepare(store, viewer, {"kind": kind, "items": [item]}, members)
     except (InvalidInput, Refused) as error:
         if isinstance(error, Refused) and error.status >= 500:
             raise
@@ -107,7 +115,10 @@ def _resolved(
             sleep(0)  # other requests need not wait until all items are done
         try:
             pinned, blobs = kinds.resolve(kind, dict(item), library)
-            resolved.append(_new_item(kind, {**pinned, **members}, blobs))  # as text, which the collector passes over
+            owned = library.owned(kind, pinned) if kind in STORING else {}
+            resolved.append(
+                _new_item(kind, {**pinned, **owned, **members}, blobs)
+            )  # as text, passed over by collectors
         except InvalidInput as error:
             bad += 1
             faults += [Fault(place + f.pointer, f.code, note + f.message) for f in error.faults]
@@ -143,34 +154,40 @@ def require_room(connection: Connection, new: int, principal: str, limits: Limit
             raise Refused(503, "queue-full", detail, headers={"Retry-After": "30"}, limit=limit)
 
 
-def submit(connection: Connection, submission: JobSubmission, principal: str, limits: Limits) -> Job:
+def submit(connection: Connection, viewer: Viewer, submission: JobSubmission, limits: Limits) -> Job:
     """Queue a job. Raises Refused 503 when the queue is full."""
-    require_room(connection, len(submission.items), principal, limits)
-    identifier = jobs.add_job(connection, submission.kind, principal, submission.items, submission.shared)
+    require_room(connection, len(submission.items), viewer.key, limits)
+    identifier = jobs.add_job(connection, submission.kind, viewer, submission.items, submission.shared)
     uploads.refer(connection, identifier, submission.uploads)
-    return find(connection, identifier)
+    told = {"kind": submission.kind, "items": len(submission.items)}
+    audit.note(connection, viewer, "job.submit", f"job {identifier}", **told)
+    return find(connection, viewer, identifier)
 
 
-def find(connection: Connection, identifier: str, viewer: str | None = None) -> Job:
-    """A job that a principal may see (None: any). Raises Refused 404."""
+def find(connection: Connection, viewer: Viewer, identifier: str) -> Job:
+    """A job. Raises Refused 404 for what the viewer does not see."""
     job = jobs.get_job(connection, identifier)
-    if job is None or (viewer is not None and viewer != job.principal and not job.shared):
+    if job is None or not job.is_seen_by(viewer):
         raise not_found(f"there is no job '{identifier[:80]}'", "unknown-job")
     return job
 
 
-def find_item(connection: Connection, identifier: str, position: int, viewer: str | None = None) -> jobs.JobItem:
+def find_item(connection: Connection, viewer: Viewer, identifier: str, position: int) -> jobs.JobItem:
     """One item of a job. Raises Refused 404."""
-    found = jobs.page_items(connection, find(connection, identifier, viewer).id, None, position - 1, 1)
+    found = jobs.page_items(connection, find(connection, viewer, identifier).id, None, position - 1, 1)
     if not found or found[0].position != position:
         raise not_found(f"the job has no item {position}", "unknown-item")
     return found[0]
 
 
-def cancel(connection: Connection, identifier: str) -> Job:
-    """Cancel what is not finished. Raises Refused 404."""
-    jobs.cancel(connection, find(connection, identifier).id)
-    return find(connection, identifier)
+def cancel(connection: Connection, viewer: Viewer, identifier: str) -> Job:
+    """Cancel what is not finished. Raises Refused 404, 403 for a shared job of others."""
+    job = find(connection, viewer, identifier)
+    if viewer.key != job.principal:
+        require(viewer, job.owner, f"job {job.id}", "cancels it")
+    jobs.cancel(connection, job.id)
+    audit.note(connection, viewer, "job.cancel", f"job {job.id}")
+    return find(connection, viewer, identifier)
 
 
 def progress(connection: Connection, job: Job) -> Progress:

@@ -6,36 +6,73 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from service.database.connections import Connection
+from service.jobs.kinds.kind import ENTRY
 from service.jobs.kinds.library import StoredTree, StoredVersion
+from service.operations.owners import private_parts, wanted
 from service.queries import catalogue, content, trees
+from service.queries.catalogue import Version
+from service.queries.owners import Kind
+from service.queries.trees import Tree
 from service.references import parse_reference
+from service.refusals import Refused
+from service.schemas.entries import Entry
+from service.schemas.jobs import ItemDocument
+from service.viewer import OPEN, PUBLIC, Viewer
+from substructures.errors import InvalidDocument
 
 
 class StoreLibrary:
     """Reads in one transaction, so that all items of a submission see the same state; answers are remembered."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
+    def __init__(self, connection: Connection, viewer: Viewer) -> None:
+        """``private``: names of what was found and is not for all."""
+        self._connection, self._viewer = connection, viewer
+        self.private: set[str] = set()
         self.version = lru_cache(maxsize=None)(self._version)
         self.tree = lru_cache(maxsize=1000)(self._tree)
 
     def _version(self, reference: str) -> StoredVersion | None:
         ref = parse_reference(reference)
-        found = None if ref is None else catalogue.resolve(self._connection, ref)
+        found = None if ref is None else catalogue.resolve(self._connection, self._viewer, ref)
+        self._note(found)
         return None if found is None else StoredVersion(found.name, found.digest, found.program)
 
     def _tree(self, reference: str) -> StoredTree | None:
         ref = parse_reference(reference)
-        found = None if ref is None else trees.resolve(self._connection, ref)
+        found = None if ref is None else trees.resolve(self._connection, self._viewer, ref)
+        self._note(found)
         return None if found is None else StoredTree(found.name, found.digest, found.program, found.spec, found.summary)
+
+    def _note(self, found: Version | Tree | None) -> None:
+        if found is not None and not found.is_public:
+            self.private.add(found.name)
 
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not withdrawn."""
-        return [f"{name}@{number}" for name, number in catalogue.all_versions(self._connection)]
+        return [f"{name}@{number}" for name, number in catalogue.all_versions(self._connection, self._viewer)]
 
     def trees(self) -> Sequence[str]:
         """References ``name@3`` to all revisions of trees."""
-        return [f"{name}@{number}" for name, number in trees.all_revisions(self._connection)]
+        return [f"{name}@{number}" for name, number in trees.all_revisions(self._connection, self._viewer)]
+
+    def owned(self, kind: str, item: ItemDocument) -> ItemDocument:
+        """The members of an item of kind ``assemble`` or ``derive`` that say for whom it stores what; equal items of
+        others are others. Raises InvalidDocument for a name or a part that may not be used.
+        """
+        entry, what = Entry(**item.get(ENTRY, {})), item["definition" if kind == "derive" else "tree"]
+        named: Kind = "substructure" if kind == "derive" else "tree"
+        try:
+            whose = wanted(self._connection, self._viewer, named, what["name"], entry)
+        except Refused as error:
+            raise InvalidDocument.at("/name", error.code, error.detail) from None
+        if whose.visibility != PUBLIC:
+            self.private.add(what["name"])
+        instances = what.get("instances", ()) if kind == "assemble" else ()
+        digests = {each["name"]: each.get("substructure", "").partition("@")[2] for each in instances}
+        faults = list(private_parts(self._connection, whose, instances, digests)) if instances else []
+        if faults:
+            raise InvalidDocument(faults)
+        return {} if self._viewer.owner == OPEN else {"owner": self._viewer.owner}
 
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""

@@ -6,7 +6,11 @@ import logging
 from time import perf_counter
 
 from service.operations import catalogue as operations
+from service.operations.owners import ship
+from service.queries.owners import ownership
+from service.schemas.entries import PLAIN
 from service.store import Store
+from service.viewer import CATALOGUE, SHIPPED
 from substructures import catalogue
 from substructures.part.definition import Definition
 
@@ -14,12 +18,29 @@ _log = logging.getLogger(__name__)
 
 
 def import_catalogue(store: Store) -> int:
-    """Store every shipped definition that is missing, each in a transaction; return how many were new."""
+    """Store every shipped definition that is missing, each in a transaction; return how many were new.
+
+    A name that somebody else has stays theirs.
+    """
     start, added = perf_counter(), 0
     for name in catalogue.names():
-        submission = operations.prepare(store, Definition.read(catalogue.load(name)))
+        definition = Definition.read(catalogue.load(name))
+        if not _is_ours(store, definition):
+            _log.warning("'%s' of the shipped catalogue is left out: the name belongs to somebody else", name)
+            continue
+        submission = operations.prepare(store, SHIPPED, definition, PLAIN)
         with store.database.write() as connection:
-            added += operations.submit(connection, submission)[1]
+            added += operations.submit(connection, SHIPPED, submission)[1]
     if added:
         _log.info("imported %d catalogue entries in %.1f s", added, perf_counter() - start)
     return added
+
+
+def _is_ours(store: Store, definition: Definition) -> bool:
+    """Whether the name belongs to the catalogue, or is free."""
+    with store.database.read() as connection:
+        found = ownership(connection, "substructure", definition.name)
+    if found is None or found.owner == CATALOGUE:
+        return True
+    with store.database.write() as connection:
+        return ship(connection, definition.name, definition.digest)

@@ -10,14 +10,17 @@ from service.answers import etag
 from service.database.connections import Connection
 from service.database.packed import pack
 from service.integrity import digest_of
-from service.operations import catalogue
+from service.operations import catalogue, owners
+from service.queries import audit, content, trees
 from service.queries import catalogue as versions
-from service.queries import content, trees
 from service.queries.common import now
+from service.queries.owners import private_parts
 from service.references import Reference, is_pinned, parse_reference
 from service.refusals import Refused, StaleError, not_found
+from service.schemas.entries import PLAIN, Entry
 from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
+from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.parameters import counted
@@ -35,6 +38,7 @@ class Revision:
     parts: Mapping[str, Part]
     base: trees.Tree | None = None
     is_exact: bool = False
+    entry: Entry = PLAIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,22 +70,22 @@ class TreeChange:
     step: str
 
 
-def prepare(store: Store, data: Any) -> Revision:
-    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge, LongWork."""
-    return _coupled(store, TreeSpec.read(data))
+def prepare(store: Store, viewer: Viewer, data: Any, entry: Entry) -> Revision:
+    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge, LongWork, Refused 403 or 409."""
+    return _coupled(store, viewer, TreeSpec.read(data), entry)
 
 
-def coupling(store: Store, text: str, data: Any, if_match: str | None = None) -> TreeChange:
-    """One more instance on an existing tree. Raises Refused 404 or 412."""
-    base, spec = _existing(store, text, if_match)
+def coupling(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
+    """One more instance on an existing tree. Raises Refused 403, 404 or 412."""
+    base, spec = _existing(store, viewer, text, if_match)
     instances = spec.get("instances", [])
     grown = {**spec, "instances": [*instances, data]}
     return TreeChange(grown, base, is_pinned(text), f"/instances/{len(instances)}")
 
 
-def removal(store: Store, text: str, instance: str, if_match: str | None = None) -> TreeChange:
-    """One instance less, which must not carry another. Raises Refused 404, 409 or 412."""
-    base, spec = _existing(store, text, if_match)
+def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: str | None = None) -> TreeChange:
+    """One instance less, which must not carry another. Raises Refused 403, 404, 409 or 412."""
+    base, spec = _existing(store, viewer, text, if_match)
     instances = spec.get("instances", [])
     if all(each["name"] != instance for each in instances):
         raise not_found(f"the tree '{text}' has no instance '{instance}'", "unknown-instance")
@@ -92,22 +96,23 @@ def removal(store: Store, text: str, instance: str, if_match: str | None = None)
     return TreeChange({**spec, "instances": kept}, base, is_pinned(text), "")
 
 
-def prepare_change(store: Store, change: TreeChange) -> Revision:
+def prepare_change(store: Store, viewer: Viewer, change: TreeChange) -> Revision:
     """Couple a changed tree. Raises InvalidDocument, TooLarge, LongWork."""
     try:
-        return _coupled(store, TreeSpec.read(change.document), change.base, change.is_exact)
+        return _coupled(store, viewer, TreeSpec.read(change.document), PLAIN, change.base, change.is_exact)
     except InvalidInput as error:  # as seen from the instance document alone
         raise error.moved(lambda pointer: pointer.removeprefix(change.step)) from None
 
 
 def tree_tag(tree: trees.Tree) -> str:
     """The ETag of a tree."""
-    return etag(tree.digest, str(tree.revision))
+    return etag(tree.digest, str(tree.revision), *([] if tree.is_public else [tree.visibility]))
 
 
-def _existing(store: Store, text: str, if_match: str | None) -> tuple[trees.Tree, dict[str, Any]]:
+def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> tuple[trees.Tree, dict[str, Any]]:
     with store.database.read() as connection:
-        base = find(connection, text)
+        base = find(connection, viewer, text)
+    owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
     if if_match not in (None, "*", tree_tag(base)):
         detail = f"the tree '{text}' is not what If-Match says; it is {tree_tag(base)} now"
         raise Refused(412, "precondition-failed", detail, headers={"ETag": tree_tag(base)})
@@ -128,29 +133,48 @@ def _current(tree: trees.Tree) -> dict[str, Any]:
     return spec
 
 
-def _coupled(store: Store, spec: TreeSpec, base: trees.Tree | None = None, is_exact: bool = False) -> Revision:
+def _coupled(
+    store: Store,
+    viewer: Viewer,
+    spec: TreeSpec,
+    entry: Entry,
+    base: trees.Tree | None = None,
+    is_exact: bool = False,
+) -> Revision:
     with store.database.read() as connection:
-        parts = parts_of(store, connection, spec)
+        whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
+        parts = parts_of(store, connection, viewer, spec)
+        digests = {name: part.definition.digest for name, part in parts.items()}
+        faults = list(owners.private_parts(connection, whose, list(map(_shown, spec.instances)), digests))
+    if faults:
+        raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
     spec = spec.model_copy(update={"instances": pinned})
     model = couple(spec, parts, store.settings.limits.program_nodes, store.admit)
     store.remember_model(spec.digest, model)
     store.kernels.prepare(parts.values())
-    return Revision(spec, model, parts, base, is_exact)
+    return Revision(spec, model, parts, base, is_exact, entry)
 
 
-def parts_of(store: Store, connection: Connection, spec: TreeSpec) -> dict[str, Part]:
+def _shown(instance: Instance) -> dict[str, Any]:
+    return {"name": instance.name, "substructure": instance.substructure}
+
+
+def parts_of(store: Store, connection: Connection, viewer: Viewer, spec: TreeSpec) -> dict[str, Part]:
     """The part that every instance is; an inline definition that is not stored is derived. Raises InvalidDocument."""
-    found = [_part(store, connection, index, instance) for index, instance in enumerate(spec.instances)]
+    found = [_part(store, connection, viewer, index, instance) for index, instance in enumerate(spec.instances)]
     return {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
 
 
-def _part(store: Store, connection: Connection, index: int, instance: Instance) -> Part:
+def _part(store: Store, connection: Connection, viewer: Viewer, index: int, instance: Instance) -> Part:
     if instance.definition is not None:
-        return store.part(connection, instance.definition.digest) or _derived(store, index, instance)
+        digest = instance.definition.digest
+        hidden = [owner for _, owner in private_parts(connection, [digest]).values() if not viewer.may_change(owner)]
+        # what is private takes its time as what is not there
+        return (None if hidden else store.part(connection, digest)) or _derived(store, index, instance)
     pointer = f"/instances/{index}/substructure"
     ref = parse_reference(instance.substructure or "")
-    version = versions.resolve(connection, ref) if ref is not None else None
+    version = versions.resolve(connection, viewer, ref) if ref is not None else None
     if version is None:
         message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
@@ -175,7 +199,7 @@ def _pin(instance: Instance, part: Part) -> Instance:
     return instance.model_copy(update={"substructure": f"{part.definition.name}@{part.definition.digest}"})
 
 
-def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool]:
+def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:
     """Store a revision; as :func:`store`."""
     spec, model = revision.spec, revision.model
     inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
@@ -183,20 +207,29 @@ def commit(connection: Connection, revision: Revision) -> tuple[trees.Tree, bool
     program, summary = model.program, tree_summary(spec, model)
     figures = program.digest, len(program), model.dof
     coupled = TreeContent(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
-    return store(connection, coupled, revision.base.revision if revision.base else None, revision.is_exact)
+    number = revision.base.revision if revision.base else None
+    return store(connection, viewer, coupled, revision.entry, number, revision.is_exact)
 
 
 def store(
-    connection: Connection, coupled: TreeContent, base: int | None = None, is_exact: bool = False
+    connection: Connection,
+    viewer: Viewer,
+    coupled: TreeContent,
+    entry: Entry,
+    base: int | None = None,
+    is_exact: bool = False,
 ) -> tuple[trees.Tree, bool]:
     """Store a coupled tree; the tree, and whether it is new (creating the same tree again is not).
 
-    Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned.
+    Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned;
+    Refused 403, 409 where the name is another's, or others would see private parts.
     """
     name, digest = coupled.name, digest_of(coupled.spec)
-    latest = trees.lock_name(connection, name)
+    whose = owners.claimed(connection, viewer, "tree", name, entry)
+    owners.require_public_parts(connection, whose, coupled.parts.values())
+    latest = trees.latest_revision(connection, name)
     if base is None and latest:
-        current = trees.resolve(connection, Reference(name))
+        current = trees.resolve(connection, viewer, Reference(name))
         if current is not None and current.digest == digest:
             return current, False
     if base is not None and not is_exact and latest != base:
@@ -205,15 +238,17 @@ def store(
         catalogue.store_part(connection, part)
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
-    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary))
+    whom = viewer.key, whose.owner, whose.visibility
+    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom)
     trees.add_revision(connection, tree, coupled.parts)
+    audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)
     return tree, True
 
 
-def find(connection: Connection, text: str) -> trees.Tree:
-    """The revision that a reference means. Raises Refused 404."""
+def find(connection: Connection, viewer: Viewer, text: str) -> trees.Tree:
+    """The revision that a reference means. Raises Refused 404 for what the viewer does not see."""
     ref = parse_reference(text)
-    tree = None if ref is None else trees.resolve(connection, ref)
+    tree = None if ref is None else trees.resolve(connection, viewer, ref)
     if tree is None:
         raise not_found(f"there is no tree '{text[:160]}'", "unknown-tree")
     return tree

@@ -20,6 +20,7 @@ from service.queries.uploads import put_uploads
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from service.store import Store
+from service.viewer import Viewer
 from substructures.array import Array
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.formats.arrays import flat, write_npz
@@ -41,7 +42,7 @@ class _Chunk:
 
 
 def prepare(
-    store: Store, tree: Tree, sources: Sources, requests: Iterable[EvaluationRequest], form: str, principal: str
+    store: Store, viewer: Viewer, tree: Tree, sources: Sources, requests: Iterable[EvaluationRequest], form: str
 ) -> jobs.JobSubmission:
     """Store the states of requests (one, or one for each record batch) and resolve the items that evaluate them.
 
@@ -63,9 +64,9 @@ def prepare(
             written[digests[-1]] = content
         items.append(item)
         if len(items) == 1 or sum(map(len, written.values())) > TOGETHER:
-            _write(store, written, len(items), principal)
-    _write(store, written, len(items), principal)
-    return jobs.prepare_items(store, "evaluate", items, digests)
+            _write(store, written, len(items), viewer.key)
+    _write(store, written, len(items), viewer.key)
+    return jobs.prepare_items(store, viewer, "evaluate", items, digests)
 
 
 def _write(store: Store, contents: dict[str, bytes], items: int, principal: str) -> None:

@@ -9,9 +9,10 @@ from typing import Any
 
 import orjson
 
-from service.addresses import tree_path, version_path
-from service.pages.html import Content, Html, joined, link, table, tag
+from service.addresses import version_path
+from service.pages.html import Content, Html, joined, link, tag
 from service.pages.layout import FILTER, document
+from service.pages.trees import trees_table
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 
@@ -102,6 +103,7 @@ def _card(version: Version) -> Html:
         tag("h3", link(version.title or version.name, own)),
         tag("div", tag("code", f"{version.name}@{version.version}")),
         tag("div", size(version.dof, version.joints)),
+        None if version.is_public else tag("div", f"private to {version.owner}", class_="quiet small"),
         tag("div", joined(tags), class_="quiet small"),
         tag("div", joined(links(version), " · "), class_="links small"),
         class_="card",
@@ -124,14 +126,5 @@ def links(version: Version) -> list[Html]:
 def _trees(shown: Shown) -> list[Html]:
     if not shown.trees:
         return []
-    rows = [
-        (
-            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}"),
-            tree.dof,
-            tree.created[:10],
-            link("JSON", tree_path(tree)),
-        )
-        for tree in shown.trees
-    ]
-    more = tag("p", "There are more: ", tag("code", "GET /v1/trees"), ".", class_="quiet") if shown.more else Html()
-    return [tag("h2", "Trees"), table(("latest revision", "dof", "created", ""), rows), more]
+    more = tag("p", "There are more: ", link("all trees", "/trees"), ".", class_="quiet") if shown.more else Html()
+    return [tag("h2", "Trees"), trees_table(shown.trees), more]

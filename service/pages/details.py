@@ -37,6 +37,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
             ("Tags", joined(definition.tags)),
             ("License", definition.license),
             ("Source", definition.source),
+            ("Owner", _owner(version)),
             ("Stored", version.created[:10]),
             ("Digest", tag("code", version.digest, class_="small")),
             ("As data", joined([link("JSON", path), *links(version)], " · ")),
@@ -70,6 +71,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             ("Size", size(tree.dof, model.joints)),
             ("Gravity", f"{', '.join(map(_number, summary['gravity']))} (world axes, m/s^2)"),
             ("Changed from", link(base, f"/trees/{base}") if base else None),
+            ("Owner", _owner(tree)),
             ("Stored", tree.created[:10]),
             ("Digest", tag("code", tree.digest, class_="small")),
             ("As data", link("JSON", path)),
@@ -90,6 +92,10 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             _metric(metric, f"{path}/metric?format=text"),
         ),
     )
+
+
+def _owner(shown: Version | Tree) -> str:
+    return shown.owner if shown.is_public else f"{shown.owner}, who alone sees it"
 
 
 def _number(given: Any) -> str:

@@ -10,7 +10,7 @@ from fastapi import Request, Response
 
 from service.answers import Answer, etag
 from service.http.responses import conditional
-from service.pages.html import Html, html, link, tag
+from service.pages.html import Html, html, joined, link, tag
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
 FILTER = Path(__file__).with_name("filter.js").read_text(encoding="utf-8")
@@ -28,15 +28,16 @@ POLICY = "; ".join(
         f"style-src {_source(STYLE)}",
         f"script-src {_source(FILTER)}",
         "base-uri 'none'",
-        "form-action 'none'",
+        "form-action 'self'",
         "frame-ancestors 'none'",
     ]
 )
+PLACES = (("trees", "/trees"), ("jobs", "/jobs"), ("account", "/account"), ("openapi.json", "/openapi.json"))
 HEADERS = {
     "Content-Type": "text/html; charset=utf-8",
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
+    "Referrer-Policy": "same-origin",
 }
 
 
@@ -53,7 +54,7 @@ def document(title: str, *content: Html, script: str = "", refresh: int | None =
     top = tag(
         "header",
         link("substructures", "/"),
-        tag("nav", link("jobs", "/jobs"), " · ", link("openapi.json", "/openapi.json")),
+        tag("nav", joined([link(name, address) for name, address in PLACES], " · ")),
     )
     body = tag("body", top, tag("main", *content), tag("script", Html(script)) if script else None)
     return f"<!doctype html>\n{tag('html', tag('head', head), body, lang='en')}\n".encode()

@@ -9,14 +9,24 @@ from sqlalchemy import ColumnElement, Connection, Select, and_, bindparam, func,
 
 from service.database.tables import aliases, parts, substructures, tags, versions
 from service.integrity import missing
-from service.queries.common import insert_missing, now
+from service.queries.common import now
+from service.queries.owners import seen_by, visible
 from service.references import Reference
+from service.viewer import PUBLIC, Viewer
 
-_NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason")
+_NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")
 _REPORTS = ("operations", "certificate", "program")
-_COLUMNS = [*(versions.c[name] for name in _NAMES), *(parts.c[name] for name in _DETAILS + _REPORTS)]
-_STORED = versions.join(parts, parts.c.digest == versions.c.digest)
+_OWNED = ("owner", "visibility")
+_COLUMNS = [
+    *(versions.c[name] for name in _NAMES),
+    *(parts.c[name] for name in _DETAILS + _REPORTS),
+    *(substructures.c[name] for name in _OWNED),
+]
+_STORED = versions.join(parts, parts.c.digest == versions.c.digest).join(
+    substructures, substructures.c.name == versions.c.name
+)
+_VISIBLE, _IS_LATEST = visible(substructures), substructures.c.latest == versions.c.version
 _SORTABLE: dict[str, ColumnElement[Any]] = {
     "name": versions.c.name,
     "dof": parts.c.dof,
@@ -34,6 +44,7 @@ class Version:
     created: str
     yanked: str | None
     yank_reason: str | None
+    author: str
     title: str
     description: str
     tags: str
@@ -46,6 +57,13 @@ class Version:
     operations: str
     certificate: str
     program: str
+    owner: str
+    visibility: str
+
+    @property
+    def is_public(self) -> bool:
+        """Whether others see it."""
+        return self.visibility == PUBLIC
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,23 +75,22 @@ class CatalogueSearch:
     dof_min: int | None = None
     dof_max: int | None = None
     joints: str | None = None
+    owner: str | None = None
     sort: str = "name"
 
 
 SORTS = tuple(sign + name for name in _SORTABLE for sign in ("", "-"))
 
 
-def add_version(connection: Connection, name: str, digest: str) -> tuple[int, bool]:
-    """The number of the version with this content, and whether it is new. Allocates under a lock on the name."""
-    insert_missing(connection, substructures, [{"name": name, "latest": None}])
-    connection.execute(select(substructures).where(substructures.c.name == name).with_for_update())
+def add_version(connection: Connection, name: str, digest: str, author: str) -> tuple[int, bool]:
+    """The number of the version with this content, and whether it is new; the name is claimed, and so locked."""
     known = select(versions.c.version).where(versions.c.digest == digest)
     number = connection.execute(known).scalar()
     if number is not None:
         return number, False
     highest = select(func.coalesce(func.max(versions.c.version), 0)).where(versions.c.name == name)
     number = connection.execute(highest).scalar_one() + 1
-    connection.execute(insert(versions).values(name=name, version=number, digest=digest, created=now()))
+    connection.execute(insert(versions).values(name=name, version=number, digest=digest, created=now(), author=author))
     _set_latest(connection, name)
     return number, True
 
@@ -92,33 +109,35 @@ def yank(connection: Connection, name: str, version: int, reason: str) -> None:
     _set_latest(connection, name)
 
 
-def resolve(connection: Connection, ref: Reference) -> Version | None:
-    """The version that a reference means; None when there is none (or, for a bare name, all are yanked).
+def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version | None:
+    """The version that a reference means; None when the viewer sees none (or, for a bare name, all are yanked).
 
     Raises Refused (``missing-content``) for a version whose content is gone from the store.
     """
+    named = {"name": ref.name, **seen_by(viewer)}
     if ref.digest is not None:
-        row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
+        row = connection.execute(_BY_DIGEST, {**named, "digest": ref.digest}).first()
     elif ref.number is not None:
-        row = connection.execute(_BY_NUMBER, {"name": ref.name, "number": ref.number}).first()
+        row = connection.execute(_BY_NUMBER, {**named, "number": ref.number}).first()
     elif ref.alias is not None:
-        row = connection.execute(_BY_ALIAS, {"name": ref.name, "alias": ref.alias}).first()
+        row = connection.execute(_BY_ALIAS, {**named, "alias": ref.alias}).first()
     else:
-        row = connection.execute(_LATEST, {"name": ref.name}).first()
+        row = connection.execute(_LATEST, named).first()
     if row is None:
-        _check_content(connection, ref)
+        _check_content(connection, viewer, ref)
     return None if row is None else Version(*row)
 
 
-def _check_content(connection: Connection, ref: Reference) -> None:
+def _check_content(connection: Connection, viewer: Viewer, ref: Reference) -> None:
     """Raise Refused when what was looked for is a version without its content."""
     gone = select(versions.c.version, versions.c.digest).outerjoin(parts, parts.c.digest == versions.c.digest)
-    gone = gone.where(versions.c.name == ref.name, parts.c.digest.is_(None))
+    gone = gone.join(substructures, substructures.c.name == versions.c.name)
+    gone = gone.where(versions.c.name == ref.name, parts.c.digest.is_(None), _VISIBLE)
     if ref.number is not None:
         gone = gone.where(versions.c.version == ref.number)
     if ref.digest is not None:
         gone = gone.where(versions.c.digest == ref.digest)
-    row = connection.execute(gone.order_by(versions.c.version.desc()).limit(1)).first()
+    row = connection.execute(gone.order_by(versions.c.version.desc()).limit(1), seen_by(viewer)).first()
     if row is not None:
         raise missing(f"the definition of {ref.name}@{row.version}", row.digest)
 
@@ -132,13 +151,16 @@ def all_contents(connection: Connection) -> dict[str, str]:
     return named | {digest: "" for digest in others if digest not in named}
 
 
-def all_versions(connection: Connection) -> list[tuple[str, int]]:
-    """Name and number of every version that is not withdrawn."""
-    query = select(versions.c.name, versions.c.version).where(versions.c.yanked.is_(None))
-    return [(name, number) for name, number in connection.execute(query.order_by(versions.c.name, versions.c.version))]
+def all_versions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:
+    """Name and number of every version that a viewer sees and that is not withdrawn."""
+    query = select(versions.c.name, versions.c.version).join(substructures, substructures.c.name == versions.c.name)
+    query = query.where(versions.c.yanked.is_(None), _VISIBLE).order_by(versions.c.name, versions.c.version)
+    return [(name, number) for name, number in connection.execute(query, seen_by(viewer))]
 
 
-def page(connection: Connection, search: CatalogueSearch, after: tuple[Any, ...] | None, size: int) -> list[Version]:
+def page(
+    connection: Connection, viewer: Viewer, search: CatalogueSearch, after: tuple[Any, ...] | None, size: int
+) -> list[Version]:
     """Up to ``size`` latest versions that follow the position ``after`` (sort value, name) in the order of ``sort``."""
     column = _SORTABLE[search.sort.lstrip("-")]
     descending = search.sort.startswith("-")
@@ -148,31 +170,29 @@ def page(connection: Connection, search: CatalogueSearch, after: tuple[Any, ...]
         beyond = column < value if descending else column > value
         query = query.where(or_(beyond, and_(column == value, versions.c.name > name)))
     query = query.order_by(column.desc() if descending else column, versions.c.name).limit(size)
-    return [Version(*row) for row in connection.execute(query)]
+    return [Version(*row) for row in connection.execute(query, seen_by(viewer))]
 
 
-def facets(connection: Connection, search: CatalogueSearch) -> dict[str, dict[str, int]]:
+def facets(connection: Connection, viewer: Viewer, search: CatalogueSearch) -> dict[str, dict[str, int]]:
     """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
     return {
-        "tags": _counted(connection, _matching(select(tags.c.tag, func.count()), search, join_tags=True)),
-        "joints": _counted(connection, _matching(select(parts.c.joints, func.count()), search)),
-        "dof": _counted(connection, _matching(select(parts.c.dof, func.count()), search)),
+        "tags": _counted(connection, viewer, _matching(select(tags.c.tag, func.count()), search, join_tags=True)),
+        "joints": _counted(connection, viewer, _matching(select(parts.c.joints, func.count()), search)),
+        "dof": _counted(connection, viewer, _matching(select(parts.c.dof, func.count()), search)),
     }
 
 
-def _counted(connection: Connection, query: Select[Any]) -> dict[str, int]:
+def _counted(connection: Connection, viewer: Viewer, query: Select[Any]) -> dict[str, int]:
     value = query.selected_columns[0]
-    rows = connection.execute(query.group_by(value).order_by(value))
+    rows = connection.execute(query.group_by(value).order_by(value), seen_by(viewer))
     return {str(row[0]): row[1] for row in rows}
 
 
-def _is_latest() -> ColumnElement[bool]:
-    return and_(substructures.c.name == versions.c.name, substructures.c.latest == versions.c.version)
-
-
 def _matching(query: Select[Any], search: CatalogueSearch, join_tags: bool = False) -> Select[Any]:
-    source = _STORED.join(substructures, _is_latest())
-    query = query.select_from(source.join(tags, tags.c.part == parts.c.digest) if join_tags else source)
+    query = query.select_from(_STORED.join(tags, tags.c.part == parts.c.digest) if join_tags else _STORED)
+    query = query.where(_IS_LATEST, _VISIBLE)
+    if search.owner is not None:
+        query = query.where(substructures.c.owner == search.owner)
     for word in search.words:
         query = query.where(parts.c.searchable.contains(word.lower(), autoescape=True))
     for tag in search.tags:
@@ -187,10 +207,10 @@ def _matching(query: Select[Any], search: CatalogueSearch, join_tags: bool = Fal
 
 
 # Built once: to build a statement takes longer than to execute it.
-_NAMED = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == bindparam("name"))
+_NAMED = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == bindparam("name"), _VISIBLE)
 _BY_DIGEST = _NAMED.where(versions.c.digest == bindparam("digest"))
 _BY_NUMBER = _NAMED.where(versions.c.version == bindparam("number"))
 _BY_ALIAS = _NAMED.join(
     aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version)
 ).where(aliases.c.alias == bindparam("alias"))
-_LATEST = _NAMED.join(substructures, _is_latest())
+_LATEST = _NAMED.where(_IS_LATEST)

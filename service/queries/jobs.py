@@ -15,6 +15,7 @@ from service.database.job_tables import job_items, jobs, results
 from service.queries.common import now
 from service.queries.job_events import add_event
 from service.queries.states import OPEN, QUEUED, RUNNING
+from service.viewer import Viewer
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,11 @@ class Job:
     finished: str | None
     error: str | None
     shared: bool
+    owner: str
+
+    def is_seen_by(self, viewer: Viewer) -> bool:
+        """Whether the job is there for a viewer."""
+        return self.shared or viewer.may_change(self.owner) or viewer.key == self.principal
 
     @property
     def is_final(self) -> bool:
@@ -71,13 +77,13 @@ def new_id() -> str:
     return f"{time_ns() // 10**6:012x}{secrets.token_hex(8)}"
 
 
-def add_job(connection: Connection, kind: str, principal: str, items: Sequence[NewItem], shared: bool = False) -> str:
+def add_job(connection: Connection, kind: str, viewer: Viewer, items: Sequence[NewItem], shared: bool = False) -> str:
     """Queue a job. Items whose result is known already have succeeded at once."""
     share_results(connection)
     identifier = new_id()
     counts = {"total": len(items), "done": 0, "failed": 0, "attempts": 0}
-    row = {"id": identifier, "kind": kind, "principal": principal, "state": "queued", "created": now(), **counts}
-    row["shared"] = shared
+    row = {"id": identifier, "kind": kind, "state": "queued", "created": now(), **counts}
+    row |= {"principal": viewer.key, "owner": viewer.owner, "shared": shared}
     connection.execute(insert(jobs).values(**row))
     common = {"job": identifier, "state": "queued", "attempts": 0, "deaths": "[]", "fraction": 0.0}
     rows = [
@@ -160,24 +166,19 @@ def get_job(connection: Connection, identifier: str) -> Job | None:
     return None if row is None else Job(*row)
 
 
-def principals(connection: Connection, ids: Collection[str]) -> dict[str, str]:
-    """Who submitted jobs."""
-    query = select(jobs.c.id, jobs.c.principal).where(jobs.c.id.in_(list(ids)))
-    return {row[0]: row[1] for row in connection.execute(query)} if ids else {}
+def submitters(connection: Connection, ids: Collection[str]) -> dict[str, Viewer]:
+    """Who submitted jobs: what they store is stored with the right to write."""
+    query = select(jobs.c.id, jobs.c.principal, jobs.c.owner).where(jobs.c.id.in_(list(ids)))
+    return {row[0]: Viewer(row[1], row[2], ("write",)) for row in connection.execute(query)} if ids else {}
 
 
 def page_jobs(
-    connection: Connection,
-    state: str | None,
-    kind: str | None,
-    before: str | None,
-    size: int,
-    viewer: str | None = None,
+    connection: Connection, viewer: Viewer, state: str | None, kind: str | None, before: str | None, size: int
 ) -> list[Job]:
-    """Up to ``size`` jobs that a principal may see (None: all), the newest first."""
+    """Up to ``size`` jobs that a viewer sees, the newest first."""
     query = _all_jobs()
-    if viewer is not None:
-        query = query.where(or_(jobs.c.principal == viewer, jobs.c.shared))
+    if not viewer.is_admin:
+        query = query.where(or_(jobs.c.owner == viewer.owner, jobs.c.principal == viewer.key, jobs.c.shared))
     for column, value in ((jobs.c.state, state), (jobs.c.kind, kind)):
         if value is not None:
             query = query.where(column == value)

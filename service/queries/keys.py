@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, bindparam, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
 from service.database.tables import api_keys
 from service.queries.common import now
@@ -22,10 +22,11 @@ class ApiKey:
     created: str
     expires: str | None
     revoked: str | None
+    owner: str
 
 
 def any_key(connection: Connection) -> bool:
-    """Whether a key was ever created; expired and revoked ones count, so that a server never opens by itself."""
+    """Whether there is a key that was not revoked; expired ones count, so that a server never opens by itself."""
     return connection.execute(_ANY).first() is not None
 
 
@@ -50,9 +51,19 @@ def revoke_key(connection: Connection, identifier: str) -> bool:
     return bool(connection.execute(update(api_keys).where(api_keys.c.id == identifier).values(revoked=now())).rowcount)
 
 
+def expire_key(connection: Connection, identifier: str, expires: str) -> None:
+    """Let a key expire at a time."""
+    connection.execute(update(api_keys).where(api_keys.c.id == identifier).values(expires=expires))
+
+
+def delete_key(connection: Connection, identifier: str) -> None:
+    """Remove a key."""
+    connection.execute(delete(api_keys).where(api_keys.c.id == identifier))
+
+
 def _all() -> Select[Any]:
     return select(*(api_keys.c[name] for name in ApiKey.__slots__))
 
 
-_ANY = select(api_keys.c.id).limit(1)
+_ANY = select(api_keys.c.id).where(api_keys.c.revoked.is_(None)).limit(1)
 _ONE = _all().where(api_keys.c.id == bindparam("id"))

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, and_, bindparam, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, insert, select, update
 
-from service.database.tables import tree_names, tree_parts, trees
+from service.database.tables import tree_names, tree_parts, trees, versions
 from service.integrity import checked
-from service.queries.common import insert_missing
+from service.queries.owners import seen_by, visible
 from service.references import Reference
+from service.viewer import ANYBODY, PUBLIC, Viewer
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +29,24 @@ class Tree:
     created: str
     based_on: int | None
     summary_digest: str
+    author: str
+    owner: str
+    visibility: str
+
+    @property
+    def is_public(self) -> bool:
+        """Whether others see it."""
+        return self.visibility == PUBLIC
 
 
-def lock_name(connection: Connection, name: str) -> int:
-    """The latest revision number of a name, 0 when there is none; locks it until the transaction ends."""
-    insert_missing(connection, tree_names, [{"name": name, "latest": 0}])
-    return connection.execute(_LOCKED, {"name": name}).scalar_one()
+def latest_revision(connection: Connection, name: str) -> int:
+    """The latest revision number of a name that is claimed, 0 when there is none."""
+    return connection.execute(_LATEST_NUMBER, {"name": name}).scalar_one()
 
 
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
     """Store a new latest revision and which part every instance is; the name is locked."""
-    connection.execute(_NEW, asdict(tree))
+    connection.execute(_NEW, {name: value for name, value in asdict(tree).items() if name not in _OWNED})
     connection.execute(_NEW_LATEST, {"of_name": tree.name, "number": tree.revision})
     key = {"name": tree.name, "revision": tree.revision}
     values = [{**key, "instance": instance, "part": digest} for instance, digest in parts.items()]
@@ -46,16 +54,20 @@ def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -
         connection.execute(_NEW_PART, values)
 
 
-def resolve(connection: Connection, ref: Reference) -> Tree | None:
-    """The revision that a reference means, the latest for a bare name. Raises Refused (``damaged-content``)."""
+def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Tree | None:
+    """The revision that a reference means, the latest for a bare name; None when the viewer sees none.
+
+    Raises Refused (``damaged-content``).
+    """
+    named = {"name": ref.name, **seen_by(viewer)}
     if ref.digest is not None:
-        row = connection.execute(_BY_DIGEST, {"name": ref.name, "digest": ref.digest}).first()
+        row = connection.execute(_BY_DIGEST, {**named, "digest": ref.digest}).first()
     elif ref.number is not None:
-        row = connection.execute(_BY_NUMBER, {"name": ref.name, "number": ref.number}).first()
+        row = connection.execute(_BY_NUMBER, {**named, "number": ref.number}).first()
     elif ref.alias is not None:
         return None
     else:
-        row = connection.execute(_LATEST, {"name": ref.name}).first()
+        row = connection.execute(_LATEST, named).first()
     if row is None:
         return None
     tree = Tree(*row)
@@ -64,15 +76,17 @@ def resolve(connection: Connection, ref: Reference) -> Tree | None:
     return tree
 
 
-def all_revisions(connection: Connection) -> list[tuple[str, int]]:
-    """Name and number of every revision."""
-    query = select(trees.c.name, trees.c.revision).order_by(trees.c.name, trees.c.revision)
-    return [(name, number) for name, number in connection.execute(query)]
+def all_revisions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:
+    """Name and number of every revision that a viewer sees."""
+    query = select(trees.c.name, trees.c.revision).join(tree_names, tree_names.c.name == trees.c.name)
+    query = query.where(_VISIBLE).order_by(trees.c.name, trees.c.revision)
+    return [(name, number) for name, number in connection.execute(query, seen_by(viewer))]
 
 
 def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None:
     """A revision as it is stored, whatever its digests say."""
-    row = connection.execute(_BY_NUMBER, {"name": name, "number": revision}).first()
+    named = {"name": name, "number": revision, **seen_by(ANYBODY)}
+    row = connection.execute(_BY_NUMBER, named).first()
     return None if row is None else Tree(*row)
 
 
@@ -84,27 +98,44 @@ def replace_model(connection: Connection, tree: Tree) -> None:
     connection.execute(update(trees).where(chosen).values(**values))
 
 
-def page(connection: Connection, after: str | None, size: int) -> list[Tree]:
-    """Up to ``size`` latest revisions whose names follow ``after``."""
-    query = _all().join(tree_names, _is_latest())
+@dataclass(frozen=True, slots=True)
+class TreeSearch:
+    """Which trees to list: words in the name, name of a part that is used, owner. All conditions must hold."""
+
+    words: tuple[str, ...] = ()
+    uses: str | None = None
+    owner: str | None = None
+
+
+def page(connection: Connection, viewer: Viewer, search: TreeSearch, after: str | None, size: int) -> list[Tree]:
+    """Up to ``size`` latest revisions that a viewer sees, whose names follow ``after``."""
+    query = _all().where(_IS_LATEST, _VISIBLE)
+    for word in search.words:
+        query = query.where(trees.c.name.contains(word.lower(), autoescape=True))
+    if search.uses is not None:
+        used = select(tree_parts.c.part).join(versions, versions.c.digest == tree_parts.c.part)
+        used = used.where(tree_parts.c.name == trees.c.name, tree_parts.c.revision == trees.c.revision)
+        query = query.where(used.where(versions.c.name == search.uses).exists())
+    if search.owner is not None:
+        query = query.where(tree_names.c.owner == search.owner)
     if after is not None:
         query = query.where(trees.c.name > after)
-    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.name).limit(size))]
+    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.name).limit(size), seen_by(viewer))]
 
 
 def _all() -> Select[Any]:
-    return select(*(trees.c[name] for name in Tree.__slots__))
+    columns = [(tree_names if name in _OWNED else trees).c[name] for name in Tree.__slots__]
+    return select(*columns).join_from(trees, tree_names, tree_names.c.name == trees.c.name)
 
 
-def _is_latest() -> Any:
-    return and_(tree_names.c.name == trees.c.name, tree_names.c.latest == trees.c.revision)
-
+_OWNED = ("owner", "visibility")
+_VISIBLE, _IS_LATEST = visible(tree_names), tree_names.c.latest == trees.c.revision
 
 # Built once: to build a statement takes longer than to execute it.
-_NAMED = _all().where(trees.c.name == bindparam("name"))
+_NAMED = _all().where(trees.c.name == bindparam("name"), _VISIBLE)
 _BY_DIGEST = _NAMED.where(trees.c.digest == bindparam("digest")).order_by(trees.c.revision).limit(1)
 _BY_NUMBER = _NAMED.where(trees.c.revision == bindparam("number"))
-_LATEST = _NAMED.join(tree_names, _is_latest())
-_LOCKED = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name")).with_for_update()
+_LATEST = _NAMED.where(_IS_LATEST)
+_LATEST_NUMBER = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name"))
 _NEW, _NEW_PART = insert(trees), insert(tree_parts)
 _NEW_LATEST = update(tree_names).where(tree_names.c.name == bindparam("of_name")).values(latest=bindparam("number"))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Header, Response
 
 from service.answers import REVALIDATE, json_answer
-from service.http.requests import JsonBody, StoreOf, needs
+from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import response_of
 from service.operations import catalogue
 from service.queries import aliases
@@ -22,19 +22,20 @@ READ, WRITE = [needs("read")], [needs("write")]
 
 
 @router.get("", response_model=AliasList, dependencies=READ)
-def list_aliases(name: str, store: StoreOf) -> Response:
+def list_aliases(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """All aliases of a substructure."""
     with store.database.read() as connection:
-        catalogue.check_name(connection, name)
+        catalogue.check_name(connection, viewer, name)
         rows = aliases.list_aliases(connection, name)
         items = [alias_view(name, row, aliases.history(connection, name, row.alias)) for row in rows]
     return response_of(json_answer(dump({"items": items})))
 
 
 @router.get("/{alias}", response_model=AliasView, dependencies=READ)
-def get_alias(name: str, alias: str, store: StoreOf) -> Response:
+def get_alias(name: str, alias: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """An alias, with the ETag that moving it needs."""
     with store.database.read() as connection:
+        catalogue.check_name(connection, viewer, name)
         row = aliases.get_alias(connection, name, alias)
         if row is None:
             raise not_found(f"there is no alias '{name}@{alias}'", "unknown-alias")
@@ -47,15 +48,14 @@ def put_alias(
     name: str,
     alias: str,
     body: JsonBody,
-    request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     if_match: Annotated[str | None, Header()] = None,
 ) -> Response:
     """Create an alias (201) or move it (200; needs If-Match: 428 without, 412 when it was moved meanwhile)."""
     wanted = read_model(AliasRequest, body)
     with store.database.write() as connection:
-        principal: str = request.state.principal
-        row = catalogue.set_alias(connection, name, alias, wanted.version, if_match, principal)
+        row = catalogue.set_alias(connection, viewer, name, alias, wanted.version, if_match)
         view = alias_view(name, row, aliases.history(connection, name, alias))
     status = 201 if row.revision == 1 and if_match is None else 200
     return response_of(json_answer(dump(view), status, {"ETag": catalogue.alias_tag(row)}))

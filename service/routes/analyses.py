@@ -30,7 +30,9 @@ def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response
     def _run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
-        return act.compute(lambda: analyse(store, ref, name, body, media), deferred(act, "analyse", item, "/request"))
+        return act.compute(
+            lambda: analyse(store, act.viewer, ref, name, body, media), deferred(act, "analyse", item, "/request")
+        )
 
     return _run
 
@@ -68,4 +70,6 @@ def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf,
     """
     how = {"format": style.format, "form": style.form, "bind": style.bind}
     item = {"tree": ref, "quantity": "velocity-equations", "request": body, **how}
-    return act.compute(lambda: velocity_equations(store, ref, body, style), deferred(act, "export", item, "/request"))
+    return act.compute(
+        lambda: velocity_equations(store, act.viewer, ref, body, style), deferred(act, "export", item, "/request")
+    )

@@ -14,6 +14,7 @@ from service.operations import jobs
 from service.queries.jobs import Job
 from service.schemas.jobs import JobView
 from service.store import Store
+from service.viewer import Viewer
 from service.views.jobs import job_path, job_view
 from service.views.resources import dump
 
@@ -34,13 +35,13 @@ def answer(connection: Connection, job: Job, status: int = 200) -> Answer:
     return json_answer(dump(view), status, headers)
 
 
-def committed(store: Store, submission: jobs.JobSubmission, principal: str) -> Commit:
+def committed(store: Store, viewer: Viewer, submission: jobs.JobSubmission) -> Commit:
     """What queues a submission and answers 202."""
 
     def commit(connection: Connection) -> Answer:
         """Queue the job and answer it, unless there is no room for results."""
-        store.usage.take(connection, "result", principal, 0)
-        return answer(connection, jobs.submit(connection, submission, principal, store.settings.limits), 202)
+        store.usage.take(connection, "result", viewer.key, 0)
+        return answer(connection, jobs.submit(connection, viewer, submission, store.settings.limits), 202)
 
     return commit
 
@@ -56,7 +57,7 @@ def deferred(
     def prepare() -> Commit:
         """Check the item as a submission would."""
         act.require("jobs")
-        submission = jobs.prepare_one(act.store, kind, item, step, members)
-        return committed(act.store, submission, act.principal)
+        submission = jobs.prepare_one(act.store, act.viewer, kind, item, step, members)
+        return committed(act.store, act.viewer, submission)
 
     return prepare

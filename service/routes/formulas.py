@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag, json_answer
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
@@ -28,13 +28,15 @@ Filter = Annotated[str | None, Query(max_length=200)]
 
 
 @router.get("", response_model=FormulaIndex, dependencies=READ)
-def list_formulas(ref: str, request: Request, store: StoreOf) -> Response:
+def list_formulas(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The index of the stored formulas."""
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
         rows = index.list_formulas(connection, version.digest)
     tag = etag(version.digest, "formulas")
-    return conditional(request, tag, is_pinned(ref), lambda: json_answer(dump(formulas_view(version, rows))))
+    return conditional(
+        request, tag, is_pinned(ref) and version.is_public, lambda: json_answer(dump(formulas_view(version, rows)))
+    )
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -43,6 +45,7 @@ def get_formula(
     quantity: str,
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     style: StyleOf,
     body: Filter = None,
     coordinate: Filter = None,
@@ -51,7 +54,7 @@ def get_formula(
 ) -> Response:
     """The formulas of one quantity, all or those of one body, coordinate and component."""
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
         rows = index.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
         part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, body, coordinate, component)
@@ -65,4 +68,4 @@ def get_formula(
         found = with_own_inertia(part, chosen) if inertia == "own" else chosen
         return models.printed(models.bound(found, part.parameters, style.bind), style, part.coordinates)
 
-    return conditional(request, tag, is_pinned(ref), make)
+    return conditional(request, tag, is_pinned(ref) and version.is_public, make)

@@ -48,7 +48,7 @@ def events(
     """What happened and happens: changes of state, and positions of items that changed. Ends with the job, or with
     the server: then the client asks again, with ``Last-Event-ID``."""
     with store.database.read() as connection:
-        jobs.find(connection, job, viewer)
+        jobs.find(connection, viewer, job)
     seq = int(last_event_id) if last_event_id and last_event_id.isascii() and last_event_id.isdigit() else 0
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
     limits, principal = store.settings.limits_of_process, request.state.principal
@@ -100,7 +100,7 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it."""
     with store.database.read() as connection:
-        jobs.find(connection, job, viewer)
+        jobs.find(connection, viewer, job)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
     return StreamingResponse(_archive(store, job), media_type="application/zip", headers=headers)
 

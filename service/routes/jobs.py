@@ -45,7 +45,7 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Queue a job. 202 when it is on the disk; before that every item has been checked."""
     if isinstance(body, dict) and body.get("kind") in jobs.STORING:
         act.require("write")
-    return act.submit(lambda: committed(store, jobs.prepare(store, body), act.principal))
+    return act.submit(lambda: committed(store, act.viewer, jobs.prepare(store, act.viewer, body)))
 
 
 @router.get("", response_model=JobPage, dependencies=READ)
@@ -62,7 +62,7 @@ def list_jobs(
     size, search = limited(page_size, store.settings.limits), ("jobs", state, kind)
     before = read_token(search, page_token, str)
     with store.database.read() as connection:
-        found = rows.page_jobs(connection, state, kind, before[0] if before else None, size + 1, viewer)
+        found = rows.page_jobs(connection, viewer, state, kind, before[0] if before else None, size + 1)
         items = [job_view(each, jobs.progress(connection, each)) for each in found[:size]]
     token = write_token(search, found[size - 1].id) if len(found) > size else None
     link = next_link(request, token)
@@ -74,19 +74,17 @@ def list_jobs(
 def get_job(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """A job with its progress."""
     with store.database.read() as connection:
-        return response_of(answer(connection, jobs.find(connection, job, viewer)))
+        return response_of(answer(connection, jobs.find(connection, viewer, job)))
 
 
 @router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
-def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf, viewer: ViewerOf) -> Response:
+def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
     read_model(CancelRequest, body)
 
     def commit(connection: Connection) -> Answer:
         """Cancel, if the job is one's own."""
-        if jobs.find(connection, job, viewer).principal != act.principal:
-            act.require("admin")
-        return answer(connection, jobs.cancel(connection, job))
+        return answer(connection, jobs.cancel(connection, act.viewer, job))
 
     response = act.submit(lambda: commit)
     store.runtime.wake.set()
@@ -107,7 +105,7 @@ def list_items(
     size, search = limited(page_size, store.settings.limits), ("items", job, state)
     after = read_token(search, page_token, int)
     with store.database.read() as connection:
-        jobs.find(connection, job, viewer)
+        jobs.find(connection, viewer, job)
         found = rows.page_items(connection, job, state, after[0] if after else -1, size + 1)
         files = results.list_files(connection, [item.key for item in found if item.summary is not None])
     views = [item_view(job, item, files.get(item.key, ()) if item.summary else ()) for item in found[:size]]
@@ -132,9 +130,9 @@ def get_file(job: str, position: int, name: str, store: StoreOf, viewer: ViewerO
     """A file of a result."""
     with store.database.read() as connection:
         if not 0 <= position < MANY:
-            jobs.find(connection, job, viewer)
+            jobs.find(connection, viewer, job)
             raise not_found(f"the job has no item {position}", "unknown-item")
-        item = jobs.find_item(connection, job, position, viewer)
+        item = jobs.find_item(connection, viewer, job, position)
         content = results.get_file(connection, item.key, name) if item.summary is not None else None
     if content is None:
         raise not_found(f"item {position} has no file '{name[:80]}'", "unknown-file")

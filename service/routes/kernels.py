@@ -34,7 +34,7 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Res
     Without this a tree is compiled in the background after its first evaluation, and at once for many states.
     """
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, act.viewer, ref)
         model = store.model(connection, tree)
 
     def work() -> Answer:

@@ -59,7 +59,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
     """The evaluation in a thread."""
     store, body, limits = act.store, act.spool, act.store.settings.limits
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, act.viewer, ref)
         model = store.model(connection, tree)
     evaluation = TreeEvaluation(sources_of(store, tree, model), tree.digest, limits, engine_of(store, tree, model))
 
@@ -69,7 +69,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
         answer = evaluation.answer(requests, wanted)
         if sent == JSON and is_pinned(ref):
             (given,) = requests
-            at_hand.remember(store, ref, given, evaluation)
+            at_hand.remember(store, tree, ref, given, evaluation)
         return answer
 
     def later() -> Commit:
@@ -79,8 +79,8 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
         if sent == JSON:
             (given,) = requests
             return deferred(act, "evaluate", {"tree": ref, "request": given.given(), "format": form}, "/request")()
-        submission = uploads.prepare(store, tree, evaluation.sources, requests, form, act.principal)
-        return committed(store, submission, act.principal)
+        submission = uploads.prepare(store, act.viewer, tree, evaluation.sources, requests, form)
+        return committed(store, act.viewer, submission)
 
     return act.compute(work, later)
 
@@ -104,12 +104,13 @@ def _quantity(
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, request.state.viewer, ref)
         model = store.model(connection, tree)
+    lasting = is_pinned(ref) and tree.is_public
     if quantity in QUANTITIES:
         source = analyses.source_of(store, tree, model)
         tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
-        return conditional(request, tag, is_pinned(ref), lambda: analyses.printed(source, quantity, options, style))
+        return conditional(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
     check_options(quantity, options)
     tag = etag(tree.digest, quantity, *style.identity)
@@ -121,4 +122,4 @@ def _quantity(
         program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
         return models.printed(program, style, model.coordinates, members)
 
-    return conditional(request, tag, is_pinned(ref), make)
+    return conditional(request, tag, lasting, make)

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, etag
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
 from service.operations import catalogue, pictures, trees
 from service.references import is_pinned
@@ -30,22 +30,22 @@ router = APIRouter(prefix="/v1", tags=["pictures"], dependencies=[needs("read")]
 
 
 @router.get("/substructures/{ref}/picture", response_class=Response, responses=DRAWN)
-def substructure_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Response:
+def substructure_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
     """A part alone, in the pose given or in one that shows its joints."""
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
     pose = pictures.read_pose(q, version.joints)
-    pinned = is_pinned(ref)
+    pinned = is_pinned(ref) and version.is_public
     return _answer(request, version.digest, pose, pinned, lambda: pictures.draw_part(store, version, pose))
 
 
 @router.get("/trees/{ref}/picture", response_class=Response, responses=DRAWN)
-def tree_picture(ref: str, request: Request, store: StoreOf, q: Q = None) -> Response:
+def tree_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
     """A tree, in the pose given or in one that shows its joints."""
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, viewer, ref)
     pose = pictures.read_pose(q, pictures.joints_of(tree))
-    pinned = is_pinned(ref)
+    pinned = is_pinned(ref) and tree.is_public
     return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
 
 

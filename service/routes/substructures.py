@@ -10,7 +10,7 @@ from service.addresses import version_path
 from service.answers import Answer, etag, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
-from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, needs
+from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
 from service.integrity import missing
 from service.operations import catalogue
@@ -21,6 +21,7 @@ from service.references import is_pinned
 from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
+from service.schemas.entries import Entry
 from service.schemas.resources import VersionPage, VersionView, YankRequest
 from service.views.resources import dump, page_view, version_view
 from substructures.documents import read_model
@@ -28,7 +29,7 @@ from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/substructures", tags=["catalogue"])
 READ, WRITE = [needs("read")], [needs("write")]
-DEFINITION: dict[str, Any] = body_of("Definition")
+DEFINITION: dict[str, Any] = body_of("SubmittedDefinition")
 
 
 def names_of(connection: Connection, version: Version) -> list[str]:
@@ -47,15 +48,16 @@ def names_of(connection: Connection, version: Version) -> list[str]:
 @timed("derive")
 def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
-    definition = Definition.read(body)
+    entry, document = Entry.parted(body)
+    definition = Definition.read(document)
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
-        submission = catalogue.prepare(store, definition)
+        submission = catalogue.prepare(store, act.viewer, definition, entry)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and answer it."""
-            version, is_new = catalogue.submit(connection, submission)
+            version, is_new = catalogue.submit(connection, act.viewer, submission)
             view = version_view(version, names_of(connection, version))
             return json_answer(dump(view), 201 if is_new else 200, {"Location": version_path(version)})
 
@@ -68,11 +70,13 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
 def search(
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200, description="words in name, title, description and tags")] = "",
     tag: Annotated[list[str] | None, Query(max_length=10)] = None,
     dof_min: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     dof_max: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     joints: Annotated[str | None, Query(pattern="^[RP]*$", max_length=1000)] = None,
+    owner: Annotated[str | None, Query(max_length=64)] = None,
     sort: Annotated[str, Query(description=f"one of {', '.join(SORTS)}")] = "name",
     page_size: Annotated[int, Query(ge=1)] = 50,
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
@@ -80,35 +84,35 @@ def search(
     """A page of the latest versions, with facets."""
     if sort not in SORTS:
         raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {', '.join(SORTS)}", "/query/sort")
-    wanted = CatalogueSearch(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, sort)
+    wanted = CatalogueSearch(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, owner, sort)
     size = limited(page_size, store.settings.limits)
     with store.database.read() as connection:
-        page = catalogue.search(connection, wanted, size, page_token)
+        page = catalogue.search(connection, viewer, wanted, size, page_token)
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.versions))
     link = next_link(request, page.next_token)
     return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)
-def get_version(ref: str, request: Request, store: StoreOf) -> Response:
+def get_version(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """One version. Aliases and withdrawal may change, so clients revalidate by ETag."""
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
         names = names_of(connection, version)
-    tag = etag(version.digest, str(version.version), str(version.yanked), *names)
+    tag = etag(version.digest, str(version.version), str(version.yanked), version.visibility, *names)
     return conditional(request, tag, False, lambda: json_answer(dump(version_view(version, names))))
 
 
 @router.get("/{ref}/definition", dependencies=READ, responses=content_of("Definition"))
-def get_definition(ref: str, request: Request, store: StoreOf) -> Response:
+def get_definition(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The definition as stored."""
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
         definition = content.get_definition(connection, version.digest)
     if definition is None:
         raise missing(f"the definition of {version.name}@{version.version}", version.digest)
     tag = etag(version.digest, "definition")
-    return conditional(request, tag, is_pinned(ref), lambda: json_answer(definition))
+    return conditional(request, tag, is_pinned(ref) and version.is_public, lambda: json_answer(definition))
 
 
 @router.post("/{ref}/yank", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("YankRequest", False))
@@ -118,7 +122,7 @@ def yank(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
 
     def commit(connection: Connection) -> Answer:
         """Withdraw the version and answer it."""
-        version = catalogue.yank(connection, ref, wanted.reason)
+        version = catalogue.yank(connection, act.viewer, ref, wanted.reason)
         return json_answer(dump(version_view(version, names_of(connection, version))))
 
     return act.submit(lambda: commit)

@@ -11,15 +11,16 @@ from service.addresses import tree_path
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import Act, ActOf, Commit, timed
-from service.http.requests import JsonBody, StoreOf, needs
+from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
 from service.operations import trees
 from service.operations.job_results import BASE_REVISION, IS_EXACT
 from service.paging import limited, read_token, write_token
-from service.queries.trees import page
+from service.queries.trees import TreeSearch, page
 from service.references import is_pinned
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
+from service.schemas.entries import Entry
 from service.schemas.resources import TreePage, TreeView
 from service.views.resources import dump, tree_item, tree_view
 
@@ -28,7 +29,7 @@ READ, WRITE = [needs("read")], [needs("write")]
 IfMatch = Annotated[str | None, Header(description="ETag of the tree that is to be changed")]
 
 
-def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
+def revision(act: Act, prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
     """What ``Act`` runs: prepare a revision, then store it and answer it."""
 
     def prepared() -> Commit:
@@ -37,7 +38,7 @@ def revision(prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
 
         def commit(connection: Connection) -> Answer:
             """Store the revision and answer it."""
-            tree, is_new = trees.commit(connection, ready)
+            tree, is_new = trees.commit(connection, act.viewer, ready)
             return json_answer(tree_view(tree), 201 if is_new else 200, {"Location": tree_path(tree)})
 
         return commit
@@ -54,7 +55,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
         members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
         return deferred(act, "assemble", found.document, found.step, members)()
 
-    return act.run(revision(lambda: trees.prepare_change(act.store, change())), later)
+    return act.run(revision(act, lambda: trees.prepare_change(act.store, act.viewer, change())), later)
 
 
 @router.post(
@@ -62,39 +63,47 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
     status_code=201,
     response_model=TreeView,
     dependencies=WRITE,
-    openapi_extra=body_of("TreeSpec"),
+    openapi_extra=body_of("SubmittedTree"),
     responses=made(TreeView),
 )
 @timed("derive")
 def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
-    return act.run(revision(lambda: trees.prepare(store, body)), deferred(act, "assemble", body))
+    entry, document = Entry.parted(body)
+    prepared = revision(act, lambda: trees.prepare(store, act.viewer, document, entry))
+    return act.run(prepared, deferred(act, "assemble", body))
 
 
 @router.get("", response_model=TreePage, dependencies=READ)
 def list_trees(
     request: Request,
     store: StoreOf,
+    viewer: ViewerOf,
+    q: Annotated[str, Query(max_length=200, description="words in the name")] = "",
+    uses: Annotated[str | None, Query(max_length=200, description="name of a part that is an instance")] = None,
+    owner: Annotated[str | None, Query(max_length=64)] = None,
     page_size: Annotated[int, Query(ge=1)] = 50,
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """A page of trees, the latest revision of each."""
-    size = limited(page_size, store.settings.limits)
-    after = read_token("trees", page_token, str)
+    size, wanted = limited(page_size, store.settings.limits), TreeSearch(tuple(q.split()), uses, owner)
+    after = read_token(wanted, page_token, str)
     with store.database.read() as connection:
-        found = page(connection, after[0] if after else None, size + 1)
-    token = write_token("trees", found[size - 1].name) if len(found) > size else None
+        found = page(connection, viewer, wanted, after[0] if after else None, size + 1)
+    token = write_token(wanted, found[size - 1].name) if len(found) > size else None
     link = next_link(request, token)
     view = {"items": [tree_item(t) for t in found[:size]], "next_page_token": token, "links": {"next": link}}
     return response_of(json_answer(dump(view), headers=link_header(link)))
 
 
 @router.get("/{ref}", response_model=TreeView, dependencies=READ)
-def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
+def get_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """A revision of a tree, the latest for a bare name."""
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
-    return conditional(request, trees.tree_tag(tree), is_pinned(ref), lambda: json_answer(tree_view(tree)))
+        tree = trees.find(connection, viewer, ref)
+    return conditional(
+        request, trees.tree_tag(tree), is_pinned(ref) and tree.is_public, lambda: json_answer(tree_view(tree))
+    )
 
 
 @router.post(
@@ -108,7 +117,7 @@ def get_tree(ref: str, request: Request, store: StoreOf) -> Response:
 @timed("derive")
 def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Couple one more instance onto the tree: a new revision."""
-    return changed(act, lambda: trees.coupling(store, ref, body, if_match))
+    return changed(act, lambda: trees.coupling(store, act.viewer, ref, body, if_match))
 
 
 @router.delete(
@@ -121,4 +130,4 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match:
 @timed("derive")
 def remove_coupling(ref: str, instance: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
-    return changed(act, lambda: trees.removal(store, ref, instance, if_match))
+    return changed(act, lambda: trees.removal(store, act.viewer, ref, instance, if_match))

@@ -60,6 +60,7 @@ class JobView(Shape):
     progress: JobProgress
     attempts: int = Field(description="attempts on all items")
     principal: str = Field(description="id of the API key, or local")
+    owner: str = Field(description="whose keys see and cancel it")
     shared: bool = Field(description="whether every API key may see it")
     created: Time
     started: Time | None

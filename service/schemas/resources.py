@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.schemas.entries import Visibility
 from service.schemas.shapes import Digest, Links, Shape, Time, Warned
 
 
@@ -66,6 +67,9 @@ class VersionView(Shape):
     yanked: bool
     yanked_at: Time | None
     yank_reason: str | None
+    author: str = Field(description="id of the API key that submitted it; empty in older stores")
+    owner: str = Field(description="whose the name is; catalogue: shipped")
+    visibility: Visibility
     links: Links
 
 
@@ -166,6 +170,9 @@ class TreeView(Shape):
     program: Digest
     created: Time
     based_on: int | None = Field(description="the revision that was changed")
+    author: str = Field(description="id of the API key that made it; empty in older stores")
+    owner: str = Field(description="whose the name is; catalogue: shipped")
+    visibility: Visibility
     links: Links
 
 
@@ -177,6 +184,8 @@ class TreeItem(Shape):
     digest: Digest
     dof: int
     created: Time
+    owner: str = Field(description="whose the name is; catalogue: shipped")
+    visibility: Visibility
     links: Links
 
 
@@ -184,6 +193,26 @@ class TreePage(Shape):
     """A page of trees, the latest revision of each."""
 
     items: list[TreeItem]
+    next_page_token: str | None
+    links: Links
+
+
+class AuditView(Shape):
+    """Something that was done."""
+
+    seq: int
+    time: Time
+    key: str = Field(description="id of the API key; local: without keys, console: a command on the store")
+    owner: str
+    action: str = Field(description="what: substructure.submit, alias.set, tree.store, job.cancel, key.revoke, ...")
+    subject: str = Field(description="to what")
+    detail: dict[str, Any]
+
+
+class AuditPage(Shape):
+    """Acts, the latest first."""
+
+    items: list[AuditView]
     next_page_token: str | None
     links: Links
 

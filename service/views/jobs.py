@@ -39,6 +39,7 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         },
         "attempts": job.attempts,
         "principal": job.principal,
+        "owner": job.owner,
         "shared": bool(job.shared),
         "created": job.created,
         "started": job.started,

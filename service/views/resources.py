@@ -10,6 +10,7 @@ import orjson
 from service.addresses import BASE, tree_path, version_path
 from service.operations.catalogue import Page
 from service.queries.aliases import Alias, AliasHistoryEntry
+from service.queries.audit import AuditEntry
 from service.queries.catalogue import Version
 from service.queries.formulas import FormulaRow
 from service.queries.trees import Tree
@@ -51,6 +52,9 @@ def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
         "yanked": version.yanked is not None,
         "yanked_at": version.yanked,
         "yank_reason": version.yank_reason,
+        "author": version.author,
+        "owner": version.owner,
+        "visibility": version.visibility,
         "links": {
             "self": path,
             "definition": f"{path}/definition",
@@ -127,6 +131,9 @@ def tree_view(tree: Tree) -> bytes:
         "program": tree.program,
         "created": tree.created,
         "based_on": tree.based_on,
+        "author": tree.author,
+        "owner": tree.owner,
+        "visibility": tree.visibility,
         "warnings": tree_warnings(tree),
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
         | {"kernels": f"{path}/kernels"}
@@ -137,8 +144,14 @@ def tree_view(tree: Tree) -> bytes:
 
 def tree_item(tree: Tree) -> dict[str, Any]:
     """A tree in a list."""
-    names = ("name", "revision", "digest", "dof", "created")
+    names = ("name", "revision", "digest", "dof", "created", "owner", "visibility")
     return {**{name: getattr(tree, name) for name in names}, "links": {"self": tree_path(tree)}}
+
+
+def audit_view(entry: AuditEntry) -> dict[str, Any]:
+    """An act."""
+    names = [name for name in AuditEntry.__slots__ if name != "detail"]
+    return {**{name: getattr(entry, name) for name in names}, "detail": orjson.Fragment(entry.detail)}
 
 
 def dump(view: Any) -> bytes:

@@ -16,6 +16,7 @@ from service.queries.jobs import NewItem
 from service.queue.rounds import Ended, Played, Round, play
 from service.settings import Settings
 from service.store import Store
+from service.viewer import ANYBODY
 
 from .databases import fresh
 
@@ -51,7 +52,7 @@ DONE = Outcome({"n": 1}, {"result": b"data"})
 def add(store: Store, *keys: str) -> str:
     """A job with items of these keys."""
     with store.database.write() as connection:
-        return queries.add_job(connection, "export", "local", [NewItem(key, "{}", "[]") for key in keys])
+        return queries.add_job(connection, "export", ANYBODY, [NewItem(key, "{}", "[]") for key in keys])
 
 
 def round_of(store: Store, owner: str, *ended: Ended, wanted: int = 0, lease: timedelta = LEASE, **more: Any) -> Played:

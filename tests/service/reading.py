@@ -24,6 +24,7 @@ KNOWN = {
     "div",
     "span",
 } | {
+    *("form", "button"),
     *("h1", "h2", "h3", "pre", "code", "input", "img", "article", "sub", "sup", "progress"),
     *("table", "thead", "tbody", "tr", "th", "td", "dl", "dt", "dd", "ul", "li"),
 }

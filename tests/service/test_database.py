@@ -36,7 +36,7 @@ def test_migrated_schema_is_the_one_in_the_code(database: Database) -> None:
 def test_migrating_again_changes_nothing(database: Database) -> None:
     upgrade(database.writer)
     with database.read() as connection:
-        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0008"]
+        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0009"]
 
 
 def test_newer_databases_are_refused(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_newer_databases_are_refused(tmp_path: Path) -> None:
 def test_altering_a_table_keeps_its_child_rows(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
     """Alembic's batch mode drops the old table, which deletes rows that refer to it while foreign keys are on."""
     with database.write() as connection:
-        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+        connection.exec_driver_sql("INSERT INTO substructures (name) VALUES ('a')")
         connection.exec_driver_sql("INSERT INTO programs VALUES ('p', x'00', 1, '')")
         row = {column.name: "" for column in parts.columns} | {"digest": "d", "program": "p", "dof": 1}
         connection.execute(parts.insert().values(row))
@@ -98,11 +98,11 @@ def test_pragmas(database: Database) -> None:
 
 def test_readers_cannot_write(database: Database) -> None:
     with pytest.raises(sa.exc.OperationalError, match="readonly"), database.read() as connection:
-        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+        connection.exec_driver_sql("INSERT INTO substructures (name) VALUES ('a')")
 
 
 def test_transactions_are_all_or_nothing(database: Database) -> None:
-    statement = "INSERT INTO substructures VALUES ('a', NULL)"
+    statement = "INSERT INTO substructures (name) VALUES ('a')"
     with pytest.raises(sa.exc.IntegrityError), database.write() as connection:  # noqa: PT012 -- the second of two
         for _ in range(2):
             connection.exec_driver_sql(statement)

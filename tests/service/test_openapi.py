@@ -28,7 +28,7 @@ def test_every_reference_resolves() -> None:
     assert document["openapi"].startswith("3.1")
     names = {part.split('"')[0] for part in text.split("#/components/schemas/")[1:]}
     assert names <= document["components"]["schemas"].keys()
-    assert {"Definition", "TreeSpec", "Instance", "EvaluationRequest", "Problem"} <= names
+    assert {"SubmittedDefinition", "SubmittedTree", "Instance", "EvaluationRequest", "Problem"} <= names
 
 
 def test_bodies_and_problems_are_described() -> None:

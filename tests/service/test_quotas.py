@@ -15,6 +15,7 @@ import sqlalchemy as sa
 from service import usage
 from service.app import open_store
 from service.database.job_tables import results, uploads
+from service.database.migrate import upgrade
 from service.database.tables import idempotency
 from service.settings import Limits, Settings
 from service.store import Store
@@ -117,15 +118,10 @@ def test_answers_under_keys(kind: str, tmp_path: Path) -> None:
 def test_what_was_there_before_has_its_size(tmp_path: Path) -> None:
     """The migration, from a store of the version before."""
     settings = Settings(database=f"sqlite:///{tmp_path}/x.db", catalogue=False)
-    with open_store(settings):
-        pass
+    engine = sa.create_engine(settings.database)
+    upgrade(engine, "0006")
+    engine.dispose()
     with closing(sqlite3.connect(tmp_path / "x.db")) as connection:
-        for table in ("uploads", "results", "idempotency"):
-            connection.execute(f"DROP INDEX ix_{table}_principal_size")
-            connection.execute(f"ALTER TABLE {table} DROP COLUMN size")
-        for table in ("uploads", "results"):
-            connection.execute(f"ALTER TABLE {table} DROP COLUMN principal")
-        connection.execute("UPDATE alembic_version SET version_num = '0006'")
         connection.execute("INSERT INTO uploads VALUES ('d', x'000102', '')")
         connection.execute("INSERT INTO results VALUES ('k', 'export', '{}', '')")
         connection.execute("INSERT INTO result_files VALUES ('k', 'f', 5, x'0001020304')")

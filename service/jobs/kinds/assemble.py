@@ -8,7 +8,7 @@ from service.cache import Cache
 from service.database.packed import pack
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, stored_definition
+from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -28,7 +28,8 @@ _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
-    return [{"tree": item, "nodes": limits.job_nodes}]
+    entry, tree = parted(item)
+    return [{"tree": tree, "nodes": limits.job_nodes, **entry}]
 
 
 def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -> tuple[ItemDocument, tuple[str, ...]]:
@@ -54,7 +55,8 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
-    return {"tree": tree, "programs": programs, "nodes": item["nodes"]}, (*programs, *programs.values())
+    entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
+    return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
 
 def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Library) -> Iterator[Fault]:

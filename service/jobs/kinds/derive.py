@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, parted
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -27,7 +27,8 @@ TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits", "uni
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
-    return [{"definition": item, "nodes": limits.job_nodes}]
+    entry, definition = parted(item)
+    return [{"definition": definition, "nodes": limits.job_nodes, **entry}]
 
 
 def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from service.integrity import missing, reading
 from service.jobs.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree
+from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
@@ -17,6 +18,8 @@ from substructures.part.definition import Definition
 
 Blobs = Mapping[str, bytes]
 ItemProgress = Callable[[float], None]
+#: field of an item that stores something: what its document says beside its content, left out where that is nothing
+ENTRY = "entry"
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,13 @@ def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[
     faults += [Fault(pointer_step(key), "missing", f"'{key}' is needed") for key in required if key not in item]
     if faults:
         raise InvalidDocument(faults)
+
+
+def parted(document: ItemDocument) -> tuple[ItemDocument, ItemDocument]:
+    """The field ENTRY of an item, if there is one, and the document without what belongs there."""
+    entry, rest = Entry.parted(document)
+    given = entry.model_dump(exclude_none=True)
+    return ({ENTRY: given} if given else {}), rest
 
 
 def stored_definition(digest: str, library: Library) -> Definition:

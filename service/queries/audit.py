@@ -1,0 +1,47 @@
+"""Who did what: rows are added and never changed, which triggers of the database see to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+from sqlalchemy import Connection, func, insert, select
+
+from service.database.tables import audit
+from service.queries.common import now
+from service.viewer import Viewer
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """One act; ``subject`` is what it was done to, ``detail`` is JSON."""
+
+    seq: int
+    time: str
+    key: str
+    owner: str
+    action: str
+    subject: str
+    detail: str
+
+
+def note(connection: Connection, viewer: Viewer, action: str, subject: str, **detail: Any) -> None:
+    """Note an act in the transaction that does it."""
+    following = select(func.coalesce(func.max(audit.c.seq), 0) + 1)
+    if connection.dialect.name == "postgresql":
+        connection.exec_driver_sql("SELECT pg_advisory_xact_lock(7305513)")  # one number after the other
+    row = {"time": now(), "key": viewer.key, "owner": viewer.owner, "action": action, "subject": subject}
+    row["detail"] = orjson.dumps(detail).decode()
+    connection.execute(insert(audit).values(seq=following.scalar_subquery(), **row))
+
+
+def page(connection: Connection, wanted: Mapping[str, str], before: int | None, size: int) -> list[AuditEntry]:
+    """Up to ``size`` acts, the latest first; ``wanted``: values that columns have to have."""
+    query = select(*(audit.c[name] for name in AuditEntry.__slots__))
+    for name, value in wanted.items():
+        query = query.where(audit.c[name] == value)
+    if before is not None:
+        query = query.where(audit.c.seq < before)
+    return [AuditEntry(*row) for row in connection.execute(query.order_by(audit.c.seq.desc()).limit(size))]

@@ -1,0 +1,96 @@
+"""Names and their owners: of parts and of trees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sqlalchemy import Boolean, ColumnElement, Connection, Table, bindparam, or_, select, update
+
+from service.database.tables import substructures, tree_names, tree_parts, versions
+from service.queries.common import insert_missing
+from service.viewer import PUBLIC, Viewer
+
+AT_A_TIME = 500
+Kind = Literal["substructure", "tree"]
+_TABLES: dict[Kind, Table] = {"substructure": substructures, "tree": tree_names}
+_FIRST: dict[Kind, dict[str, Any]] = {"substructure": {"latest": None}, "tree": {"latest": 0}}
+
+
+@dataclass(frozen=True, slots=True)
+class Ownership:
+    """Whose a name is, and whether others see it."""
+
+    owner: str
+    visibility: str
+
+
+def visible(table: Table) -> ColumnElement[bool]:
+    """The condition that a name is there for a viewer; its values are those of :func:`seen_by`."""
+    return or_(table.c.visibility == PUBLIC, table.c.owner == bindparam("viewer"), bindparam("sees_all", type_=Boolean))
+
+
+def seen_by(viewer: Viewer) -> dict[str, Any]:
+    """The values of :func:`visible`."""
+    return {"viewer": viewer.owner, "sees_all": viewer.is_admin}
+
+
+def ownership(connection: Connection, kind: Kind, name: str) -> Ownership | None:
+    """Whose a name is; None for one that is free."""
+    row = connection.execute(_OF[kind], {"name": name}).first()
+    return None if row is None else Ownership(*row)
+
+
+def claim(connection: Connection, kind: Kind, name: str, wanted: Ownership) -> Ownership:
+    """Whose a name is, that of ``wanted`` if it was free; locks it until the transaction ends."""
+    insert_missing(
+        connection,
+        _TABLES[kind],
+        [{"name": name, "owner": wanted.owner, "visibility": wanted.visibility, **_FIRST[kind]}],
+    )
+    return Ownership(*connection.execute(_LOCKED[kind], {"name": name}).one())
+
+
+def change(connection: Connection, kind: Kind, name: str, wanted: Ownership) -> None:
+    """Give a name another owner or visibility."""
+    table = _TABLES[kind]
+    values = {"owner": wanted.owner, "visibility": wanted.visibility}
+    connection.execute(update(table).where(table.c.name == name).values(**values))
+
+
+# Built once: to build a statement takes longer than to execute it.
+_OF = {
+    kind: select(table.c.owner, table.c.visibility).where(table.c.name == bindparam("name"))
+    for kind, table in _TABLES.items()
+}
+_LOCKED = {kind: query.with_for_update() for kind, query in _OF.items()}
+
+
+def private_parts(connection: Connection, digests: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Name and owner of those of the parts that are private, by digest."""
+    wanted = list(set(digests))
+    found: dict[str, tuple[str, str]] = {}
+    for start in range(0, len(wanted), AT_A_TIME):
+        rows = connection.execute(_PRIVATE, {"digests": wanted[start : start + AT_A_TIME]})
+        found |= {digest: (name, owner) for digest, name, owner in rows}
+    return found
+
+
+def private_parts_of_tree(connection: Connection, name: str) -> dict[str, tuple[str, str]]:
+    """Name and owner of the private parts in any revision of a tree, by digest."""
+    used = select(tree_parts.c.part).where(tree_parts.c.name == name).distinct()
+    return private_parts(connection, connection.execute(used).scalars())
+
+
+def is_version(connection: Connection, name: str, digest: str) -> bool:
+    """Whether a name has a version with this content."""
+    query = select(versions.c.version).where(versions.c.name == name, versions.c.digest == digest)
+    return connection.execute(query).first() is not None
+
+
+_PRIVATE = (
+    select(versions.c.digest, versions.c.name, substructures.c.owner)
+    .join(substructures, substructures.c.name == versions.c.name)
+    .where(versions.c.digest.in_(bindparam("digests", expanding=True)), substructures.c.visibility != PUBLIC)
+)

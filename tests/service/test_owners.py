@@ -1,0 +1,484 @@
+"""Two owners with three keys on one server: who sees, reads, changes and cancels what, at all endpoints there are."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sqlalchemy as sa
+from fastapi.testclient import TestClient
+
+from service import keys
+from service.app import bare_app, open_store
+from service.cli.main import main
+from service.database.migrate import upgrade
+from service.http import openapi
+from service.queries.jobs import get_job
+from service.settings import Settings
+from service.store import Store
+from service.viewer import Viewer
+
+from .conftest import PENDULUM, make_client
+from .fake_engine import FakeEngine, export, finished, running
+
+Headers = dict[str, str]
+MARK = "hush"  # stands in everything that is private, and nowhere else
+NAMES = {"private": "hush", "public": "known"}
+ANALYSES = (
+    *("cost-gradients", "curvatures", "equilibria", "excitations", "identifications", "linearisations", "loop-states"),
+    *("optimal-controls", "root-loci", "sensitivities", "simulations", "steady-motions", "velocity-equations"),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """What answers a request about something of acme: to acme's key, to its key that only reads, to bolt's key.
+
+    ``path`` has the places ``{part}``, ``{tree}``, ``{job}``. Where statuses are those of lists (``LISTED``) bolt finds
+    nothing private in them. 0: the request is let in, whatever comes of it.
+    """
+
+    path: str
+    private: tuple[int, int, int]
+    public: tuple[int, int, int]
+    body: Any = None
+
+
+READ = (200, 200, 404), (200, 200, 200)
+LISTED = (200, 200, 200), (200, 200, 200)
+LET_IN = (0, 0, 404), (0, 0, 0)
+FORM: dict[str, Any] = {"name": "{tree}", "gravity": [0, 0, 0], "instances": [{"name": "a", "substructure": "{part}"}]}
+CAMERA = {"name": "b", "substructure": "{part}", "at": "arm.tip"}
+JOB = {"kind": "export", "items": [{"tree": "{tree}", "quantity": "metric", "format": "text"}]}
+PART, TREE, JOBS = "/v1/substructures", "/v1/trees", "/v1/jobs/{job}"
+TABLE: dict[str, Row] = {
+    "get /livez": Row("/livez", *LISTED),
+    "get /readyz": Row("/readyz", *LISTED),
+    "get /metrics": Row("/metrics", *LISTED),
+    "get /v1/limits": Row("/v1/limits", *LISTED),
+    "get /v1/audit": Row("/v1/audit", (403, 403, 403), (403, 403, 403)),
+    "get /v1/substructures": Row(f"{PART}?q=", *LISTED),
+    "post /v1/substructures": Row(
+        PART, (201, 403, 403), (201, 403, 403), {**PENDULUM, "name": "{part}", "title": "another"}
+    ),
+    "get /v1/substructures/{ref}": Row(PART + "/{part}", *READ),
+    "get /v1/substructures/{ref}/definition": Row(PART + "/{part}@1/definition", *READ),
+    "get /v1/substructures/{ref}/formulas": Row(PART + "/{part}@1/formulas", *READ),
+    "get /v1/substructures/{ref}/formulas/{quantity}": Row(PART + "/{part}@1/formulas/metric", *READ),
+    "get /v1/substructures/{ref}/picture": Row(PART + "/{part}@1/picture", *READ),
+    "get /v1/substructures/{name}/aliases": Row(PART + "/{part}/aliases", *READ),
+    "get /v1/substructures/{name}/aliases/{alias}": Row(PART + "/{part}/aliases/best", *READ),
+    "put /v1/substructures/{name}/aliases/{alias}": Row(
+        PART + "/{part}/aliases/new", (201, 403, 404), (201, 403, 403), {"version": 1}
+    ),
+    "post /v1/substructures/{ref}/yank": Row(PART + "/{part}@1/yank", (200, 403, 404), (200, 403, 403), {}),
+    "get /v1/substructures/{name}/visibility": Row(PART + "/{part}/visibility", *READ),
+    "put /v1/substructures/{name}/visibility": Row(
+        PART + "/{part}/visibility", (200, 403, 404), (200, 403, 403), {"visibility": "public"}
+    ),
+    "get /v1/trees": Row(TREE, *LISTED),
+    "post /v1/trees": Row(TREE, (201, 403, 403), (201, 403, 403), FORM),
+    "get /v1/trees/{ref}": Row(TREE + "/{tree}", *READ),
+    "get /v1/trees/{ref}/picture": Row(TREE + "/{tree}@1/picture", *READ),
+    "get /v1/trees/{ref}/{quantity}": Row(TREE + "/{tree}@1/metric", *READ),
+    "get /v1/trees/{name}/visibility": Row(TREE + "/{tree}/visibility", *READ),
+    "put /v1/trees/{name}/visibility": Row(
+        TREE + "/{tree}/visibility", (409, 403, 404), (200, 403, 403), {"visibility": "public"}
+    ),
+    "post /v1/trees/{ref}/couplings": Row(TREE + "/{tree}/couplings", (201, 403, 404), (201, 403, 403), CAMERA),
+    "delete /v1/trees/{ref}/couplings/{instance}": Row(
+        TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403)
+    ),
+    "post /v1/trees/{ref}/evaluations": Row(
+        TREE + "/{tree}@1/evaluations", *READ, {"quantities": ["metric"], "q": [0.1, 0.2]}
+    ),
+    "post /v1/trees/{ref}/kernels": Row(TREE + "/{tree}@1/kernels", *LET_IN, {"quantities": ["metric"]}),
+    **{f"post /v1/trees/{{ref}}/{name}": Row(TREE + f"/{{tree}}@1/{name}", *LET_IN, {}) for name in ANALYSES},
+    "get /v1/jobs": Row("/v1/jobs", *LISTED),
+    "post /v1/jobs": Row("/v1/jobs", (202, 403, 422), (202, 403, 202), JOB),
+    "get /v1/jobs/{job}": Row(JOBS, *READ),
+    "get /v1/jobs/{job}/archive": Row(JOBS + "/archive", *READ),
+    "get /v1/jobs/{job}/events": Row(JOBS + "/events", *READ),
+    "get /v1/jobs/{job}/items": Row(JOBS + "/items", *READ),
+    "get /v1/jobs/{job}/items/{position}/files/{name}": Row(JOBS + "/items/0/files/text", *READ),
+    "get /v1/jobs/{job}/result": Row(JOBS + "/result", *READ),
+    "post /v1/jobs/{job}/cancel": Row(JOBS + "/cancel", (200, 403, 404), (200, 403, 403), {}),
+    # pages are not in the document
+    "page /": Row("/", *LISTED),
+    "page /trees": Row("/trees", *LISTED),
+    "page /jobs": Row("/jobs", *LISTED),
+    "page /substructures/{ref}": Row("/substructures/{part}", *READ),
+    "page /trees/{ref}": Row("/trees/{tree}", *READ),
+    "page /jobs/{job}": Row("/jobs/{job}", *READ),
+    "page /account": Row("/account", *LISTED),
+}
+
+
+@dataclass(frozen=True)
+class World:
+    """A store with what belongs to acme, and the headers of acme's key, of its key that only reads, and of bolt's."""
+
+    path: Path
+    keys: tuple[Headers, Headers, Headers]
+    admin: Headers
+    jobs: dict[str, str]
+
+
+def store_of(client: TestClient) -> Store:
+    found: Store = client.app.state.store  # type: ignore[attr-defined]
+    return found
+
+
+def key(store: Store, owner: str, *scopes: str) -> Headers:
+    with store.database.write() as connection:
+        return {"Authorization": f"Bearer {keys.create(connection, '', scopes, None, owner)}"}
+
+
+@pytest.fixture(scope="module")
+def world(tmp_path_factory: pytest.TempPathFactory) -> World:
+    path = tmp_path_factory.mktemp("world") / "store.db"
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, key_seconds=0)) as store:
+        acme, reads = key(store, "acme", "read", "write", "jobs"), key(store, "acme", "read")
+        bolt, admin = key(store, "bolt", "read", "write", "jobs"), key(store, "root", "admin")
+        client, jobs = make_client(store), {}
+        with running(store, FakeEngine()):
+            for visibility, name in NAMES.items():
+                part = {**PENDULUM, "name": name, "title": name, "visibility": visibility}
+                eye = {"name": "eye", "substructure": name, "at": "arm.tip"}
+                arm = {"name": "arm", "substructure": name}
+                tree = {"name": f"{name}-cell", "visibility": visibility, "instances": [arm, eye]}
+                for address, body in ((PART, part), (TREE, {**tree, "gravity": [0, 0, 0]})):
+                    assert client.post(address, json=body, headers=acme).status_code == 201
+                alias = client.put(f"{PART}/{name}/aliases/best", json={"version": 1}, headers=acme)
+                assert alias.status_code == 201
+                job = {**export(f"{name}-cell", "metric"), "shared": visibility == "public"}
+                answer = client.post("/v1/jobs", json=job, headers=acme)
+                assert answer.status_code == 202, answer.text
+                jobs[visibility] = answer.json()["id"]
+                client.headers.update(acme)
+                finished(client, jobs[visibility])
+                del client.headers["Authorization"]
+        return World(path, (acme, reads, bolt), admin, jobs)
+
+
+@pytest.fixture
+def served(world: World, tmp_path: Path) -> Iterator[TestClient]:
+    shutil.copy(world.path, tmp_path / "store.db")
+    url = f"sqlite:///{tmp_path / 'store.db'}"
+    with open_store(Settings(database=url, catalogue=False, key_seconds=0)) as store, make_client(store) as client:
+        yield client
+
+
+def ask(client: TestClient, endpoint: str, row: Row, given: dict[str, str], headers: Headers) -> Any:
+    def put(value: Any) -> Any:
+        text = json.dumps(value)
+        for place, what in given.items():
+            text = text.replace(f"{{{place}}}", what)
+        return json.loads(text)
+
+    method = endpoint.split()[0].replace("page", "get")
+    return client.request(method, put(row.path), json=put(row.body), headers=headers)
+
+
+def places(world: World, visibility: str) -> dict[str, str]:
+    name = NAMES[visibility]
+    return {"part": name, "tree": f"{name}-cell", "job": world.jobs[visibility]}
+
+
+def test_every_endpoint_has_a_row() -> None:
+    """Whoever adds an endpoint says here who may use it."""
+    paths = openapi.document(bare_app())["paths"]
+    there = {f"{method} {path}" for path, methods in paths.items() for method in methods}
+    assert there == {endpoint for endpoint in TABLE if not endpoint.startswith("page ")}
+
+
+@pytest.mark.parametrize("visibility", NAMES)
+@pytest.mark.parametrize("endpoint", TABLE)
+def test_who_may_do_what(endpoint: str, visibility: str, served: TestClient, world: World) -> None:
+    row, given = TABLE[endpoint], places(world, visibility)
+    expected = row.private if visibility == "private" else row.public
+    is_open = endpoint in ("get /livez", "get /readyz")
+    assert ask(served, endpoint, row, given, {}).status_code == (200 if is_open else 401)
+    for headers, status in reversed(list(zip(world.keys, expected, strict=True))):  # who changes it comes last
+        answer = ask(served, endpoint, row, given, headers)
+        if status:
+            assert answer.status_code == status, answer.text
+        else:
+            assert answer.status_code in (200, 201, 422), answer.text
+    if not endpoint.startswith("delete"):  # it is gone
+        assert ask(served, endpoint, row, given, world.admin).status_code not in (401, 403, 404)
+
+
+@pytest.mark.parametrize("endpoint", TABLE)
+def test_what_is_private_is_not_there_for_others(endpoint: str, served: TestClient, world: World) -> None:
+    """The answer about something private is the one about nothing, but for the name in it."""
+    row, given, bolt = TABLE[endpoint], places(world, "private"), world.keys[2]
+    answer = ask(served, endpoint, row, given, bolt)
+    nothing = {"part": "mush", "tree": "mush-cell", "job": "0" * len(world.jobs["private"])}
+    other = ask(served, endpoint, row, nothing, bolt)
+    if endpoint in ("post /v1/substructures", "post /v1/trees"):  # the name is taken: nothing else is told
+        assert (answer.status_code, answer.json()["code"], "acme" in answer.text) == (403, "name-taken", False)
+        return
+    if "{" not in row.path and row.body is None:
+        assert MARK not in answer.text
+        assert world.jobs["private"] not in answer.text
+        assert world.jobs["private"][:16] not in answer.text
+        return
+    assert answer.status_code == other.status_code
+    expected = other.text.replace("mush", MARK).replace(nothing["job"], given["job"])
+
+    def told(text: str) -> Any:
+        return {name: value for name, value in json.loads(text).items() if name != "request_id"}
+
+    assert told(answer.text) == told(expected)
+
+
+def test_lists_have_what_one_sees(served: TestClient, world: World) -> None:
+    acme, reads, bolt = world.keys
+    for address, names in ((PART, ("hush", "known")), (TREE, ("hush-cell", "known-cell"))):
+        for headers, expected in ((acme, names), (reads, names), (bolt, names[1:]), (world.admin, names)):
+            found = served.get(address, headers=headers).json()
+            assert tuple(item["name"] for item in found["items"]) == expected
+            if "facets" in found:
+                assert found["facets"]["dof"] == {"1": len(expected)}
+    for query, expected in (("owner=acme", ["known"]), ("owner=bolt", []), ("q=hus", [])):
+        found = served.get(f"{PART}?{query}", headers=bolt).json()["items"]
+        assert [item["name"] for item in found] == expected
+    for query, expected in (("q=cell", ["known-cell"]), ("uses=known", ["known-cell"]), ("uses=hush", [])):
+        found = served.get(f"{TREE}?{query}", headers=bolt).json()["items"]
+        assert [item["name"] for item in found] == expected
+    assert [item["name"] for item in served.get(f"{TREE}?uses=hush", headers=acme).json()["items"]] == ["hush-cell"]
+
+
+def test_evaluations_at_hand_are_kept_for_their_owner(served: TestClient, world: World) -> None:
+    """The short way, which looks into no database, is closed to others."""
+    acme, reads, bolt = world.keys
+    body = {"quantities": ["metric"], "q": [0.1, 0.2]}
+    assert served.post(f"{TREE}/hush-cell@1/kernels", json=body, headers=acme).status_code == 201
+    for headers, status in ((acme, 200), (acme, 200), (reads, 200), (bolt, 404), (world.admin, 200), (bolt, 404)):
+        answer = served.post(f"{TREE}/hush-cell@1/evaluations", json=body, headers=headers)
+        assert answer.status_code == status
+    kept = store_of(served).caches.evaluations
+    assert kept.get(("acme", "hush-cell@1", "metric")) is not None  # otherwise nothing was tested
+
+
+@pytest.mark.parametrize("how", ["tree", "job", "coupling"])
+def test_no_private_part_in_a_public_tree(how: str, served: TestClient, world: World) -> None:
+    acme = world.keys[0]
+    if how == "coupling":
+        answer = served.post(f"{TREE}/known-cell/couplings", json={**CAMERA, "substructure": "hush"}, headers=acme)
+        assert answer.json()["errors"][0]["pointer"] == "/substructure"
+    else:
+        tree = {**FORM, "name": "one", "instances": [{"name": "a", "substructure": "hush"}]}
+        if how == "tree":
+            answer = served.post(TREE, json=tree, headers=acme)
+            pointer = "/instances/0/substructure"
+        else:
+            answer = served.post("/v1/jobs", json={"kind": "assemble", "items": [tree]}, headers=acme)
+            pointer = "/items/0/instances/0/substructure"
+        assert answer.json()["errors"][0]["pointer"] == pointer
+        private = {**tree, "visibility": "private"}
+        again = served.post(TREE, json=private, headers=acme)
+        assert (again.status_code, again.json().get("visibility")) == (201, "private")
+    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "private-part")
+    assert "'hush' is private" in answer.text
+
+
+def test_what_jobs_store_belongs_to_their_owner(served: TestClient, world: World) -> None:
+    """Also where two owners ask for the same: the second does not get the first one's tree."""
+    acme, _, bolt = world.keys
+    store: Store = store_of(served)
+    item = {**FORM, "name": "both", "instances": [{"name": "a", "substructure": "known"}], "visibility": "private"}
+    ids = [
+        served.post("/v1/jobs", json={"kind": "assemble", "items": [item]}, headers=headers).json()["id"]
+        for headers in (acme, bolt)
+    ]
+    part = {**PENDULUM, "name": "derived", "visibility": "private"}
+    ids.append(served.post("/v1/jobs", json={"kind": "derive", "items": [part]}, headers=bolt).json()["id"])
+    with running(store, FakeEngine()):
+        for headers, job in zip((acme, bolt, bolt), ids, strict=True):
+            served.headers.update(headers)
+            finished(served, job)
+    results = [
+        served.get(f"/v1/jobs/{job}/result", headers=headers).json()["items"][0]
+        for headers, job in zip((acme, bolt, bolt), ids, strict=True)
+    ]
+    assert [each["state"] for each in results] == ["succeeded", "failed", "succeeded"]
+    assert results[1]["problem"]["code"] == "name-taken"
+    assert served.get(f"{TREE}/both", headers=acme).json()["owner"] == "acme"
+    assert served.get(f"{TREE}/both", headers=bolt).status_code == 404
+    assert served.get(f"{PART}/derived", headers=bolt).json()["visibility"] == "private"
+    assert served.get(f"{PART}/derived", headers=acme).status_code == 404
+    taken = served.post("/v1/jobs", json={"kind": "assemble", "items": [item]}, headers=bolt)
+    assert taken.json()["errors"][0]["pointer"] == "/items/0/name"
+
+
+def test_shared_jobs_show_nothing_private(served: TestClient, world: World) -> None:
+    acme = world.keys[0]
+    answer = served.post("/v1/jobs", json={**export("hush-cell", "metric"), "shared": True}, headers=acme)
+    assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/shared")
+
+
+def test_what_becomes_public(served: TestClient, world: World) -> None:
+    acme, _, bolt = world.keys
+    assert served.put(f"{TREE}/hush-cell/visibility", json={"visibility": "public"}, headers=acme).status_code == 409
+    assert served.put(f"{PART}/hush/visibility", json={"visibility": "public"}, headers=acme).status_code == 200
+    assert served.get(f"{PART}/hush", headers=bolt).json()["visibility"] == "public"
+    assert served.put(f"{TREE}/hush-cell/visibility", json={"visibility": "public"}, headers=acme).status_code == 200
+    assert served.get(f"{TREE}/hush-cell", headers=bolt).status_code == 200
+    for address in (f"{TREE}/hush-cell", f"{PART}/hush"):
+        back = served.put(f"{address}/visibility", json={"visibility": "private"}, headers=acme)
+        assert (back.status_code, back.json()["code"]) == (409, "was-public")
+    again = served.post(PART, json={**PENDULUM, "name": "hush", "visibility": "private"}, headers=acme)
+    assert (again.status_code, again.json()["code"]) == (409, "visibility-differs")
+
+
+def test_what_is_private_is_not_kept_by_caches(served: TestClient, world: World) -> None:
+    acme = world.keys[0]
+    for address in (f"{PART}/{{}}@1/definition", f"{TREE}/{{}}-cell@1", f"{TREE}/{{}}-cell@1/picture"):
+        kept = {
+            name: served.get(address.format(name), headers=acme).headers["cache-control"] for name in NAMES.values()
+        }
+        assert (kept["hush"], "immutable" in kept["known"]) == ("no-cache", True)
+
+
+def test_inline_definitions_do_not_tell_what_is_private(
+    served: TestClient, world: World, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Sent by others, the content of a private part is derived as if nobody had it: it takes as long."""
+    derived: list[str] = []
+    original: Callable[..., Any] = __import__("service.operations.trees", fromlist=["derive"]).derive
+
+    def noted(definition: Any, *rest: Any) -> Any:
+        derived.append(definition.name)
+        return original(definition, *rest)
+
+    monkeypatch.setattr("service.operations.trees.derive", noted)
+    definition = {**PENDULUM, "name": "hush", "title": "hush"}
+    for k, (headers, expected) in enumerate(((world.keys[2], ["hush"]), (world.keys[0], []))):
+        tree = {"name": f"own-{k}", "visibility": "private", "instances": [{"name": "a", "definition": definition}]}
+        assert served.post(TREE, json=tree, headers=headers).status_code == 201
+        assert derived == expected
+        derived.clear()
+
+
+def test_names_are_taken_by_who_comes_first(served: TestClient, world: World) -> None:
+    """Nobody puts another arm under a name that others use; whoever sends the same again is told that it is there."""
+    acme, _, bolt = world.keys
+    other = {**PENDULUM, "name": "known", "title": "known", "tags": ["changed"]}
+    refused = served.post(PART, json=other, headers=bolt)
+    assert (refused.status_code, refused.json()["code"]) == (403, "name-taken")
+    assert "belongs to 'acme'; take another name, for example 'known-bolt'" in refused.json()["detail"]
+    assert served.get(f"{PART}/known", headers=bolt).json()["version"] == 1
+    same = served.post(PART, json={**PENDULUM, "name": "known", "title": "known"}, headers=bolt)
+    assert (same.status_code, same.json()["owner"], same.json()["version"]) == (200, "acme", 1)
+    assert served.post(PART, json={**other, "name": "known-bolt"}, headers=bolt).json()["owner"] == "bolt"
+    assert served.post(PART, json=other, headers=acme).json()["version"] == 2
+    assert served.post(PART, json={**other, "tags": ["admin"]}, headers=world.admin).json()["owner"] == "acme"
+
+
+def test_the_audit(served: TestClient, world: World) -> None:
+    acme, _, bolt = world.keys
+    served.post(f"{PART}/known@1/yank", json={"reason": "old"}, headers=acme)
+    entries = served.get("/v1/audit?owner=acme&page_size=1000", headers=world.admin).json()["items"]
+    actions = [entry["action"] for entry in entries]
+    assert actions[0] == "substructure.yank"
+    assert entries[0]["detail"] == {"reason": "old"}
+    assert {"key.create", "substructure.submit", "tree.store", "alias.set", "job.submit"} <= set(actions)
+    assert [entry["seq"] for entry in entries] == sorted((entry["seq"] for entry in entries), reverse=True)
+    served.post(f"{PART}/known@1/yank", json={"reason": "not mine"}, headers=bolt)
+    again = served.get("/v1/audit?subject=known@1&action=substructure.yank", headers=world.admin).json()["items"]
+    assert len(again) == 1
+    first = served.get("/v1/audit?page_size=1", headers=world.admin).json()
+    following = served.get(first["links"]["next"], headers=world.admin).json()
+    assert following["items"][0]["seq"] == first["items"][0]["seq"] - 1
+
+
+@pytest.mark.parametrize("change", ["UPDATE audit SET owner = 'x'", "DELETE FROM audit"])
+def test_the_audit_stays_as_it_is(change: str, served: TestClient) -> None:
+    store: Store = store_of(served)
+    with pytest.raises(Exception, match="append-only"), store.database.write() as connection:
+        connection.exec_driver_sql(change)
+
+
+def test_what_was_there_before_has_an_owner(tmp_path: Path) -> None:
+    """Names and keys are local's, a job stays with its key; shipped names go to the catalogue."""
+    url = f"sqlite:///{tmp_path / 'store.db'}"
+    with open_store(Settings(database=url)) as store, store.database.write() as connection:
+        identifier = keys.create(connection, "", ["read", "jobs"]).split("_")[1]
+        other = keys.create(connection, "", ["read", "jobs"]).split("_")[1]
+        connection.exec_driver_sql("UPDATE substructures SET owner = 'local'")
+        connection.exec_driver_sql("INSERT INTO substructures (name) VALUES ('own')")
+        row = f"('old', 'export', '{identifier}', 'queued', 1, 0, 0, 0, '', '{identifier}')"
+        names = "id, kind, principal, state, total, done, failed, attempts, created, owner"
+        connection.exec_driver_sql(f"INSERT INTO jobs ({names}) VALUES {row}")  # noqa: S608 -- ours
+    with open_store(Settings(database=url)) as store, store.database.read() as connection:
+        owners = dict(connection.exec_driver_sql("SELECT name, owner FROM substructures").all())
+        assert (owners.pop("own"), set(owners.values())) == ("local", {"catalogue"})
+        job = get_job(connection, "old")
+        assert job is not None
+        seen = [job.is_seen_by(Viewer(key, "local", ("read",))) for key in (identifier, other)]
+        assert seen == [True, False]
+
+
+def test_migrating_jobs(tmp_path: Path) -> None:
+    engine = sa.create_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    upgrade(engine, "0007")
+    names = "id, kind, principal, state, total, done, failed, attempts, created"
+    with engine.begin() as connection:
+        row = "('old', 'export', 'k', 'queued', 1, 0, 0, 0, '')"
+        connection.exec_driver_sql(f"INSERT INTO jobs ({names}) VALUES {row}")  # noqa: S608 -- ours
+    upgrade(engine)
+    with engine.connect() as connection:
+        assert connection.exec_driver_sql("SELECT owner FROM jobs").scalar() == "k"
+    engine.dispose()
+
+
+def test_rotating_and_deleting_keys(served: TestClient, world: World) -> None:
+    store, acme = store_of(served), world.keys[0]
+    identifier = acme["Authorization"].split("_")[1]
+    with store.database.write() as connection:
+        with pytest.raises(ValueError, match="in use"):
+            keys.delete(connection, identifier)
+        text = keys.rotate(connection, identifier)
+    new = {"Authorization": f"Bearer {text}"}
+    assert served.get(f"{PART}/hush", headers=acme).json()["code"] == "key-revoked"
+    assert served.get(f"{PART}/hush", headers=new).status_code == 200
+    assert served.get(f"{PART}/hush", headers=new).json()["owner"] == "acme"
+    with store.database.write() as connection:
+        again = {"Authorization": f"Bearer {keys.rotate(connection, text.split('_')[1], hours=1)}"}
+        keys.delete(connection, identifier)
+        with pytest.raises(ValueError, match="there is no key"):
+            keys.rotate(connection, identifier)
+    for headers in (new, again):
+        assert served.get(f"{PART}/hush", headers=headers).status_code == 200
+    with store.database.write() as connection:
+        keys.revoke(connection, text.split("_")[1])
+        with pytest.raises(ValueError, match="is revoked"):
+            keys.rotate(connection, text.split("_")[1])
+
+
+def test_the_command_key(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    database = ["--database", f"sqlite:///{tmp_path / 'x.db'}"]
+    assert main(["key", "create", "--owner", "acme", "--scope", "write", *database]) == 0
+    identifier = capsys.readouterr().out.split("_")[1]
+    assert main(["key", "rotate", identifier, *database]) == 0
+    new = capsys.readouterr().out.split("_")[1]
+    assert main(["key", "list", *database]) == 0
+    listed = capsys.readouterr().out.splitlines()
+    assert [line.split()[:3] for line in listed] == [[identifier, "acme", "write"], [new, "acme", "write"]]
+    assert main(["key", "delete", new, *database]) == 1
+    assert "revoke it first" in capsys.readouterr().err
+    assert main(["key", "revoke", new, *database]) == 0
+    assert "the last key" in capsys.readouterr().err
+    for each in (identifier, new):
+        assert main(["key", "delete", each, *database]) == 0
+    assert main(["key", "list", *database]) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["key", "create", "--owner", "No Such", *database]) == 1
+    assert "is no owner" in capsys.readouterr().err
