@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from service.refusals import Refused, unprocessable
-from substructures.printers import FORMATS
+from substructures.export.render import FORMATS
 
 JSON = "json"
 MEDIA_TYPES = dict(FORMATS)

@@ -27,7 +27,8 @@ Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and act
                (own forces of a part) and tree.coupling (gravity, and wrenches on what others carry)
 =============  ================================================================================================
 
-Beside them stands certificate: what every stored formula has to be, computed from the documents alone
+What leaves as functions of other languages is made by export, on one calling convention (export.interface). Beside
+them stands certificate: what every stored formula has to be, computed from the documents alone
 (certificate.md). Below all of them: printers (programs as text), compile (programs as machine code), mechanics (one
 recursion over any scalar), expr (formulas as graphs and programs), documents (JSON and YAML with exact numbers and
 their units). Further: catalogue (mechanisms with sources), formats (npz, Arrow), client (of the HTTP service).
@@ -61,10 +62,10 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
         SubstructuresError,
         TooLarge,
     )
+    from substructures.export import render
     from substructures.expr.program import Program
     from substructures.part.definition import Definition
     from substructures.part.part import Formula, Part, derive
-    from substructures.printers import render
     from substructures.quantities.evaluation import evaluate
     from substructures.tree.document import Instance, TreeSpec, read_instance
     from substructures.tree.model import Model, couple
@@ -111,10 +112,10 @@ _WHERE = {
         *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),
         *("SubstructuresError", "TooLarge"),
     ),
+    "export": ("render",),
     "expr.program": ("Program",),
     "part.definition": ("Definition",),
     "part.part": ("Formula", "Part", "derive"),
-    "printers": ("render",),
     "quantities.evaluation": ("evaluate",),
     "tree.document": ("Instance", "TreeSpec", "read_instance"),
     "tree.model": ("Model", "couple"),

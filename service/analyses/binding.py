@@ -5,7 +5,7 @@ A value is a number or an expression in other parameters, or a constant and a un
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from service.refusals import unprocessable
@@ -27,6 +27,14 @@ def bindings(text: str) -> Iterator[tuple[str, str | None]]:
     for item in filter(None, (item.strip() for item in text.split(","))):
         name, colon, value = item.partition(":")
         yield name, value if colon else None
+
+
+def bound_names(with_default: Iterable[str], text: str) -> set[str]:
+    """The parameters that ``text`` puts numbers in place of."""
+    found: set[str] = set()
+    for name, value in bindings(text):
+        found |= set(with_default) if value is None and name == DEFAULTS else {name}
+    return found
 
 
 def bound(program: Program, parameters: Parameters, text: str) -> Program:

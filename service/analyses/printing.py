@@ -8,12 +8,13 @@ from typing import Any
 
 import orjson
 
-from service.analyses.binding import bound
+from service.analyses.binding import bound, bound_names
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
 from service.refusals import not_found
-from substructures.errors import TooLarge
+from substructures.errors import InvalidInput, TooLarge
+from substructures.export import Interface, render
 from substructures.expr.program import Program
-from substructures.printers import entries, render
+from substructures.printers import entries
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.evaluation import REGRESSOR, Sources
@@ -22,6 +23,8 @@ from substructures.quantities.regressor import OUTPUTS
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
+#: prefix of functions where none is given
+NAME = "model"
 #: quantities that consist of several outputs
 GROUPS = {
     "kinematics": ("position", "rotation", "U", "Omega"),
@@ -34,16 +37,17 @@ CHRISTOFFEL = "christoffel"
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How formulas are printed: format, form (compact or expanded) and the text of ``bind=``."""
+    """How formulas are printed: format, form (compact or expanded), text of ``bind=``, prefix of functions."""
 
     format: str
     form: str
     bind: str = ""
+    name: str = NAME
 
     @property
     def identity(self) -> tuple[str, ...]:
         """What an ETag depends on beside the content."""
-        return self.format, self.form, self.bind
+        return self.format, self.form, self.bind, self.name
 
 
 def quantities(name: str) -> tuple[str, ...]:
@@ -88,22 +92,34 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
 def text_of(
     program: Program,
     style: Style,
-    coordinates: Sequence[str] = (),
+    quantity: str,
+    interface: Interface,
     members: Mapping[str, Any] | None = None,
     limit: int = LIMIT,
 ) -> str:
-    """The program in the format chosen; ``members`` are put before it in JSON. Raises TooLarge for more than ``limit``
-    nodes."""
-    text = render(program, style.format, style.form, limit=limit)
+    """The program in the format chosen; ``interface``: of what it was made for; ``members`` are put before it in JSON.
+    Raises TooLarge for more than ``limit`` nodes, InvalidArgument for a bad name of a function."""
+    text = _rendered(program, style, quantity, interface, limit)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
-        text = _with_entries(text, program, style, coordinates)
+        text = _with_entries(text, program, style, interface.vectors["q"].names)
     return _joined(members, text) if style.format == JSON and members else text
 
 
-def made_text(found: Made, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT) -> str:
+def _rendered(program: Program, style: Style, quantity: str, interface: Interface, limit: int) -> str:
+    """The program, as a function of what was not bound where it is code."""
+    left = interface.bound(bound_names(interface.vectors["p"].with_default, style.bind))
+    try:
+        return render(program, style.format, style.form, style.name, limit, left, quantity)
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: f"/query{pointer}") from None
+
+
+def made_text(
+    found: Made, quantity: str, interface: Interface, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT
+) -> str:
     """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
     integrals in text. Raises as :func:`bound`, and TooLarge."""
-    text = render(bound(found.program, parameters, style.bind), style.format, style.form, limit=limit)
+    text = _rendered(bound(found.program, parameters, style.bind), style, quantity, interface, limit)
     if style.format == JSON and found.members:
         return _joined(found.members, text)
     if style.format != "text":

@@ -11,6 +11,7 @@ import orjson
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options
 from service.analyses.numbers import ANALYSES
+from service.analyses.printing import NAME
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
@@ -22,9 +23,9 @@ from service.settings import Limits
 from substructures import catalogue
 from substructures.client import Client
 from substructures.errors import InvalidDocument
+from substructures.export import FORMATS, interface_of_model
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
-from substructures.printers import FORMATS
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
@@ -52,6 +53,7 @@ def _add_analyse(command: argparse.ArgumentParser) -> None:
     command.add_argument("--format", choices=sorted(FORMATS), default="text", help="of formulas")
     command.add_argument("--form", choices=("compact", "expanded"), default="compact", help="of formulas")
     command.add_argument("--bind", default="", help="numbers in formulas: name:value,... or defaults")
+    command.add_argument("--name", default=NAME, help="prefix of functions, where the format is a language")
     for name, text in OPTIONS.items():
         command.add_argument(f"--{name}", action="append", help=text)
 
@@ -85,11 +87,13 @@ def _analyse(options: argparse.Namespace) -> int:
 
 
 def _formula(options: argparse.Namespace, chosen: Options) -> bytes:
-    style, what = Style(options.format, options.form, options.bind), options.what
+    style, what = Style(options.format, options.form, options.bind, options.name), options.what
     if not is_document(options.tree):
         given = {name: list(texts) for name, texts in chosen.items()}
         with Client(options.server, options.key) as client:
-            return client.formula(options.tree, what, style.format, style.form, style.bind, **given).encode()
+            return client.formula(
+                options.tree, what, style.format, style.form, style.bind, name=style.name, **given
+            ).encode()
     source = local_source(Path(options.tree))
     if what in QUANTITIES:
         return printed(source, what, chosen, style).body
@@ -101,7 +105,8 @@ def _model_formula(source: Source, what: str, style: Style) -> Answer:
     models.check_quantity(source.model, what)
     members, parameters = models.described(sources, what)
     program = models.bound(models.model_quantity(sources, what), parameters, style.bind)
-    return models.printed(program, style, source.model.coordinates, members)
+    interface = interface_of_model(source.model, digest=source.digest)
+    return models.printed(program, style, what, interface, members)
 
 
 def _numbers(options: argparse.Namespace, name: str) -> int:

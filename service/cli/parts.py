@@ -8,10 +8,10 @@ from pathlib import Path
 from service.cli.options import Add, add_server, read_document, tell_warnings
 from service.cli.progress import follow
 from substructures.client import Client
+from substructures.export import FORMATS, interface_of_part, render
 from substructures.part.definition import Definition
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import derive
-from substructures.printers import FORMATS, render
 
 
 def _add_derive(command: argparse.ArgumentParser) -> None:
@@ -19,6 +19,7 @@ def _add_derive(command: argparse.ArgumentParser) -> None:
     command.add_argument("file", type=Path, help="definition, JSON or YAML")
     command.add_argument("--show", metavar="QUANTITY", help="print this stored quantity, e.g. metric")
     command.add_argument("--format", choices=sorted(FORMATS), default="text")
+    command.add_argument("--name", default="model", help="prefix of functions, where the format is a language")
 
 
 def _add_submit(command: argparse.ArgumentParser) -> None:
@@ -34,7 +35,8 @@ def _derive(options: argparse.Namespace) -> int:
         names = [n for n in part.program.outputs if n == options.show or n.startswith(f"{options.show}.")]
         if not names:
             raise ValueError(f"there is no quantity '{options.show}'; there are {', '.join(part.program.outputs)}")
-        print(render(with_own_inertia(part, part.program.select(names)), options.format))
+        program, interface = with_own_inertia(part, part.program.select(names)), interface_of_part(part)
+        print(render(program, options.format, name=options.name, interface=interface, quantity=options.show))
         return 0
     print(f"{part.name}: {part.dof} coordinates ({part.joints or 'none'}), bodies {', '.join(part.bodies)}")
     for title, figures in (("operations", part.operations), ("certificate", part.certificate)):

@@ -19,6 +19,7 @@ from service.operations.sources import sources_of
 from service.queries.trees import Tree
 from service.store import Store
 from service.viewer import Viewer
+from substructures.export import interface_of_model
 from substructures.tree.model import Model
 
 
@@ -34,7 +35,7 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
 
     Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
     """
-    return _printed(source, made(source, quantity, options), style)
+    return _printed(source, quantity, made(source, quantity, options), style)
 
 
 def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, style: Style) -> Answer:
@@ -43,11 +44,12 @@ def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, st
         tree = trees.find(connection, viewer, ref)
         model = store.model(connection, tree)
     source = source_of(store, tree, model)
-    return _printed(source, velocity_equations_of(source, document), style)
+    return _printed(source, "velocity_equations", velocity_equations_of(source, document), style)
 
 
-def _printed(source: Source, found: Made, style: Style) -> Answer:
-    text = made_text(found, source.model.parameters, style)
+def _printed(source: Source, quantity: str, found: Made, style: Style) -> Answer:
+    interface = interface_of_model(source.model, digest=source.digest)
+    text = made_text(found, quantity, interface, source.model.parameters, style)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 

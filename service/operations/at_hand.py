@@ -60,7 +60,8 @@ def answer(store: Store, viewer: Viewer, ref: str, body: bytes) -> Answer | None
 def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, evaluation: TreeEvaluation) -> None:
     """Keep what answers the same quantities of a pinned tree for another state, if that is short work.
 
-    The size of one state was checked for the request that comes to be remembered. What is private is kept for its owner.
+    The size of one state was checked for the request that comes to be remembered; what is private is kept for its
+    owner.
     """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)

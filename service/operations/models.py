@@ -15,6 +15,7 @@ from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.queries.formulas import FormulaRow
 from service.refusals import unprocessable
+from substructures.export import Interface
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
 
@@ -133,8 +134,8 @@ def _slice(whole: Output, lead: tuple[int, ...], negated: Callable[[int], int]) 
 
 
 def printed(
-    program: Program, style: Style, coordinates: Sequence[str] = (), members: Mapping[str, Any] | None = None
+    program: Program, style: Style, quantity: str, interface: Interface, members: Mapping[str, Any] | None = None
 ) -> Answer:
     """The program in the format chosen; ``members`` are put before it in JSON. Raises TooLarge."""
-    text = text_of(program, style, coordinates, members)
+    text = text_of(program, style, quantity, interface, members)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})

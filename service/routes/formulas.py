@@ -18,8 +18,8 @@ from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
 from service.views.resources import dump, formulas_view
+from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
-from substructures.printers.render import first_index
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -66,6 +66,7 @@ def get_formula(
     def make() -> Answer:
         """Bind and print."""
         found = with_own_inertia(part, chosen) if inertia == "own" else chosen
-        return models.printed(models.bound(found, part.parameters, style.bind), style, part.coordinates)
+        program = models.bound(found, part.parameters, style.bind)
+        return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest))
 
     return conditional(request, tag, is_pinned(ref) and version.is_public, make)

@@ -22,6 +22,7 @@ from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
 from service.store import Store
+from substructures.export import interface_of_model
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
@@ -120,6 +121,7 @@ def _quantity(
         sources = sources_of(store, tree, model)
         members, parameters = models.described(sources, quantity)
         program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
-        return models.printed(program, style, model.coordinates, members)
+        interface = interface_of_model(model, digest=tree.digest)
+        return models.printed(program, style, quantity, interface, members)
 
     return conditional(request, tag, lasting, make)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Query
 
+from service.analyses.printing import NAME
 from service.negotiation import FORMS, MEDIA_TYPES, choose_form, choose_format
 from service.operations.models import Style
 
@@ -21,10 +22,13 @@ async def style_of(
     bind: Annotated[
         str, Query(max_length=50_000, description="name:value,... or defaults; a value may be 1200 mm")
     ] = "",
+    name: Annotated[
+        str, Query(max_length=80, description="prefix of functions, where the format is a language")
+    ] = NAME,
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:
     """The style that a request asks for."""
-    return Style(choose_format(format, accept), choose_form(form), bind)
+    return Style(choose_format(format, accept), choose_form(form), bind, name)
 
 
 StyleOf = Annotated[Style, Depends(style_of)]

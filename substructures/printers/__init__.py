@@ -1,8 +1,7 @@
-"""Programs as text in several languages: ``render(program, "latex")``.
+"""Programs as text for people: ``render(program, "latex")``; functions in languages are in :mod:`substructures.export`.
 
-Sizes are known before anything is printed. User names appear in formulas of ``text`` and ``latex`` only, in the
-escaped form of :mod:`substructures.printers.names`; generated code uses ``x[3]`` and ``t17``, with the names in
-comments and in string literals.
+Sizes are known before anything is printed. User names appear in formulas in the escaped form of
+:mod:`substructures.printers.names`.
 """
 
 from __future__ import annotations

@@ -14,24 +14,14 @@ from substructures.expr.operations import MAX_ELEMENTS
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
-from substructures.printers.c import C
-from substructures.printers.julia import Julia
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
 from substructures.printers.listing import check_size, compact, expanded, inlined
-from substructures.printers.matlab import Matlab
-from substructures.printers.python import Python
-from substructures.printers.sympy import SymPy
 from substructures.printers.text import Text
 
 LANGUAGES: Mapping[str, type[Language]] = {
     "text": Text,
     "latex": Latex,
-    "sympy": SymPy,
-    "python": Python,
-    "c": C,
-    "matlab": Matlab,
-    "julia": Julia,
 }
 
 #: media type of every format
@@ -43,16 +33,16 @@ INLINE_LIMIT = 20_000
 
 
 def render(program: Program, format: str, form: str = "compact", name: str = "model", limit: int = LIMIT) -> str:  # noqa: A002 -- the name in the contract
-    """A program in one of FORMATS.
+    """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
-    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`). ``name`` is the name of the
-    generated function if it is an identifier. Raises InvalidDocument for an unknown format or form, TooLarge (size,
+    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`). ``name`` is what the
+    text calls it. Raises InvalidDocument for an unknown format or form, TooLarge (size,
     limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
     """
     if format not in FORMATS:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
-    _check_form(form)
+    check_form(form)
     if format == "json":
         return _json(program, form, limit)
     for output in program.outputs.values():
@@ -82,14 +72,15 @@ def entries(
     part = program.select([output])
     if format not in LANGUAGES:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(LANGUAGES)}")
-    _check_form(form)
+    check_form(form)
     language = LANGUAGES[format](part)
     listing = (expanded if form == "expanded" else inlined)(part, language, limit)
     index = part.outputs[output].index
     return [{"index": list(i), "formula": text} for i, text in zip(index, listing.entries[output], strict=True)]
 
 
-def _check_form(form: str) -> None:
+def check_form(form: str) -> None:
+    """Raises InvalidDocument for an unknown form."""
     if form not in FORMS:
         raise InvalidDocument.at("/form", "unknown-form", f"{form[:40]!r} is not one of {', '.join(FORMS)}")
 

@@ -15,8 +15,8 @@ from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.problem import ControlProblem, Cost, initial_state, inputs_of
 from substructures.analysis.control.shooting import Shooting
+from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.printers import FORMATS, render
 from substructures.quantities.evaluation import Direction, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
@@ -213,8 +213,9 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
     assert program.count(["adjoint_q", "adjoint_qd", "control_gradient"])["total"] < 3 * primal
     assert type(program).from_bytes(program.to_bytes()) == program
     small = adjoint_equations(shipped("simple-pendulum"), inputs_of(shipped("simple-pendulum")), Cost()).program
+    interface = Interface.of_symbols(small.symbols)
     for form in FORMATS:
-        assert "adjoint" in render(small, form)
+        assert "adjoint" in render(small, form, interface=interface)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from substructures.analysis.equations.perturbation import perturbation, state_sp
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
 from substructures.analysis.motion.right_hand_side import forward_dynamics
-from substructures.printers import FORMATS, render
+from substructures.export import FORMATS, Interface, render
 
 PROGRAMS: dict[str, Callable[[Model], Program]] = {
     "first integrals": lambda m: first_integrals(m).program,
@@ -30,8 +30,9 @@ def test_stored_and_printed(name: str) -> None:
     program = PROGRAMS[name](catalogue_model("cart-pendulum"))
     assert Program.from_bytes(program.to_bytes()) == program
     assert all(s.unit for s in program.symbols)
+    interface = Interface.of_symbols(program.symbols)
     for language in FORMATS:
-        assert render(program, language)
+        assert render(program, language, interface=interface)
     assert render(program, "text", form="expanded")
 
 

@@ -16,8 +16,8 @@ from substructures.analysis.equations import dependencies
 from substructures.analysis.identification import base_parameters as base_module
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
+from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.printers import FORMATS, render
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.quantities.states import default_number
@@ -217,8 +217,9 @@ def test_drives() -> None:
     driven = base_parameters(Y, ("armature", "offset"))
     assert driven.names == ("x.b.m", "x.z.armature")
     assert {s.name: s.unit for s in driven.program.symbols}["x.z''"] == "m/s^2"
+    found = base_parameters(Y, drives).program
     for form in FORMATS:
-        assert render(base_parameters(Y, drives).program, form)
+        assert render(found, form, interface=Interface.of_symbols(found.symbols))
 
 
 def motion(n: int, samples: int, seed: int = 0) -> Plain:

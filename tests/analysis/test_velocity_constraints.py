@@ -16,12 +16,12 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Rolling, simulate
+from substructures.export import Interface, render
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
-from substructures.printers import render
 from substructures.quantities.evaluation import evaluate
 
 
@@ -51,8 +51,9 @@ def test_chaplygin_sleigh() -> None:
 
 def test_formulas_print_in_every_format() -> None:
     equations = quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD)
+    interface = Interface.of_symbols(equations.program.symbols)
     for language in ("text", "latex", "python", "c", "matlab", "julia", "sympy"):
-        assert len(render(equations.program, language)) > 500
+        assert len(render(equations.program, language, interface=interface)) > 500
 
 
 def test_rolling_disc() -> None:

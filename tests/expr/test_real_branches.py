@@ -5,13 +5,15 @@ from __future__ import annotations
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 import sympy
+from run_code import alone
 
+from substructures.export import files
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.printers import render
 
 OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
 FUNCTIONS = ("sqrt", "log", "asin", "acos")
@@ -28,9 +30,10 @@ def partial() -> Program:
 
 
 def test_sympy(partial: Program) -> None:
-    space: dict[str, sympy.ImmutableDenseNDimArray] = {}
-    exec(render(partial, "sympy"), space)  # noqa: S102 -- our own text
-    found = space["outputs"]["f"]
+    space: dict[str, Any] = {}
+    text = files(alone(partial), "sympy", 1000)["model.py"]
+    exec(text, space)  # noqa: S102 -- our own text
+    found = space["model_any"]()
     values = {sympy.Symbol("x", real=True): sympy.Rational(-3, 2), sympy.Symbol("y", real=True): 2}
     assert [x is sympy.nan for x in (e.subs(values) for e in found)] == [True] * 4 + [False] * 2
     # what cannot be negative stays as it is written
@@ -43,8 +46,11 @@ def test_sympy(partial: Program) -> None:
 
 @pytest.mark.skipif(OCTAVE is None, reason="Octave is not installed")
 def test_octave(partial: Program, tmp_path: Path) -> None:
-    (tmp_path / "model.m").write_text(render(partial, "matlab"))
-    script = "f = model([-1.5; 2]); disp(isreal(f)); disp(isnan(f)'); f = model([0.5; 2]); printf('%.17g ', f);"
+    (tmp_path / "model_any.m").write_bytes(files(alone(partial), "matlab", 1000)["model_any.m"])
+    script = (
+        "f = model_any(0, [-1.5; 2], [], [], []); disp(isreal(f)); disp(isnan(f)'); "
+        "f = model_any(0, [0.5; 2], [], [], []); printf('%.17g ', f);"
+    )
     run = subprocess.run(
         [str(OCTAVE), "--no-gui", "--norc", "--eval", script], cwd=tmp_path, capture_output=True, text=True, timeout=60
     )

@@ -125,7 +125,7 @@ def test_fields_of_analyses(name: str) -> None:
 def test_limits_and_their_values(client: TestClient) -> None:
     rows = section(6).split("| limit | default |", 1)[1].splitlines()
     written: dict[str, float] = {}
-    for row in rows[2:]:
+    for row in filter(None, rows[2:]):
         names, values = (column.strip() for column in row.split("|")[1:3])
         known = re.findall(r"`(\w+)`", names)
         written |= dict(zip(known, map(float, values.split(", ")), strict=True))

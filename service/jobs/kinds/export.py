@@ -15,6 +15,7 @@ from typing import Any
 from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.printing import (
+    NAME,
     Style,
     check_quantity,
     described,
@@ -36,10 +37,10 @@ from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
+from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
-from substructures.printers import FORMATS
 from substructures.printers.render import FORMS
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.formulas import DERIVED
@@ -48,11 +49,11 @@ from substructures.quantities.regressor import OUTPUTS
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
     body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
-    check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options"))
-    given = {"form": FORMS[0], "bind": "", "options": {}, **item}
+    check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options", "name"))
+    given = {"form": FORMS[0], "bind": "", "options": {}, "name": NAME, **item}
     faults = [
         Fault(f"/{name}", "string-expected", "a text is needed")
-        for name in ("quantity", "bind")
+        for name in ("quantity", "bind", "name")
         if not isinstance(given[name], str)
     ]
     for name, known in (("format", FORMATS), ("form", FORMS)):
@@ -133,7 +134,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """File ``text``. Raises Refused, TooLarge."""
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
-    style = Style(item["format"], item["form"], item["bind"])
+    style = Style(item["format"], item["form"], item["bind"], item["name"])
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
     try:
         text = (_stored if is_stored else _followed)(source, item, style).encode()
@@ -161,7 +162,7 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     check_quantity(model, quantity)
     members, parameters = described(sources, quantity)
     program = bound(model_quantity(sources, quantity), parameters, style.bind)
-    return text_of(program, style, model.coordinates, members, item["nodes"])
+    return text_of(program, style, quantity, _interface(source), members, item["nodes"])
 
 
 def _followed(source: Source, item: ItemDocument, style: Style) -> str:
@@ -173,7 +174,11 @@ def _followed(source: Source, item: ItemDocument, style: Style) -> str:
             found = follow(source, item["request"])
     else:
         found = made(source, name, options)
-    return made_text(found, source.model.parameters, style, item["nodes"])
+    return made_text(found, name, _interface(source), source.model.parameters, style, item["nodes"])
+
+
+def _interface(source: Source) -> Interface:
+    return interface_of_model(source.model, digest=source.digest)
 
 
 EXPORT = Kind(_spread, _resolve, _run)

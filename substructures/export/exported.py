@@ -1,0 +1,201 @@
+"""What leaves: functions of an interface under one name, from which all languages work."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from substructures.errors import InvalidArgument
+from substructures.export.interface import ORDER, Interface, Vector, signature
+from substructures.expr.graph import Graph
+from substructures.expr.program import Program, program
+from substructures.expr.replay import replay
+from substructures.printers.symmetry import symmetry_rule
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.formulas import DERIVED
+from substructures.quantities.regressor import OUTPUTS as COLUMNS
+from substructures.tree.model import Model, require_stored
+from substructures.tree.model_outputs import KINEMATICS
+
+#: outputs that a quantity consists of where these have other names
+GROUPS = {"kinematics": KINEMATICS, "momentum": ("linear_momentum", "angular_momentum")}
+ALL = "all"
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
+_WORDS = (
+    "abs abstract add algorithm alias all allocatable allocate and any array as assert assign async await auto",
+    "begin block bool boolean break by call case catch char class classdef close common complex const constexpr",
+    "contains continue cos crate cycle data deallocate def default define del delete die diff dimension do double",
+    "each elif else elseif elsewhere encapsulated end endif endfor endfunction enum equation eval except exit exp",
+    "explicit export extends extern external false final finally flow fn for forall format friend from function",
+    "generic global goto if impl implicit import in inline inner input inquire int integer intent interface",
+    "intrinsic is lambda lcm let library list local logical long loop macro match math matrix mod module mut",
+    "mutable namespace new nil none nonlocal not null nullify of off on only open operator optional or out outer",
+    "output package parameter parfor partial pass persistent pi pointer print private procedure program protected",
+    "pub public pure quote quit raise read real record recursive redeclare ref register repeat replaceable",
+    "restrict result return save select self sequence short sign signed sin size sizeof sqrt static stop struct",
+    "subroutine sum super switch symbolic tan target template test then this throw to trait true try type typedef",
+    "typename uint union unless unsafe unsigned until use using value vector virtual void volatile when where",
+    "while with within write xor yield numpy np sympy std core e i t q qd qdd u p x w",
+)
+_KEYWORDS = frozenset(word for line in _WORDS for word in line.split())
+
+
+def check_name(name: str) -> str:
+    """The prefix of functions. Raises InvalidArgument for what is no identifier, or a word of a target language."""
+    if not _NAME.fullmatch(name):
+        message = f"{name[:40]!r} is no identifier: a letter, then at most 31 letters, digits and _"
+        raise InvalidArgument.at("/name", "bad-name", message)
+    if name.lower() in _KEYWORDS:
+        message = f"'{name}' is a word of one of the target languages; take another, such as 'my_{name}'"
+        raise InvalidArgument.at("/name", "reserved-name", message)
+    return name
+
+
+def identifier_of(text: str) -> str:
+    """The text with _ for what an identifier cannot have, or an empty text."""
+    found = re.sub(r"[.-]", "_", text)
+    return found if _NAME.fullmatch(found) or re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", found, re.ASCII) else ""
+
+
+@dataclass(frozen=True)
+class Function:
+    """A quantity as a function: its outputs are those of the program."""
+
+    quantity: str
+    program: Program
+    interface: Interface
+
+    @cached_property
+    def further(self) -> Vector:
+        """Symbols of the program that stand in no vector of the interface."""
+        known = self.interface.places
+        some = [s for s in self.program.symbols if s.name not in known]
+        return Vector("x", tuple(s.name for s in some), tuple(s.unit for s in some))
+
+    @cached_property
+    def arguments(self) -> tuple[str, ...]:
+        """Symbols of the arguments: those of the quantity, ``x`` where it has further symbols."""
+        found = {*signature(self.quantity), *(["x"] if self.further.names else [])}
+        return tuple(symbol for symbol in ORDER if symbol in found)
+
+    @cached_property
+    def places(self) -> tuple[tuple[str, int], ...]:
+        """(vector, position) of every symbol of the program."""
+        known = {**self.interface.places, **{name: ("x", i) for name, i in self.further.place.items()}}
+        return tuple(known[s.name] for s in self.program.symbols)
+
+    def vector(self, symbol: str) -> Vector:
+        """An argument."""
+        return self.further if symbol == "x" else self.interface.vectors[symbol]
+
+    def require_signature(self) -> None:
+        """Raises InvalidArgument when the quantity depends on what its signature does not have."""
+        for symbol, (vector, _) in zip(self.program.symbols, self.places, strict=True):
+            if vector not in self.arguments:
+                message = f"'{self.quantity}' depends on '{symbol.name[:80]}', which its arguments do not have"
+                raise InvalidArgument.at("/quantities", "signature", message)
+
+    def document(self, name: str) -> dict[str, Any]:
+        """Plain data: the signature, and shapes of the outputs."""
+        outputs = [
+            {"name": n, "shape": list(o.shape), "symmetry": o.symmetry, "rule": symmetry_rule(o.symmetry, n)}
+            for n, o in self.program.outputs.items()
+        ]
+        told: dict[str, Any] = {"name": name, "quantity": self.quantity, "arguments": list(self.arguments)}
+        further = {"x": self.further.document()} if self.further.names else {}
+        counted = {"operations": self.program.count()["total"], "digest": self.program.digest}
+        return told | {"outputs": outputs} | further | counted
+
+
+@dataclass(frozen=True)
+class Exported:
+    """Functions under one name. ``form``: compact or expanded."""
+
+    name: str
+    interface: Interface
+    functions: tuple[Function, ...]
+    form: str = "compact"
+
+    def called(self, function: Function) -> str:
+        """The name of a function: the prefix, then its quantity."""
+        suffix = identifier_of(function.quantity) or f"f{self.functions.index(function)}"
+        return f"{self.name}_{suffix}"
+
+    @cached_property
+    def symbols(self) -> tuple[str, ...]:
+        """All arguments that some function has, but ``x``, which is another for each."""
+        found = {symbol for each in self.functions for symbol in each.arguments}
+        return tuple(symbol for symbol in ORDER if symbol in found and symbol != "x")
+
+    def document(self, software: str) -> dict[str, Any]:
+        """The description of everything, as plain data: the target ``interface``."""
+        return {
+            "format": "substructures.interface",
+            "version": 1,
+            "name": self.name,
+            "made_from": {"reference": self.interface.reference, "digest": self.interface.digest, "by": software},
+            "order": "row-major, indices from 0",
+            "vectors": {symbol: self.interface.vectors[symbol].document() for symbol in ORDER if symbol != "x"},
+            "frames": list(self.interface.frames),
+            "functions": [each.document(self.called(each)) for each in self.functions],
+        }
+
+
+def exported_model(
+    sources: Sources,
+    interface: Interface,
+    quantities: Sequence[str],
+    name: str,
+    bind: Any = None,
+    together: bool = False,
+) -> Exported:
+    """Quantities of a model as functions ``name_quantity``; ``bind``: what puts numbers into a program;
+    ``together``: also ``name_all``, in which they share their subexpressions.
+
+    Raises InvalidArgument for unknown quantities and bad names, TooLarge, InvalidDocument for what is not stored.
+    """
+    check_name(name)
+    programs = {q: quantity_program(sources, q) for q in dict.fromkeys(quantities)}
+    if bind is not None:
+        programs = {q: bind(each) for q, each in programs.items()}
+    if together:
+        programs[ALL] = joined(list(programs.values()))
+    functions = tuple(Function(q, each, interface) for q, each in programs.items())
+    for each in functions:
+        each.require_signature()
+    return Exported(name, interface, functions)
+
+
+def quantity_program(sources: Sources, quantity: str) -> Program:
+    """The program of a quantity, with the outputs that belong to it alone. Raises InvalidArgument, TooLarge."""
+    model = sources.model
+    if quantity in COLUMNS:
+        return sources.columns().program.select([quantity])
+    if quantity in DERIVED:
+        found = sources.program(quantity)
+        return found.select([quantity]) if quantity in found.outputs else found
+    wanted = GROUPS.get(quantity, (quantity,))
+    if quantity == "christoffel":
+        require_stored(model.program, wanted)
+    if any(name not in model.program.outputs for name in wanted):
+        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known_quantities(model))}"
+        raise InvalidArgument.at("/quantities", "unknown-quantity", message)
+    return model.program.select(list(wanted))
+
+
+def known_quantities(model: Model) -> list[str]:
+    """The quantities that a model can be exported with."""
+    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS]))
+
+
+def joined(programs: Sequence[Program]) -> Program:
+    """One program with the outputs of all, which share what they have in common."""
+    graph = Graph()
+    symbols = {s.name: s for each in programs for s in each.symbols}
+    outputs: Mapping[str, Any] = {}
+    for each in programs:
+        outputs = {**outputs, **replay(each, graph, {})}
+    return program(graph, outputs, symbols)

@@ -1,0 +1,189 @@
+"""C99: ``void name_metric(const double *q, const double *p, double *metric)``, complete arrays in row-major order.
+
+No globals, no allocation. Long functions are split into pieces that compile in linear time (:mod:`.pieces`); the stack
+that they need is stated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import isnan, prod
+from typing import ClassVar
+
+from substructures.export.exported import Exported, Function, identifier_of
+from substructures.export.interface import ORDER
+from substructures.export.languages.code import Code, head, indented
+from substructures.export.languages.pieces import Pieces, split
+from substructures.expr.program import Output
+from substructures.printers.language import Listing, Piece
+
+#: what the source needs before its functions; unused ones are left out
+_HELPERS = {
+    "sign_of": ("static double sign_of(double v)", "{", "    return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : v;", "}", ""),
+}
+
+
+class C(Code):
+    """C99, needs the mathematical library only."""
+
+    media = "text/x-c; charset=utf-8"
+    mark = "//"
+    suffix = ".c"
+    infinity = "HUGE_VAL"
+    executed = "gcc and clang"
+    functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
+
+    def pi(self) -> Piece:
+        """pi as a double: C99 has no constant for it."""
+        return Piece("3.141592653589793")
+
+    def power(self, a: Piece, n: int) -> Piece:
+        """``pow``, which is exact for integer exponents of small numbers."""
+        return Piece(f"pow({a.text}, {float(n)!r})")
+
+    def place(self, variable: str, array: Output, index: tuple[int, ...]) -> str:
+        """An element of a flat array."""
+        return f"{variable}[{flat(index, array.shape)}]"
+
+    @classmethod
+    def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
+        """Declarations and definitions in one file."""
+        lines = [*cls.commented(head(exported, cls.first, software)), "", *declarations(exported), ""]
+        return "\n".join([*lines, *source(exported, functions)]) + "\n"
+
+    def define(self, listing: Listing) -> list[str]:
+        """A function, of several pieces where it is long."""
+        unused = [f"(void){v};" for v in self.function.arguments]
+        zeros: list[str] = []
+        assigned: list[tuple[str, str]] = []
+        for output, array in self.program.outputs.items():
+            pairs = self.pairs(output, listing)
+            v, size = self.variables[output], prod(array.shape)
+            if len(pairs) < size:
+                zeros.append(f"for (size_t i = 0; i < {size}; ++i) {v}[i] = 0.0;")
+            assigned += pairs
+        pieces = split(listing.temporaries, assigned)
+        opening = [signature(self.function, self.called, self.variables), "{", *indented(unused + zeros)]
+        if len(pieces.bodies) == 1:
+            return [*opening, *indented(self._statements(pieces, 0)), "}"]
+        return [*self._pieces(pieces), *opening, *indented(self._calls(pieces)), "}"]
+
+    def _statements(self, pieces: Pieces, k: int) -> list[str]:
+        body = pieces.bodies[k]
+        lines = [f"const double t{n} = w[{slot}];" for n, slot in body.taken]
+        lines += [f"const double {n} = {text};" if is_new else f"{n} = {text};" for n, text, is_new in body.statements]
+        return lines + [f"w[{slot}] = t{n};" for n, slot in body.given]
+
+    def _pieces(self, pieces: Pieces) -> list[str]:
+        lines = []
+        for k in range(len(pieces.bodies)):
+            arguments = [argument(v) for v in self.function.arguments]
+            arguments += [f"double *{v}" for v in self.variables.values()] + ["double *w"]
+            lines += [f"static void {self.called}_{k + 1}({', '.join(arguments)})", "{"]
+            names = [*self.function.arguments, *self.variables.values(), "w"]
+            lines += [*indented([*(f"(void){v};" for v in names), *self._statements(pieces, k)]), "}", ""]
+        return lines
+
+    def _calls(self, pieces: Pieces) -> list[str]:
+        names = ", ".join([*self.function.arguments, *self.variables.values(), "w"])
+        calls = [f"{self.called}_{k + 1}({names});" for k in range(len(pieces.bodies))]
+        return [f"double w[{max(1, pieces.slots)}]; // the stack: {8 * pieces.stack} bytes at most", *calls]
+
+
+def flat(index: tuple[int, ...], shape: tuple[int, ...]) -> int:
+    """Position in row-major order."""
+    result = 0
+    for i, size in zip(index, shape, strict=True):
+        result = result * size + i
+    return result
+
+
+def argument(symbol: str) -> str:
+    """The declaration of an argument."""
+    return "double t" if symbol == "t" else f"const double *{symbol}"
+
+
+def signature(function: Function, called: str, variables: Mapping[str, str]) -> str:
+    """The head of a function."""
+    arguments = [argument(symbol) for symbol in function.arguments]
+    return f"void {called}({', '.join([*arguments, *(f'double *{v}' for v in variables.values())])})"
+
+
+def declarations(exported: Exported) -> list[str]:
+    """Sizes and indices as constants, and the functions."""
+    name, constants = exported.name, [f"{exported.name}_FUNCTIONS = {len(exported.functions)}"]
+    for symbol in ORDER:
+        if symbol in ("t", "x"):
+            continue
+        vector = exported.interface.vectors[symbol]
+        constants.append(f"{name}_N{symbol.upper()} = {len(vector)}")
+        if symbol in ("q", "u", "p"):
+            constants += _indices(name, symbol, vector.names)
+    lines = ["enum {", *(f"    {constant}," for constant in constants[:-1]), f"    {constants[-1]}", "};", ""]
+    lines += ["// the default values of the parameters, NaN where there are none", f"void {name}_defaults(double *p);"]
+    for each in exported.functions:
+        code = C(each, exported.called(each))
+        lines.append(f"// {each.program.count()['total']} operations")
+        lines.append(f"{signature(each, code.called, code.variables)};")
+    lines += [
+        "// any of them by its number from 0: in = {&t, q, qd, qdd, u, x, p}, out: its outputs; 0, or 1 for no such"
+    ]
+    return [*lines, f"int {name}_call(int function, const double *const *in, double *const *out);"]
+
+
+def _indices(prefix: str, symbol: str, names: Iterable[str]) -> list[str]:
+    """``prefix_Q_arm_q1 = 0`` for names that make different identifiers."""
+    found: dict[str, int] = {}
+    seen: set[str] = set()
+    for i, name in enumerate(names):
+        plain = identifier_of(name)
+        if plain and plain not in seen:
+            found[plain] = i
+        else:
+            found.pop(plain, None)
+        seen.add(plain)
+    return [f"{prefix}_{symbol.upper()}_{plain} = {i}" for plain, i in found.items()]
+
+
+def source(exported: Exported, functions: Iterable[list[str]]) -> list[str]:
+    """The definitions."""
+    body = [line for each in functions for line in (*each, "")]
+    text = "\n".join(body)
+    lines = ["#include <math.h>", "#include <stddef.h>", ""]
+    for name, helper in _HELPERS.items():
+        if f"{name}(" in text:
+            lines += helper
+    values = enumerate(exported.interface.vectors["p"].defaults)
+    lines += [f"void {exported.name}_defaults(double *p)", "{", "    (void)p;"]
+    lines += [f"    p[{i}] = {'NAN' if isnan(x) else repr(x)};" for i, x in values]
+    return [*lines, "}", "", *body, *_call(exported)]
+
+
+def _call(exported: Exported) -> list[str]:
+    position = {symbol: i for i, symbol in enumerate(ORDER)}
+    cases = []
+    for k, each in enumerate(exported.functions):
+        inputs = ["*in[0]" if v == "t" else f"in[{position[v]}]" for v in each.arguments]
+        outputs = [f"out[{i}]" for i in range(len(each.program.outputs))]
+        cases += [
+            f"    case {k}:",
+            f"        {exported.called(each)}({', '.join(inputs + outputs)});",
+            "        return 0;",
+        ]
+    head_ = [f"int {exported.name}_call(int function, const double *const *in, double *const *out)", "{"]
+    return [
+        *head_,
+        "    (void)in;",
+        "    (void)out;",
+        "    switch (function) {",
+        *cases,
+        "    default:",
+        "        return 1;",
+        "    }",
+        "}",
+    ]
+
+
+def head_of(exported: Exported, software: str) -> list[str]:
+    """The head as comments."""
+    return C.commented(head(exported, C.first, software))

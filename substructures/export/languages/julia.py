@@ -1,0 +1,41 @@
+"""Julia: ``name_metric(q, p)``. Roots and logarithms of negative numbers raise DomainError."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isnan
+from typing import ClassVar
+
+from substructures.export.languages.code import Code, indented
+from substructures.printers.language import Listing
+
+
+class Julia(Code):
+    """Functions of vectors; they need no packages. One output is an array, several are a named tuple."""
+
+    media = "text/x-julia; charset=utf-8"
+    suffix = ".jl"
+    first = 1
+    infinity = "Inf"
+    functions: ClassVar[Mapping[str, str]] = {"atan2": "atan"}
+
+    def define(self, listing: Listing) -> list[str]:
+        """A function with its checks."""
+        body, arguments = [], []
+        for vector in self.vectors():
+            v = vector.symbol
+            values = ", ".join("NaN" if isnan(x) else repr(x) for x in vector.defaults)
+            arguments.append(f"p = Float64[{values}]" if v == "p" else v)
+            message = f'"{v} has $(length({v})) elements, {len(vector)} are needed"'
+            if v != "t":
+                body.append(f"length({v}) == {len(vector)} || throw(DimensionMismatch({message}))")
+        body += [f"t{n} = {text}" for n, text in listing.temporaries]
+        for output, array in self.program.outputs.items():
+            v = self.variables[output]
+            if array.shape:
+                body.append(f"{v} = zeros({', '.join(map(str, array.shape))})")
+            pairs = self.pairs(output, listing) or ([] if array.shape else [(v, "0.0")])
+            body += [f"{element} = {text}" for element, text in pairs]
+        results = list(self.variables.values())
+        body.append(f"return {results[0]}" if len(results) == 1 else f"return (; {', '.join(results)})")
+        return [f"function {self.called}({', '.join(arguments)})", *indented(body), "end"]

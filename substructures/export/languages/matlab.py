@@ -1,0 +1,80 @@
+"""MATLAB (and Octave): ``metric = name_metric(q, p)``; ``p`` has its defaults, wrong lengths are errors.
+
+Roots and logarithms of negative numbers, and arcs of numbers beyond 1, are NaN as everywhere, not complex.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isnan
+
+from substructures.export.exported import Exported
+from substructures.export.languages.code import REAL, Code, head, indented
+from substructures.expr.program import Output
+from substructures.printers.language import Listing, Piece
+
+
+class Matlab(Code):
+    """Function files. Vectors are columns; any vector with the right number of elements is taken."""
+
+    media = "text/x-matlab; charset=utf-8"
+    mark = "%"
+    suffix = ".m"
+    infinity = "Inf"
+    first = 1
+    brackets = ("(", ")")
+    executed = "Octave"
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function; by its real branch where the argument is no constant."""
+        return self.real_call(op, args)
+
+    @classmethod
+    def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
+        """A function file: its help is the head."""
+        first, *others = functions
+        lines = [first[0], *cls.commented(head(exported, cls.first, software)), *first[1:]]
+        for each in others:
+            lines += ["", *each]
+        return "\n".join(lines) + "\n"
+
+    def define(self, listing: Listing) -> list[str]:
+        """A function with its checks, and what it calls."""
+        results = ", ".join(self.variables.values())
+        body = self._checks()
+        body += [f"t{n} = {text};" for n, text in listing.temporaries]
+        for output, array in self.program.outputs.items():
+            body += self._fill(self.variables[output], array, listing, output)
+        signature = f"function [{results}] = {self.called}({', '.join(self.function.arguments)})"
+        return [signature, *indented(body), "end", *self._real_branches()]
+
+    def _checks(self) -> list[str]:
+        """The defaults of p, which is the last argument, and the lengths of all."""
+        lines, count = [], len(self.function.arguments)
+        for vector in self.vectors():
+            v = vector.symbol
+            if v == "p":
+                values = "; ".join("NaN" if isnan(x) else repr(x) for x in vector.defaults)
+                lines += [f"if nargin < {count}", f"    p = [{values}];", "end"]
+            lines += [
+                f"if numel({v}) ~= {len(vector)}",
+                f"    error('{self.called}:length', '{v} has %d elements, {len(vector)} are needed', numel({v}));",
+                "end",
+            ]
+        return lines
+
+    def _real_branches(self) -> list[str]:
+        """The functions that are NaN where MATLAB's own are complex."""
+        lines = []
+        for f in self.partial():
+            # 0/true is 0 and 0/false is NaN
+            lines += ["", f"function y = real_{f}(x)", f"    y = {f}(x + 0/({REAL[f]}));", "end"]
+        return lines
+
+    def _fill(self, v: str, array: Output, listing: Listing, output: str) -> list[str]:
+        if not array.shape:
+            texts = listing.entries[output]
+            return [f"{v} = {texts[0] if texts else '0.0'};"]
+        dimensions = ", ".join(map(str, (*array.shape, *(1,) * (2 - len(array.shape)))))
+        lines = [f"{v} = zeros({dimensions});"]
+        return lines + [f"{element} = {text};" for element, text in self.pairs(output, listing)]

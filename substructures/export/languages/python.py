@@ -1,0 +1,79 @@
+"""A Python module that needs NumPy only: ``name_metric(q, p)``, vectorised over leading axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isnan
+
+from substructures.export.exported import Exported
+from substructures.export.languages.code import Code, head, indented
+from substructures.printers.language import Listing, Piece
+
+_READ = """
+def _columns(name, value, length):
+    value = np.asarray(value, dtype=float)
+    if not value.ndim or value.shape[-1] != length:
+        raise ValueError(f"{name} has the shape {value.shape}, (..., {length}) is needed")
+    return np.moveaxis(value, -1, 0)
+"""
+
+
+class Python(Code):
+    """Python; arguments may have leading axes, which outputs have in front."""
+
+    media = "text/x-python; charset=utf-8"
+    suffix = ".py"
+    infinity = "np.inf"
+    power_sign = "**"
+    executed = "CPython and NumPy"
+
+    def pi(self) -> Piece:
+        """The constant of numpy."""
+        return Piece("np.pi")
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function of numpy, some of which have longer names there."""
+        names = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2"}
+        return Piece(f"np.{names.get(op, op)}({', '.join(a.text for a in args)})")
+
+    @classmethod
+    def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
+        """A module; ``P`` are the defaults of the parameters."""
+        lines = ['"""', *head(exported, cls.first, software), '"""', "", "import numpy as np", ""]
+        for symbol in exported.symbols:
+            vector = exported.interface.vectors[symbol]
+            if symbol != "t":
+                lines += [f"{symbol.upper()}_NAMES = (", *(f"    {name!a}," for name in vector.names), ")"]
+        defaults = exported.interface.vectors["p"].defaults
+        values = ("np.nan" if isnan(x) else repr(x) for x in defaults)
+        lines += ["P = (", *(f"    {x}," for x in values), ")", "", *_READ.split("\n")]
+        for each in functions:
+            lines += ["", *each, ""]
+        return "\n".join(lines)
+
+    def define(self, listing: Listing) -> list[str]:
+        """A function; one output is an array, several are a dictionary."""
+        arguments = ["p=P" if symbol == "p" else symbol for symbol in self.function.arguments]
+        body = []
+        for vector in self.vectors():
+            v = vector.symbol
+            body.append("t = np.asarray(t, dtype=float)" if v == "t" else f"{v} = _columns({v!r}, {v}, {len(vector)})")
+        shapes = ", ".join("t.shape" if v == "t" else f"{v}.shape[1:]" for v in self.function.arguments)
+        body.append(f"batch = np.broadcast_shapes({shapes})")
+        inner = [f"t{n} = {text}" for n, text in listing.temporaries]
+        for output in self.program.outputs:
+            inner += self._fill(output, listing)
+        body += ['with np.errstate(all="ignore"):', *indented(inner or ["pass"])]
+        variables = list(self.variables.items())
+        pairs = ", ".join(f"{n!a}: {v}" for n, v in variables)
+        body.append(f"return {variables[0][1]}" if len(variables) == 1 else f"return {{{pairs}}}")
+        return [f"def {self.called}({', '.join(arguments)}):", *indented(body)]
+
+    def _fill(self, output: str, listing: Listing) -> list[str]:
+        array, v = self.program.outputs[output], self.variables[output]
+        lines = [f"{v} = np.zeros(batch + {array.shape!r})"]
+        return lines + [f"{element} = {text}" for element, text in self.pairs(output, listing)]
+
+    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002
+        """An element, behind the axes of the batch."""
+        return f"{variable}[{', '.join(['...', *map(str, index)])}]"

@@ -1,0 +1,83 @@
+"""One quantity as text: formulas for people (:mod:`substructures.printers`), or a function in some language."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import prod
+
+from substructures.errors import InvalidArgument, InvalidDocument, TooLarge
+from substructures.export.exported import Exported, Function, check_name
+from substructures.export.interface import Interface
+from substructures.export.languages.c import C
+from substructures.export.languages.code import Code
+from substructures.export.languages.julia import Julia
+from substructures.export.languages.matlab import Matlab
+from substructures.export.languages.python import Python
+from substructures.export.languages.sympy import SymPy
+from substructures.export.software import SOFTWARE
+from substructures.expr.operations import MAX_ELEMENTS
+from substructures.expr.program import Program
+from substructures.printers.listing import compact, expanded
+from substructures.printers.render import FORMATS as WRITTEN
+from substructures.printers.render import LIMIT, check_form
+from substructures.printers.render import first_index as first_written
+from substructures.printers.render import render as write
+from substructures.quantities.formulas import DERIVED
+
+#: by name in the contract
+LANGUAGES: Mapping[str, type[Code]] = {"sympy": SymPy, "python": Python, "c": C, "matlab": Matlab, "julia": Julia}
+#: media type of every format
+FORMATS: Mapping[str, str] = {**WRITTEN, **{name: language.media for name, language in LANGUAGES.items()}}
+
+
+def first_index(format: str) -> int:  # noqa: A002 -- the name in the contract
+    """What indices count from in one of FORMATS: 1 where people or the language do, else 0."""
+    return LANGUAGES[format].first if format in LANGUAGES else first_written(format)
+
+
+def render(
+    program: Program,
+    format: str,  # noqa: A002 -- the name in the contract
+    form: str = "compact",
+    name: str = "model",
+    limit: int = LIMIT,
+    interface: Interface | None = None,
+    quantity: str = "",
+) -> str:
+    """A program in one of FORMATS, ``form`` compact or expanded.
+
+    In a language it is the function ``name_quantity`` on the calling convention of the ``interface`` that it needs
+    (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output.
+    Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name or without an interface.
+    """
+    if format not in FORMATS:
+        raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
+    if format not in LANGUAGES:
+        return write(program, format, form, name, limit)
+    if interface is None:
+        message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
+        raise InvalidArgument.at("/interface", "missing", message)
+    if quantity in DERIVED and quantity in program.outputs:  # without what tells whether it could be computed
+        program = program.select([quantity])
+    function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
+    exported = Exported(check_name(name), interface, (function,), form)
+    return text_of(exported, LANGUAGES[format], limit)
+
+
+def text_of(exported: Exported, language: type[Code], limit: int) -> str:
+    """All functions in one file. Raises TooLarge, ZeroDivisionError when there is no expanded form."""
+    return language.file(exported, definitions(exported, language, limit), SOFTWARE)
+
+
+def definitions(exported: Exported, language: type[Code], limit: int) -> list[list[str]]:
+    """The lines of every function. Raises as :func:`text_of`."""
+    check_form(exported.form)
+    listing = expanded if exported.form == "expanded" else compact
+    found = []
+    for function in exported.functions:
+        for output in function.program.outputs.values():
+            if prod(output.shape) > MAX_ELEMENTS:
+                raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
+        code = language(function, exported.called(function))
+        found.append(code.define(listing(function.program, code, limit)))
+    return found

@@ -1,0 +1,75 @@
+"""The targets: which files each consists of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import orjson
+
+from substructures.errors import InvalidArgument
+from substructures.export.exported import Exported
+from substructures.export.languages import c
+from substructures.export.languages.c import C
+from substructures.export.languages.code import Code
+from substructures.export.render import LANGUAGES, definitions, text_of
+from substructures.export.software import SOFTWARE
+
+Files = dict[str, bytes]
+
+
+@dataclass(frozen=True)
+class Target:
+    """``make``: its files by name, of functions and the most nodes to be printed; ``executed``: with what the tests run
+    them, empty where they are not executed."""
+
+    make: Callable[[Exported, int], Files]
+    executed: str = ""
+
+
+def files(exported: Exported, target: str, limit: int) -> Files:
+    """The files of a target. Raises InvalidArgument for an unknown one, TooLarge for more than ``limit`` nodes."""
+    if target not in TARGETS:
+        message = f"{target[:40]!r} is not one of {', '.join(TARGETS)}"
+        raise InvalidArgument.at("/target", "unknown-target", message)
+    return TARGETS[target].make(exported, limit)
+
+
+def _interface(exported: Exported, _: int) -> Files:
+    document = orjson.dumps(exported.document(SOFTWARE), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)
+    return {f"{exported.name}_interface.json": document}
+
+
+def _one_file(language: type[Code]) -> Target:
+    def make(exported: Exported, limit: int) -> Files:
+        """All functions in one file."""
+        return {f"{exported.name}{language.suffix}": text_of(exported, language, limit).encode()}
+
+    return Target(make, language.executed)
+
+
+def _function_files(exported: Exported, limit: int) -> Files:
+    """MATLAB: a file for each function."""
+    matlab = LANGUAGES["matlab"]
+    found = {}
+    for function, lines in zip(exported.functions, definitions(exported, matlab, limit), strict=True):
+        alone = Exported(exported.name, exported.interface, (function,), exported.form)
+        found[f"{exported.called(function)}.m"] = matlab.file(alone, [lines], SOFTWARE).encode()
+    return found
+
+
+def _c(exported: Exported, limit: int) -> Files:
+    guard, about = f"{exported.name.upper()}_H", c.head_of(exported, SOFTWARE)
+    header = [*about, f"#ifndef {guard}", f"#define {guard}", "#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
+    header += [*c.declarations(exported), "", "#ifdef __cplusplus", "}", "#endif", "#endif", ""]
+    lines = c.source(exported, definitions(exported, C, limit))
+    text = [about[0], "", f'#include "{exported.name}.h"', "", *lines, ""]
+    return {f"{exported.name}.h": "\n".join(header).encode(), f"{exported.name}.c": "\n".join(text).encode()}
+
+
+TARGETS: Mapping[str, Target] = {
+    "interface": Target(_interface, "read by callers in C and Octave"),
+    "c": Target(_c, C.executed),
+    "matlab": Target(_function_files, LANGUAGES["matlab"].executed),
+    **{name: _one_file(LANGUAGES[name]) for name in ("python", "julia", "sympy")},
+}
