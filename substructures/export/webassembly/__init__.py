@@ -1,0 +1,1 @@
+"""WebAssembly: a module of straight-line code, made byte by byte."""

@@ -1,0 +1,51 @@
+"""JavaScript around a module: vectors in, arrays out, lengths checked, defaults filled in; and its types."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any
+
+import orjson
+
+_TYPES = """/** What was exported: names, order, units, shapes and defaults of everything. */
+export declare const description: Record<string, unknown>;
+export interface Functions {
+%s
+}
+/** The functions, from the bytes of the module or from a compiled module. */
+export declare function create(source: BufferSource | WebAssembly.Module): Functions;
+/** The functions, from the file of the module beside this one. */
+export declare function load(url?: URL): Promise<Functions>;
+"""
+
+
+def javascript(name: str, description: Mapping[str, Any], heap: int) -> str:
+    """The text of ``NAME.mjs`` for a module ``NAME.wasm``; ``description``: the document of the target "interface"."""
+    text = files(__package__).joinpath("glue.mjs").read_text(encoding="utf-8")
+    # no text of a user can end a script element of a page that the code is put into
+    embedded = orjson.dumps(description).decode().replace("<", "\\u003c")
+    return text.replace('"@heap@"', str(heap)).replace("@name@", name).replace('"@description@"', embedded)
+
+
+def types(description: Mapping[str, Any]) -> str:
+    """The declarations of TypeScript, ``NAME.d.mts``."""
+    return _TYPES % "\n".join(_declared(each, description["vectors"]) for each in description["functions"])
+
+
+def _declared(function: Mapping[str, Any], vectors: Mapping[str, Any]) -> str:
+    arguments = ", ".join(
+        f"{symbol}{'?' if symbol == 'p' and _complete(vectors['p']) else ''}: "
+        f"{'number' if symbol == 't' else 'ArrayLike<number>'}"
+        for symbol in function["arguments"]
+    )
+    outputs = function["outputs"]
+    shapes = [f"{' x '.join(map(str, output['shape'])) or '1'}" for output in outputs]
+    if len(outputs) == 1:
+        return f"    /** {shapes[0]}, row-major */\n    {function['name']}({arguments}): Float64Array;"
+    told = "; ".join(f"{orjson.dumps(o['name']).decode()}: Float64Array" for o in outputs)
+    return f"    /** {', '.join(shapes)}, row-major */\n    {function['name']}({arguments}): {{ {told} }};"
+
+
+def _complete(vector: Mapping[str, Any]) -> bool:
+    return not vector["length"] or None not in vector.get("defaults", [None])
