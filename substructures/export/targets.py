@@ -12,8 +12,11 @@ from substructures.export.exported import Exported
 from substructures.export.languages import c
 from substructures.export.languages.c import C
 from substructures.export.languages.code import Code
+from substructures.export.languages.cuda import Cuda
 from substructures.export.render import LANGUAGES, definitions, text_of
 from substructures.export.software import SOFTWARE
+from substructures.export.webassembly import glue
+from substructures.export.webassembly.functions import webassembly
 
 Files = dict[str, bytes]
 
@@ -58,6 +61,17 @@ def _function_files(exported: Exported, limit: int) -> Files:
     return found
 
 
+def _javascript(exported: Exported, _: int) -> Files:
+    made = webassembly(exported)
+    document = exported.document(SOFTWARE)
+    text, declared = glue.javascript(exported.name, document, made.heap), glue.types(document)
+    return {
+        f"{exported.name}.wasm": made.content,
+        f"{exported.name}.mjs": text.encode(),
+        f"{exported.name}.d.mts": declared.encode(),
+    }
+
+
 def _c(exported: Exported, limit: int) -> Files:
     guard, about = f"{exported.name.upper()}_H", c.head_of(exported, SOFTWARE)
     header = [*about, f"#ifndef {guard}", f"#define {guard}", "#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
@@ -68,6 +82,8 @@ def _c(exported: Exported, limit: int) -> Files:
 
 
 TARGETS: Mapping[str, Target] = {
+    "cuda": _one_file(Cuda),
+    "javascript": Target(_javascript, "Node"),
     "interface": Target(_interface, "read by callers in C and Octave"),
     "c": Target(_c, C.executed),
     "matlab": Target(_function_files, LANGUAGES["matlab"].executed),

@@ -1,0 +1,138 @@
+"""CUDA: the file is compiled by NVRTC where that is installed, and its logic is run by g++ from the same source."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mixed_program import POINT, mixed_program
+from run_code import Values, agree, alone, arguments, shared, state, tool
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.export import Exported, Function, exported_model, files, interface_of_model
+from substructures.export.languages import cuda
+from substructures.quantities.evaluation import Sources
+
+STRICT = ["-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-ffp-contract=off"]
+LIMIT = 1_000_000
+QUANTITIES = ("metric", "christoffel", "forces", "inverse_dynamics", "forward_dynamics")
+
+
+def library(exported: Exported, folder: Path) -> ctypes.CDLL:
+    """The file as a library of an ordinary compiler."""
+    source = folder / f"{exported.name}.cpp"
+    source.write_bytes(files(exported, "cuda", LIMIT)[f"{exported.name}.cu"])
+    return shared([source], STRICT, tool("g++"))
+
+
+def columns(function: Function, states: Sequence[Values], common: bool) -> dict[str, Any]:
+    """The arguments with the number of the state as the last axis; those of the first state where all share them."""
+    given = [arguments(function, values) for values in states]
+    found = {symbol: np.ascontiguousarray(np.array([g[symbol] for g in given]).T) for symbol in function.arguments}
+    return found | ({"p": np.array(given[0]["p"])} if common else {})
+
+
+def call(
+    loaded: ctypes.CDLL, exported: Exported, function: Function, states: Sequence[Values], common: bool
+) -> list[dict[str, Any]]:
+    """The results of every state."""
+    count, called = len(states), exported.called(function)
+    text = files(exported, "cuda", LIMIT)[f"{exported.name}.cu"].decode()
+    room = int(text.split(f"{called}_WORK = ")[1].split(" ")[0])
+    given = columns(function, states, common)
+    results = {n: np.full((*o.shape, count), np.nan) for n, o in function.program.outputs.items()}
+    arrays = [*given.values(), *results.values()]
+    pointers = [x.ctypes.data_as(ctypes.c_void_p) for x in arrays]
+    workspace = np.full(max(1, room * count), np.nan)
+    loaded[f"{called}_states"](
+        ctypes.c_size_t(count), *pointers, ctypes.c_int(common), workspace.ctypes.data_as(ctypes.c_void_p)
+    )
+    return [{n: x[..., k] for n, x in results.items()} for k in range(count)]
+
+
+def model() -> Model:
+    """A robot with a wrist of its own on its flange."""
+    instances = [
+        {"name": "a", "substructure": "ur5"},
+        {"name": "b", "substructure": "spherical-wrist", "at": "a.flange"},
+    ]
+    parts = {"a": "ur5", "b": "spherical-wrist"}
+    spec = TreeSpec.read({"name": "t", "gravity": [0, 0, "-9.81"], "instances": instances})
+    return couple(spec, {k: derive(Definition.read(catalogue.load(v))) for k, v in parts.items()})
+
+
+@pytest.fixture(scope="module")
+def robot() -> Exported:
+    found = model()
+    return exported_model(Sources(found), interface_of_model(found), QUANTITIES, "robot")
+
+
+@pytest.mark.parametrize("common", [False, True])
+@pytest.mark.parametrize("length", [1, 5, 600])
+def test_every_operation(length: int, common: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cuda, "LENGTH", length)
+    exported = alone(mixed_program())
+    (function,) = exported.functions
+    scales = (1.0, 1.0, 1.0) if common else (1.0, 2.0, 0.5)
+    states: list[Mapping[str, float]] = [{n: scale * x for n, x in POINT.items()} for scale in scales]
+    found = call(library(exported, tmp_path), exported, function, states, common)
+    for one, values in zip(found, states, strict=True):
+        agree(one, function, values)
+
+
+@pytest.mark.parametrize("common", [False, True])
+def test_states_of_a_robot(robot: Exported, common: bool, tmp_path: Path) -> None:
+    loaded = library(robot, tmp_path)
+    states = [state(robot.interface, seed) for seed in range(5)]
+    if common:
+        shared_values = {n: states[0][n] for n in robot.interface.vectors["p"].names}
+        states = [values | shared_values for values in states]
+    else:
+        states = [
+            values | {n: values[n] * (1 + seed / 10) for n in robot.interface.vectors["p"].names}
+            for seed, values in enumerate(states)
+        ]
+    for function in robot.functions:
+        for one, values in zip(call(loaded, robot, function, states, common), states, strict=True):
+            agree(one, function, values, 1e-11)
+
+
+def test_nvrtc_compiles_it(robot: Exported) -> None:
+    if find_spec("nvidia") is None or not (path := nvrtc()):
+        pytest.skip("the wheel nvidia-cuda-nvrtc is not installed")
+    for exported in (robot, alone(mixed_program())):
+        text = files(exported, "cuda", LIMIT)[f"{exported.name}.cu"]
+        compiled = ptx(ctypes.CDLL(path), text)
+        for function in exported.functions:
+            assert f".visible .entry {exported.called(function)}_states(" in compiled
+
+
+def nvrtc() -> str:
+    """The library of the wheel."""
+    spec = find_spec("nvidia")
+    folders = [Path(p) for p in (spec.submodule_search_locations or ())] if spec else []
+    found = [
+        str(path) for folder in folders for path in sorted(folder.glob("**/libnvrtc.so.*")) if "alt" not in path.name
+    ]
+    return found[0] if found else ""
+
+
+def ptx(compiler: ctypes.CDLL, source: bytes) -> str:
+    """PTX for the oldest GPUs that the compiler knows."""
+    program, size = ctypes.c_void_p(), ctypes.c_size_t()
+    assert compiler.nvrtcCreateProgram(ctypes.byref(program), source, b"model.cu", 0, None, None) == 0
+    code = compiler.nvrtcCompileProgram(program, 0, None)
+    compiler.nvrtcGetProgramLogSize(program, ctypes.byref(size))
+    log = ctypes.create_string_buffer(size.value)
+    compiler.nvrtcGetProgramLog(program, log)
+    assert code == 0, log.value.decode()
+    assert "warning" not in log.value.decode(), log.value.decode()
+    compiler.nvrtcGetPTXSize(program, ctypes.byref(size))
+    text = ctypes.create_string_buffer(size.value)
+    compiler.nvrtcGetPTX(program, text)
+    return text.value.decode()
