@@ -1,0 +1,251 @@
+"""A robot that was read as the definition of a substructure: bodies, ports, parameters, and what was called how.
+
+Bodies carry the names of links, coordinates those of joints. Links on fixed joints are merged into the link that
+carries them (or kept as bodies), their frames stay as ports. Several joints of one link are a chain of massless bodies;
+``floating`` and ``ball`` are chains of prismatic and revolute joints (yaw, pitch, roll; singular at pitch = +-pi/2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from substructures.interchange.merge import Seat, minus, plus, together
+from substructures.interchange.names import Names, library_name
+from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
+from substructures.interchange.report import Place, refuse
+from substructures.interchange.robot import Inertial, Link, Mimic, Motion, Robot
+from substructures.part.definition import MAX_BODIES
+from substructures.part.topology import BASE
+
+Parameters = Literal["none", "inertia", "all"]
+Fixed = Literal["ports", "bodies", "dropped"]
+Base = Literal["fixed", "floating"]
+
+FREE = ("x", "y", "z", "yaw", "pitch", "roll")
+TURNS = FREE[3:]
+_MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_UNITS = {"m": "kg", "c": "m", "I": "kg m^2", "p": "m", "r": "rad"}
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a file becomes a part.
+
+    ``parameters``: which numbers become named parameters with the file's values as defaults; ``fixed``: what links on
+    fixed joints become besides being merged: ``ports``, ``bodies`` of their own instead, or nothing; ``base``: whether
+    the root link may move freely.
+    """
+
+    parameters: Parameters = "inertia"
+    fixed: Fixed = "ports"
+    base: Base = "fixed"
+
+
+@dataclass(frozen=True)
+class PartOfFile:
+    """A definition as plain data; ``names``: what links, joints and frames of the file are called here."""
+
+    definition: dict[str, Any]
+    names: dict[str, str]
+    bindings: list[dict[str, Any]]
+
+
+def as_part(robot: Robot, options: Options = Options(), name: str | None = None) -> PartOfFile:
+    """The definition of a robot. Raises InvalidDocument for more bodies than a definition may have."""
+    return _Builder(robot, options).part(name)
+
+
+@dataclass
+class _Body:
+    """A body that is being put together: what is fixed in it, each in its frame."""
+
+    name: str
+    parent: str
+    joint: dict[str, Any]
+    place: Place
+    inertias: list[Inertial] = field(default_factory=list)
+
+
+class _Builder:
+    """Goes through the links, parents first."""
+
+    def __init__(self, robot: Robot, options: Options) -> None:
+        self.robot, self.options = robot, options
+        self.links, self.joints = Names(), Names()
+        self.bodies: dict[str, _Body] = {}
+        self.ports: list[dict[str, Any]] = []
+        self.loads: list[dict[str, Any]] = []
+        self.parameters: dict[str, dict[str, Any]] = {}
+        #: of every link the body that it is fixed in, and where
+        self.seats: dict[str, tuple[str, Seat]] = {}
+
+    def part(self, name: str | None) -> PartOfFile:
+        """Everything together."""
+        for link in self._links():
+            self._add(link)
+        for frame in self.robot.frames:
+            self._port(frame.name, frame.link, Seat(frame.position, frame.rpy))
+        if len(self.bodies) > MAX_BODIES:
+            first = list(self.bodies.values())[MAX_BODIES]
+            message = f"{len(self.bodies)} bodies; a part has at most {MAX_BODIES}: cut the mechanism into several"
+            raise refuse(first.place, "too-many-bodies", message)
+        self.symbols = Names(self.joints.given.values())
+        self.symbols_taken()
+        document: dict[str, Any] = {
+            "name": library_name(name or self.robot.name),
+            "title": self.robot.name[:200],
+            "bodies": [self._document(body) for body in self.bodies.values()],
+            "ports": self.ports[:500],
+            "loads": self.loads,
+            "parameters": self.parameters,
+        }
+        return PartOfFile(
+            {key: x for key, x in document.items() if x},
+            {**self.links.given, **{f"joint {k}": v for k, v in self.joints.given.items()}},
+            [self._binding(m) for m in self.robot.mimics],
+        )
+
+    def symbols_taken(self) -> None:
+        """Names of coordinates may not be those of parameters."""
+        for body in self.bodies.values():
+            coordinates = body.joint.get("coordinate", [])
+            for c in [coordinates] if isinstance(coordinates, str) else coordinates:
+                self.symbols.of(c)
+
+    def _links(self) -> Iterator[Link]:
+        """With roots that move freely, if they are to."""
+        for link in self.robot.links:
+            if link.parent is None and not link.motions and self.options.base == "floating":
+                yield replace(link, motions=(Motion(f"{link.name}_free", "free", link.place),))
+            else:
+                yield link
+
+    def _add(self, link: Link) -> None:
+        carrier, seat = (BASE, Seat()) if link.parent is None else self.seats[link.parent]
+        here = seat.beyond(Seat(link.position, link.rpy))
+        if link.motions:
+            self._moving(link, carrier, here)
+        elif carrier == BASE or self.options.fixed == "bodies":
+            self._body(link, self.links.of(link.name), carrier, {"type": "fixed", **_placement(here)})
+            self.seats[link.name] = self.links.of(link.name), Seat()
+            self.bodies[self.links.of(link.name)].inertias.append(link.inertial)
+        else:
+            self.seats[link.name] = carrier, here
+            self.bodies[carrier].inertias.append(here.inertial(link.inertial))
+            self.robot.report.merged(link.place, f"fixed to '{carrier}', and counted with it")
+            if self.options.fixed == "ports":
+                self._port(link.name, link.name, Seat())
+
+    def _moving(self, link: Link, carrier: str, here: Seat) -> None:
+        """A chain of joints; the frame of a body is at the anchor of its joint, in the axes of the link."""
+        before: Triple = ORIGIN
+        for k, motion in enumerate(link.motions):
+            last = k == len(link.motions) - 1
+            anchored = Seat(plus(motion.anchor, minus(before)))
+            name = self.links.of(link.name) if last else self.links.new(f"{link.name}_{k + 1}")
+            self._body(link, name, carrier, self._joint(motion, here.beyond(anchored)))
+            carrier, here, before = name, Seat(), motion.anchor
+        own = Seat(minus(before))
+        self.seats[link.name] = carrier, own
+        self.bodies[carrier].inertias.append(own.inertial(link.inertial))
+        if own.position != ORIGIN:
+            self._port(f"{link.name}_frame", link.name, Seat())
+
+    def _body(self, link: Link, name: str, parent: str, joint: dict[str, Any]) -> None:
+        self.bodies[name] = _Body(name, parent, joint, link.place)
+
+    def _joint(self, motion: Motion, seat: Seat) -> dict[str, Any]:
+        """The joint of a body as a document."""
+        joint: dict[str, Any] = {"type": motion.type, **_placement(seat)}
+        if motion.type in ("free", "spherical"):
+            steps = FREE if motion.type == "free" else TURNS
+            joint["coordinate"] = [self.joints.new(f"{motion.name}_{step}") for step in steps]
+            self.joints.given[motion.name] = ", ".join(joint["coordinate"])
+            self.loads += _turning_damping(joint["coordinate"][-3:], motion.damping)
+            return joint
+        joint["coordinate"] = self.joints.of(motion.name)
+        if motion.axis != (ZERO, ZERO, ONE):
+            joint["axis"] = list(motion.axis)
+            joint.setdefault("placement", {})
+        laws = {"stiffness": motion.stiffness, "rest": motion.rest, "damping": motion.damping}
+        laws |= {"armature": motion.armature}
+        joint |= {key: x for key, x in laws.items() if not is_zero(x)}
+        if not is_zero(motion.offset):
+            joint["phi" if motion.type == "revolute" else "tau"] = minus((motion.offset, ZERO, ZERO))[0]
+        if motion.limits is not None:
+            joint["limits"] = list(motion.limits)
+        return joint
+
+    def _port(self, name: str, link: str, seat: Seat) -> None:
+        """A frame of a link as a port of its body; of what is fixed to the interface, too."""
+        body, own = self.seats[link]
+        here = own.beyond(seat)
+        port: dict[str, Any] = {"name": self.links.of(name), "body": body}
+        if not all(map(is_zero, here.position)):
+            port["position"] = list(here.position)
+        if here.is_turned:
+            port["rotation"] = {"rpy": list(here.rpy)}
+        self.ports.append(port)
+
+    def _document(self, body: _Body) -> dict[str, Any]:
+        """A body with its numbers, or parameters in place of them."""
+        own = together(body.inertias)
+        plain: dict[str, Any] = {"name": body.name, "parent": body.parent, "joint": body.joint}
+        inertial = self.options.parameters != "none"
+        if self.options.parameters == "all" and "placement" in body.joint:
+            self._geometry(body)
+        if not is_zero(own.mass):
+            plain["mass"] = self._named("m", body.name, "", own.mass, inertial)
+        if not all(map(is_zero, own.com)):
+            plain["com"] = [self._named("c", body.name, e, x, inertial) for e, x in zip("xyz", own.com, strict=True)]
+        if not all(map(is_zero, own.inertia)):
+            entries = zip(_MOMENTS, own.inertia, strict=True)
+            plain["inertia"] = {e: self._named("I", body.name, e, x, inertial) for e, x in entries if not is_zero(x)}
+        return plain
+
+    def _geometry(self, body: _Body) -> None:
+        placement = body.joint["placement"]
+        for key, letter, parts in (("position", "p", "xyz"), ("rpy", "r", ("roll", "pitch", "yaw"))):
+            if key in placement:
+                pairs = zip(parts, placement[key], strict=True)
+                placement[key] = [self._named(letter, body.name, part, x, True) for part, x in pairs]
+
+    def _named(self, letter: str, body: str, part: str, x: Number, is_parameter: bool) -> Number:
+        """The name of a parameter with this default; the number itself where it is zero, or a multiple of pi."""
+        if not is_parameter or is_zero(x) or isinstance(x, str):
+            return x
+        name = self.symbols.new(f"{letter}{part}_{body}")
+        self.parameters[name] = {"value": x, "unit": _UNITS[letter]}
+        return name
+
+    def _binding(self, mimic: Mimic) -> dict[str, Any]:
+        own, of = self.joints.of(mimic.joint), self.joints.of(mimic.of)
+        return {"coordinate": own, "of": of, "multiplier": mimic.multiplier, "offset": mimic.offset}
+
+
+def _placement(seat: Seat) -> dict[str, Any]:
+    """As a field of a joint; nothing where nothing is displaced."""
+    placement: dict[str, Any] = {}
+    if not all(map(is_zero, seat.position)):
+        placement["position"] = list(seat.position)
+    if seat.is_turned:
+        placement["rpy"] = list(seat.rpy)
+    return {"placement": placement} if placement else {}
+
+
+def _turning_damping(coordinates: list[str], damping: Number) -> list[dict[str, Any]]:
+    """The moment -c omega of a joint that turns by yaw, pitch, roll, on its coordinates.
+
+    omega^2 = yaw'^2 + pitch'^2 + roll'^2 - 2 yaw' roll' sin(pitch), and Q_a = -c/2 d(omega^2)/dq'^a.
+    """
+    if is_zero(damping):
+        return []
+    yaw, pitch, roll = coordinates
+    forces = {
+        yaw: f"-({damping})*({yaw}' - {roll}'*sin({pitch}))",
+        pitch: f"-({damping})*{pitch}'",
+        roll: f"-({damping})*({roll}' - {yaw}'*sin({pitch}))",
+    }
+    return [{"type": "joint", "coordinate": q, "force": force} for q, force in forces.items()]

@@ -1,0 +1,37 @@
+"""Which format a file has, by its content, and its reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from substructures.errors import InvalidDocument
+from substructures.interchange.report import refuse
+from substructures.interchange.robot import Robot
+from substructures.interchange.urdf import read_urdf
+from substructures.interchange.xml import Node, read_xml
+
+#: by the root element of XML formats
+_ROOTS: Mapping[str, tuple[str, Callable[[Node], Robot]]] = {"robot": ("urdf", read_urdf)}
+KINDS = ("urdf",)
+
+
+def is_xml(data: bytes) -> bool:
+    """Whether a file begins as XML does, in any of the encodings that XML has."""
+    beginning = data[:4000].lstrip(b"\xef\xbb\xbf\xff\xfe\x00 \t\r\n")
+    return beginning[:1] == b"<"
+
+
+def read_robot(data: bytes, kind: str | None = None) -> tuple[str, Robot]:
+    """The kind of a file (``kind``: what it has to be; default by content), and the robot in it. Raises InvalidDocument."""
+    if kind is not None and kind not in KINDS:
+        raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
+    root = read_xml(data)
+    found = _ROOTS.get(root.tag)
+    if found is None:
+        raise refuse(
+            root.place, "unknown-format", f"not one of {', '.join(KINDS)}: their roots are {', '.join(_ROOTS)}"
+        )
+    name, reader = found
+    if kind is not None and kind != name:
+        raise refuse(root.place, "wrong-kind", f"this is {name.upper()}, not {kind.upper()}")
+    return name, reader(root)

@@ -1,0 +1,84 @@
+"""Numbers of files: exact decimals as they are written; doubles where something is computed of them."""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from fractions import Fraction
+
+from substructures.interchange.report import Place, refuse
+
+#: an exact decimal, or a multiple of pi as text
+Number = Decimal | str
+Triple = tuple[Number, Number, Number]
+
+ZERO = Decimal(0)
+ONE = Decimal(1)
+ORIGIN: Triple = (ZERO, ZERO, ZERO)
+#: a multiple of pi / 12 that an angle is meant to be, if it is as near as that
+ANGLE_TOLERANCE = 1e-11
+_DECIMAL = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?")
+_MAX_DIGITS = 60
+
+
+def number_of(text: str, place: Place, name: str) -> Decimal:
+    """A finite decimal number of at most 60 digits and magnitudes from 1e-100 to 1e100. Raises InvalidDocument."""
+    word = text.strip()
+    if len(word) > _MAX_DIGITS or not _DECIMAL.fullmatch(word):
+        hint = "; decimals are written with a point" if "," in word else ""
+        raise refuse(place, "bad-number", f"'{name}' is no finite number: '{word[:_MAX_DIGITS]}'{hint}")
+    found = Decimal(word)
+    if found and not -100 <= found.adjusted() <= 100:
+        raise refuse(place, "bad-number", f"'{name}' is beyond 1e-100 to 1e100: {word}")
+    return found if found else ZERO
+
+
+def value(x: Number) -> float:
+    """The number as a double."""
+    if isinstance(x, Decimal):
+        return float(x)
+    sign, numerator, denominator = _PI.fullmatch(x).groups()  # type: ignore[union-attr] # written by multiple_of_pi
+    return (-1 if sign else 1) * float(Fraction(int(numerator or 1), int(denominator or 1))) * math.pi
+
+
+_PI = re.compile(r"(-)?(?:(\d+)\*)?pi(?:/(\d+))?")
+
+
+def decimal_of(x: float) -> Decimal:
+    """A computed double to 16 significant digits; zero below 1e-100."""
+    return Decimal(f"{x:.16g}") if abs(x) > 1e-100 else ZERO
+
+
+def triple(xyz: tuple[Number, ...]) -> Triple:
+    """Three numbers as a triple."""
+    x, y, z = xyz
+    return x, y, z
+
+
+def angle(x: Number) -> Number:
+    """The angle [rad], as an exact multiple of pi / 12 where it is one to within 1e-11.
+
+    >>> angle(Decimal("1.57079632679")), angle(Decimal("1.5708"))
+    ('pi/2', Decimal('1.5708'))
+    """
+    if isinstance(x, str):
+        return x
+    steps = round(float(x) * 12 / math.pi)
+    if abs(float(x) - steps * math.pi / 12) > ANGLE_TOLERANCE:
+        return x
+    return multiple_of_pi(Fraction(steps, 12))
+
+
+def multiple_of_pi(ratio: Fraction) -> Number:
+    """So many times pi, as text: '-pi/2', '2*pi/3', 0."""
+    if not ratio:
+        return ZERO
+    top = abs(ratio.numerator)
+    bottom = "" if ratio.denominator == 1 else f"/{ratio.denominator}"
+    return ("-" if ratio < 0 else "") + ("" if top == 1 else f"{top}*") + "pi" + bottom
+
+
+def is_zero(x: Number) -> bool:
+    """Whether a number is zero as written."""
+    return isinstance(x, Decimal) and not x

@@ -1,0 +1,138 @@
+"""What all file formats are read into: links on parents, the motions between them, and frames.
+
+A link hangs on its parent (None: the world) at a constant placement, and moves from there by its motions in order,
+
+    T_link = T_parent  T(position, rpy)  T(anchor_1) J_1(q_1) T(-anchor_1)  T(anchor_2) J_2(q_2) T(-anchor_2) ...
+
+with anchors and axes in the axes of the link. A link without motions is fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple
+from substructures.interchange.report import Place, Report, refuse
+
+MotionType = Literal["revolute", "prismatic", "spherical", "free"]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One joint. ``offset``: q at which nothing is moved (MJCF ``ref``); rest, limits: values of q."""
+
+    name: str
+    type: MotionType
+    place: Place
+    axis: Triple = (ZERO, ZERO, ZERO)
+    anchor: Triple = ORIGIN
+    offset: Number = ZERO
+    stiffness: Number = ZERO
+    rest: Number = ZERO
+    damping: Number = ZERO
+    armature: Number = ZERO
+    limits: tuple[Number, Number] | None = None
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass [kg], mass centre in the link's frame [m], tensor about it in the link's axes (xx, yy, zz, xy, xz, yz)."""
+
+    mass: Number = ZERO
+    com: Triple = ORIGIN
+    inertia: tuple[Number, ...] = (ZERO,) * 6
+
+
+@dataclass(frozen=True)
+class Link:
+    """A body with its placement on its parent and the motions in between."""
+
+    name: str
+    parent: str | None
+    place: Place
+    position: Triple = ORIGIN
+    rpy: Triple = ORIGIN
+    motions: tuple[Motion, ...] = ()
+    inertial: Inertial = field(default_factory=Inertial)
+
+
+@dataclass(frozen=True)
+class NamedFrame:
+    """A frame fixed in a link."""
+
+    name: str
+    link: str
+    position: Triple = ORIGIN
+    rpy: Triple = ORIGIN
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """q = multiplier * (q of the joint ``of``) + offset."""
+
+    joint: str
+    of: str
+    multiplier: Number
+    offset: Number
+    place: Place
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A cut joint: ``kind`` of a closure between points fixed in links (None: the world), axes of the second one."""
+
+    name: str
+    kind: Literal["ball", "weld"]
+    link: str
+    other: str | None
+    position: Triple
+    rpy: Triple
+    other_position: Triple
+    other_rpy: Triple
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A file, read: links with parents before children. ``gravity``: where the file gives it."""
+
+    name: str
+    links: tuple[Link, ...]
+    report: Report
+    frames: tuple[NamedFrame, ...] = ()
+    mimics: tuple[Mimic, ...] = ()
+    loops: tuple[Loop, ...] = ()
+    gravity: Triple | None = None
+
+    def with_links(self, links: Mapping[str, Link]) -> Robot:
+        """With some links in place of those of the same name."""
+        return replace(self, links=tuple(links.get(link.name, link) for link in self.links))
+
+
+def in_order(links: list[Link]) -> tuple[Link, ...]:
+    """The order given, with parents before children. Raises InvalidDocument: unknown parents, duplicates, cycles."""
+    by_name: dict[str, Link] = {}
+    for link in links:
+        if link.name in by_name:
+            raise refuse(link.place, "duplicate-name", f"a second link '{link.name}': give it another name")
+        by_name[link.name] = link
+    order: dict[str, Link] = {}
+    for link in links:
+        for each in reversed(_ancestors(link, by_name, order)):
+            order[each.name] = each
+    return tuple(order.values())
+
+
+def _ancestors(link: Link, by_name: Mapping[str, Link], known: Mapping[str, Link]) -> list[Link]:
+    """The link and those before it that are not known yet, from the leaf to the root."""
+    found: dict[str, Link] = {}
+    here: Link | None = link
+    while here is not None and here.name not in known:
+        if here.name in found:
+            raise refuse(link.place, "cycle", f"the link '{link.name}' is on or behind a cycle of joints")
+        found[here.name] = here
+        if here.parent is not None and here.parent not in by_name:
+            raise refuse(here.place, "unknown-link", f"the parent '{here.parent}' is not in the file")
+        here = None if here.parent is None else by_name[here.parent]
+    return list(found.values())

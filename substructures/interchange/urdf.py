@@ -1,0 +1,273 @@
+"""URDF (http://wiki.ros.org/urdf/XML): links with inertial origins, joints with axes in any direction.
+
+A joint's frame is the frame of its child link; its axis is given there, and mass and inertia in the frame of the
+inertial origin: with the rotation R of that origin the tensor in the link's axes is R I R^T. The products of inertia
+are entries of the tensor, ixy = -integral of x y dm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from substructures.interchange.numbers import (
+    ONE,
+    ORIGIN,
+    ZERO,
+    Number,
+    Triple,
+    angle,
+    decimal_of,
+    is_zero,
+    triple,
+    value,
+)
+from substructures.interchange.report import Place, Report, refuse
+from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, Robot, in_order
+from substructures.interchange.rotations import from_rpy, from_z_axis, six_of, tensor
+from substructures.interchange.xml import Node
+
+X_AXIS: Triple = (ONE, ZERO, ZERO)
+_MOTION: dict[str, MotionType] = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
+_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+#: elements without influence on the equations of motion
+_SHOWN_ONLY = {
+    "visual": "how it looks", "collision": "contacts", "contact": "contacts", "sensor": "sensors",
+    "self_collision_checking": "contacts", "material": "colours", "gazebo": "what another program needs",
+    "transmission": "transmissions (rotor inertia would be the armature of a joint)", "ros2_control": "controllers",
+    "safety_controller": "controllers", "calibration": "calibration", "verbose": "what another program needs",
+}  # fmt: skip
+_IN_ROBOT = ("link", "joint")
+_IN_LINK = ("inertial",)
+_IN_JOINT = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic")
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """A joint of the file, read."""
+
+    node: Node
+    name: str
+    type: str
+    parent: str
+    child: str
+
+
+def read_urdf(root: Node) -> Robot:
+    """The robot of a URDF document. Raises InvalidDocument with line and element."""
+    if root.tag != "robot":
+        raise refuse(root.place, "not-urdf", "the root of a URDF file is <robot>")
+    report = Report()
+    _tell_of_others(root, _IN_ROBOT, report)
+    links = {}
+    for node in root.all("link"):
+        name = node.text_of("name")
+        if name in links:
+            raise refuse(node.place, "duplicate-name", f"a second link '{name}': give it another name")
+        links[name] = node
+    if not links:
+        raise refuse(root.place, "no-links", "the robot has no <link>")
+    joints = list(_joints(root, links))
+    made = [_root(links, joints, report)]
+    mimics: list[Mimic] = []
+    for joint in joints:
+        made += _links_of(joint, links[joint.child], report)
+        mimics += _mimic(joint, {j.name: j for j in joints}, report)
+    return Robot(root.attributes.get("name", ""), in_order(made), report, mimics=tuple(mimics))
+
+
+def _joints(root: Node, links: dict[str, Node]) -> Iterator[_Joint]:
+    seen: set[str] = set()
+    children: dict[str, str] = {}
+    for node in root.all("joint"):
+        name, kind = node.text_of("name"), node.text_of("type")
+        if name in seen:
+            raise refuse(node.place, "duplicate-name", f"a second joint '{name}': give it another name")
+        if kind not in _TYPES:
+            raise refuse(node.place, "unknown-type", f"type '{kind[:40]}' is none of {', '.join(_TYPES)}")
+        seen.add(name)
+        ends = [_end(node, tag, links) for tag in ("parent", "child")]
+        if ends[1] in children:
+            message = f"the link '{ends[1]}' is the child of '{children[ends[1]]}' already: a tree has one parent each"
+            raise refuse(node.place, "two-parents", message)
+        children[ends[1]] = name
+        yield _Joint(node, name, kind, ends[0], ends[1])
+
+
+def _end(node: Node, tag: str, links: dict[str, Node]) -> str:
+    found = node.one(tag)
+    if found is None:
+        raise refuse(node.place, "missing-element", f"<{tag} link='...'/> is needed")
+    name = found.text_of("link")
+    if name not in links:
+        raise refuse(found.place, "unknown-link", f"there is no link '{name}'")
+    return name
+
+
+def _root(links: dict[str, Node], joints: list[_Joint], report: Report) -> Link:
+    """The one link that is nobody's child, fixed to the interface."""
+    moved = {joint.child for joint in joints}
+    roots = [name for name in links if name not in moved]
+    if not roots:
+        raise refuse(joints[0].node.place, "cycle", "every link is the child of a joint: there is a cycle")
+    if len(roots) > 1:
+        message = f"there are several roots ({', '.join(roots[:5])}): connect them by fixed joints to one link"
+        raise refuse(links[roots[1]].place, "several-roots", message)
+    node = links[roots[0]]
+    return Link(roots[0], None, node.place, inertial=_inertial(node, report))
+
+
+def _links_of(joint: _Joint, node: Node, report: Report) -> list[Link]:
+    """The child link of a joint; before it a massless one where the joint needs turned axes (planar)."""
+    _tell_of_others(joint.node, _IN_JOINT, report)
+    position, rpy = _origin(joint.node)
+    inertial = _inertial(node, report)
+    if joint.type == "fixed":
+        return [Link(joint.child, joint.parent, node.place, position, rpy, (), inertial)]
+    if joint.type == "floating":
+        return [Link(joint.child, joint.parent, node.place, position, rpy, (_free(joint),), inertial)]
+    if joint.type == "planar":
+        return [Link(joint.child, joint.parent, node.place, position, rpy, _planar(joint), inertial)]
+    return [Link(joint.child, joint.parent, node.place, position, rpy, (_motion(joint, report),), inertial)]
+
+
+def _motion(joint: _Joint, report: Report) -> Motion:
+    """A joint of one degree of freedom."""
+    node = joint.node
+    kind = _MOTION[joint.type]
+    dynamics, place = node.one("dynamics"), node.place
+    damping: Number = ZERO
+    if dynamics is not None:
+        damping = dynamics.number("damping", ZERO)
+        if not is_zero(dynamics.number("friction", ZERO)):
+            message = "dry friction is no force with a formula here: add a load of the type 'joint' for it"
+            report.warning(dynamics.place, message)
+    return Motion(joint.name, kind, place, _axis(node), damping=damping, limits=_limits(joint, report))
+
+
+def _free(joint: _Joint) -> Motion:
+    return Motion(joint.name, "free", joint.node.place)
+
+
+def _planar(joint: _Joint) -> tuple[Motion, ...]:
+    """Along two axes across the given one, then about it."""
+    n = _axis(joint.node)
+    R = from_z_axis([value(x) for x in n])
+    along = [triple(tuple(decimal_of(float(x)) for x in R[:, i])) for i in (0, 1)]
+    place = joint.node.place
+    return (
+        Motion(f"{joint.name}_1", "prismatic", place, along[0]),
+        Motion(f"{joint.name}_2", "prismatic", place, along[1]),
+        Motion(f"{joint.name}_3", "revolute", place, n),
+    )
+
+
+def _axis(node: Node) -> Triple:
+    axis = node.one("axis")
+    if axis is None:
+        return X_AXIS
+    xyz = triple(axis.numbers("xyz", 3, X_AXIS))
+    if all(map(is_zero, xyz)):
+        raise refuse(axis.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
+    return xyz
+
+
+def _limits(joint: _Joint, report: Report) -> tuple[Number, Number] | None:
+    limit = joint.node.one("limit")
+    if limit is None:
+        return None
+    low, high = limit.number("lower", ZERO), limit.number("upper", ZERO)
+    if joint.type == "continuous" or (is_zero(low) and is_zero(high)):
+        return None
+    if value(low) > value(high):
+        report.warning(limit.place, f"the lower limit {low} is above the upper one {high}: limits are left out")
+        return None
+    return low, high
+
+
+def _mimic(joint: _Joint, joints: dict[str, _Joint], report: Report) -> list[Mimic]:
+    node = joint.node.one("mimic")
+    if node is None:
+        return []
+    of = node.text_of("joint")
+    if of not in joints or joints[of].type not in _MOTION or joint.type not in _MOTION or of == joint.name:
+        message = f"mimic of '{of}', which is no other joint with one coordinate: the coordinate is free"
+        report.warning(node.place, message, "topology")
+        return []
+    found = Mimic(joint.name, of, node.number("multiplier", ONE), node.number("offset", ZERO), node.place)
+    message = (
+        f"'{found.joint}' = {found.multiplier} * '{of}' + {found.offset} is not built in: the coordinate is free. "
+        f"Bind it by a velocity constraint of the type 'linear' or by a prescribed motion"
+    )
+    report.warning(node.place, message, "topology")
+    return [found]
+
+
+def _origin(node: Node) -> tuple[Triple, Triple]:
+    """Position and roll, pitch, yaw of the child <origin>; nothing where it is missing."""
+    origin = node.one("origin")
+    if origin is None:
+        return ORIGIN, ORIGIN
+    if "quat_xyzw" in origin.attributes:
+        raise refuse(origin.place, "unknown-attribute", "'quat_xyzw' is not in URDF 1.1: give rpy")
+    roll, pitch, yaw = map(angle, origin.numbers("rpy", 3, ORIGIN))
+    return triple(origin.numbers("xyz", 3, ORIGIN)), (roll, pitch, yaw)
+
+
+def _inertial(node: Node, report: Report) -> Inertial:
+    """Mass, mass centre, and R I R^T."""
+    _tell_of_others(node, _IN_LINK, report)
+    inertial = node.one("inertial")
+    if inertial is None:
+        return Inertial()
+    mass_of, inertia_of = inertial.one("mass"), inertial.one("inertia")
+    if mass_of is None:
+        raise refuse(inertial.place, "missing-element", "<mass value='...'/> is needed")
+    mass = mass_of.number("value")
+    com, rpy = _origin(inertial)
+    if inertia_of is None:
+        report.warning(inertial.place, "no <inertia>: the link is a point mass", "physics")
+        return Inertial(mass, com)
+    six = (
+        *(inertia_of.number(name) for name in ("ixx", "iyy", "izz")),
+        *(inertia_of.number(name, ZERO) for name in ("ixy", "ixz", "iyz")),
+    )
+    if not all(map(is_zero, rpy)):
+        R = from_rpy(rpy)
+        six = tuple(map(decimal_of, six_of(R @ tensor([value(x) for x in six]) @ R.T)))
+    judge(inertial.place, mass, com, six, report)
+    return Inertial(mass, com, six)
+
+
+def judge(place: Place, mass: Number, com: Triple, six: tuple[Number, ...], report: Report) -> None:
+    """Warn of masses and tensors that no rigid body can have, and of mass centres that are far away."""
+    m, numbers = value(mass), [value(x) for x in six]
+    if m < 0:
+        raise refuse(place, "negative-mass", f"the mass {mass} kg is negative")
+    moments = np.linalg.eigvalsh(tensor(numbers))
+    largest = max(float(np.abs(moments).max()), 1e-300)
+    if moments[0] < -1e-9 * largest or moments[0] + moments[1] < moments[2] * (1 - 1e-9):
+        shown = ", ".join(f"{x:.4g}" for x in moments)
+        report.warning(
+            place, f"no rigid body has the principal moments {shown} kg m^2 (triangle inequality)", "physics"
+        )
+    if m == 0 and any(numbers):
+        report.warning(place, "a moment of inertia without a mass", "physics")
+    distance = float(np.linalg.norm([value(x) for x in com]))
+    if m > 0 and distance > 10 and distance**2 * m > 100 * largest:
+        report.warning(place, f"the mass centre is {distance:.3g} m away: are these millimetres?", "physics")
+
+
+def _tell_of_others(node: Node, known: tuple[str, ...], report: Report) -> None:
+    """One remark for every kind of element that is not read here."""
+    told: set[str] = set()
+    for child in node.children:
+        if child.tag in known or child.tag in told:
+            continue
+        told.add(child.tag)
+        if child.tag in _SHOWN_ONLY:
+            report.ignored(child.place, f"{_SHOWN_ONLY[child.tag]}: no influence on the equations of motion")
+        else:
+            report.warning(child.place, f"<{child.tag[:40]}> is not known in <{node.tag[:40]}> and ignored")

@@ -1,0 +1,149 @@
+"""XML with the line of every element, without entities, external files and document types (defusedxml).
+
+Limits are on bytes, depth and number of elements; what exceeds them is refused before anything is built of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+from xml.etree.ElementTree import ParseError
+
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import DefusedXMLParser
+
+from substructures.errors import InvalidDocument
+from substructures.interchange.numbers import Number, number_of
+from substructures.interchange.report import Place, refuse
+
+MAX_BYTES = 16 * 2**20
+MAX_DEPTH = 200
+MAX_ELEMENTS = 200_000
+#: most characters of a name or value that are shown
+SHOWN = 60
+_NAMED = ("name", "class", "link", "joint", "body")
+_BEGINNING = re.compile(rb"^(?:\xef\xbb\xbf)?\s*<!doctype\s+html|^(?:\xef\xbb\xbf)?\s*<html", re.IGNORECASE)
+
+
+@dataclass(slots=True)
+class Node:
+    """An element: tag (without namespace), attributes, children, text, line."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    children: list[Node] = field(default_factory=list)
+    text: str = ""
+
+    @property
+    def place(self) -> Place:
+        """Line and element, with the attribute that names it."""
+        named = next((f' {k}="{self.attributes[k][:SHOWN]}"' for k in _NAMED if k in self.attributes), "")
+        return Place(self.line, f"<{self.tag[:SHOWN]}{named}>")
+
+    def all(self, *tags: str) -> Iterator[Node]:
+        """The children with one of the tags."""
+        return (child for child in self.children if child.tag in tags)
+
+    def one(self, tag: str) -> Node | None:
+        """The child with this tag, None where there is none. Raises InvalidDocument for several."""
+        found = list(self.all(tag))
+        if len(found) > 1:
+            raise refuse(found[1].place, "duplicate-element", f"a second <{tag}> in {self.place.element}: leave one")
+        return found[0] if found else None
+
+    def text_of(self, name: str, default: str | None = None) -> str:
+        """An attribute. Raises InvalidDocument where it is missing and has no default."""
+        found = self.attributes.get(name, default)
+        if found is None:
+            raise refuse(self.place, "missing-attribute", f"the attribute '{name}' is needed")
+        return found
+
+    def number(self, name: str, default: Number | None = None) -> Number:
+        """A finite decimal number. Raises InvalidDocument."""
+        if name not in self.attributes and default is not None:
+            return default
+        return number_of(self.text_of(name), self.place, name)
+
+    def numbers(self, name: str, count: int | None, default: tuple[Number, ...] | None = None) -> tuple[Number, ...]:
+        """So many finite decimal numbers (None: any number). Raises InvalidDocument."""
+        if name not in self.attributes and default is not None:
+            return default
+        return numbers_in(self.text_of(name), count, self.place, name)
+
+
+def numbers_in(text: str, count: int | None, place: Place, name: str) -> tuple[Number, ...]:
+    """Finite decimal numbers, separated by white space. Raises InvalidDocument."""
+    words = text.split()
+    if count is not None and len(words) != count:
+        message = f"'{name}' needs {count} numbers separated by spaces, found '{text.strip()[:SHOWN]}'"
+        raise refuse(place, "wrong-length", message)
+    return tuple(number_of(word, place, name) for word in words)
+
+
+class _Builder:
+    """Target of the parser: builds nodes, counts depth and elements."""
+
+    def __init__(self) -> None:
+        self.parser: Any = None
+        self.stack: list[Node] = []
+        self.root: Node | None = None
+        self.count = 0
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        node = Node(_local(tag), {_local(k): v for k, v in attributes.items()}, self.parser.CurrentLineNumber)
+        self.count += 1
+        if self.count > MAX_ELEMENTS:
+            raise refuse(node.place, "too-large", f"more than {MAX_ELEMENTS:,} elements")
+        if len(self.stack) >= MAX_DEPTH:
+            raise refuse(node.place, "nesting", f"nested deeper than {MAX_DEPTH} levels")
+        if "XInclude" in tag:
+            raise refuse(node.place, "external-file", "XInclude is not followed: put the file's content here")
+        if "xacro" in tag:
+            raise refuse(node.place, "xacro", "this is a xacro file: expand it first, `xacro file.xacro > file.urdf`")
+        if self.stack:
+            self.stack[-1].children.append(node)
+        else:
+            self.root = node
+        self.stack.append(node)
+
+    def end(self, _tag: str) -> None:
+        self.stack.pop()
+
+    def data(self, text: str) -> None:
+        if self.stack and not text.isspace():
+            self.stack[-1].text += text
+
+    def close(self) -> Node | None:
+        return self.root
+
+
+def _local(name: str) -> str:
+    return name.rpartition("}")[2]
+
+
+def read_xml(data: bytes) -> Node:
+    """The root element. Raises InvalidDocument with the line for what is not well-formed, too large, or dangerous."""
+    if len(data) > MAX_BYTES:
+        raise InvalidDocument.at("", "too-large", f"the file has {len(data):,} bytes; the limit is {MAX_BYTES:,}")
+    if _BEGINNING.match(data[:200]):
+        raise refuse(Place(1, "<html>"), "html", "this is a web page, no robot: download the raw file")
+    target = _Builder()
+    parser = DefusedXMLParser(target=target, forbid_dtd=True, forbid_entities=True, forbid_external=True)
+    target.parser = parser.parser
+    try:
+        parser.feed(data)
+        root = parser.close()
+    except DefusedXmlException as error:
+        line = parser.parser.CurrentLineNumber
+        message = f"document types, entities and external files are refused ({type(error).__name__}): write them out"
+        raise refuse(Place(line, "<!DOCTYPE>"), "forbidden-xml", message) from None
+    except ParseError as error:
+        raise refuse(Place(error.position[0], "XML"), "not-well-formed", f"{error}") from None
+    except (ValueError, LookupError) as error:  # encodings that are not known, or not of one byte
+        raise refuse(Place(1, "<?xml?>"), "encoding", f"{error}: save the file as UTF-8") from None
+    if not isinstance(root, Node):
+        raise refuse(Place(1, "XML"), "not-well-formed", "the file has no element")
+    return root

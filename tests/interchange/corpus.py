@@ -1,0 +1,93 @@
+"""Robot files that nobody here wrote, out of installed packages, beside the engine that reads them, too.
+
+python tests/interchange/corpus.py          # the table of all of them
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from substructures import Definition, TreeSpec, couple, derive
+from substructures.errors import InvalidInput
+from substructures.interchange.importing import import_file
+from substructures.quantities.evaluation import evaluate
+
+sys.path.insert(0, str(Path(__file__).parent))
+from engines import deviation
+from with_pinocchio import PinocchioTwin
+
+QUANTITIES = ["metric", "gravity", "bias", "inverse_dynamics", "forward_dynamics"]
+GRAVITY = (0.3, -0.4, -9.81)
+STATES = 2
+
+
+@dataclass
+class Row:
+    """What came of a file: ``refused`` says why."""
+
+    file: str
+    dof: int = 0
+    seconds: float = 0.0
+    error: float = 0.0
+    singular: bool = False
+    refused: str = ""
+
+    def __str__(self) -> str:
+        told = (
+            self.refused
+            or f"{self.dof:>4} {self.seconds:>7.2f} s {self.error:>9.1e}{'  metric singular' * self.singular}"
+        )
+        return f"{self.file:<58} {told}"
+
+
+def urdf_files() -> dict[str, Path]:
+    """Of the package example-robot-data, by their path in it."""
+    return dict(_files("example-robot-data", "urdf"))
+
+
+def _files(package: str, ending: str) -> Iterator[tuple[str, Path]]:
+    try:
+        found = files(package) or []
+    except PackageNotFoundError:
+        return
+    for file in sorted(found, key=str):
+        if file.suffix == f".{ending}":
+            yield "/".join(Path(str(file)).parts[-3:]), Path(str(file.locate()))
+
+
+def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
+    """Imported, derived, coupled at the world and evaluated, beside the other engine."""
+    start = process_time()
+    try:
+        found = import_file(path.read_bytes(), file=path.name)
+    except InvalidInput as error:
+        return Row(name, refused=f"refused: {error}")
+    instance = {"name": "x", "definition": found.definition}
+    spec = TreeSpec.read({"name": "tree", "gravity": list(GRAVITY), "instances": [instance]})
+    model = couple(spec, {"x": derive(Definition.read(found.definition))})
+    seconds = process_time() - start
+    rng = np.random.default_rng(len(name))
+    states = {key: rng.uniform(-1.2, 1.2, (STATES, model.dof)) for key in ("q", "qd", "qdd")}
+    answer = evaluate(model, QUANTITIES, **states)
+    twin = twin_of(path, found.names, [c.removeprefix("x.") for c in model.coordinates], GRAVITY)
+    expected = [twin.numbers(*(states[k][i] for k in states)) for i in range(STATES)]
+    errors = [deviation(answer, numbers, i) for i, numbers in enumerate(expected)]
+    return Row(name, model.dof, seconds, max(errors), any(x.forward_dynamics is None for x in expected))
+
+
+def compared_urdf(name: str) -> Row:
+    """A file of example-robot-data beside Pinocchio."""
+    return compared(name, urdf_files()[name], PinocchioTwin)
+
+
+if __name__ == "__main__":
+    for file in urdf_files():
+        print(compared_urdf(file), flush=True)
