@@ -15,7 +15,7 @@ from substructures.interchange.merge import Seat, minus, plus, together
 from substructures.interchange.names import Names, library_name
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
 from substructures.interchange.report import Place, refuse
-from substructures.interchange.robot import Inertial, Link, Mimic, Motion, Robot
+from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion, Robot
 from substructures.part.definition import MAX_BODIES
 from substructures.part.topology import BASE
 
@@ -23,6 +23,7 @@ Parameters = Literal["none", "inertia", "all"]
 Fixed = Literal["ports", "bodies", "dropped"]
 Base = Literal["fixed", "floating"]
 
+MAX_PORTS = 500
 FREE = ("x", "y", "z", "yaw", "pitch", "roll")
 TURNS = FREE[3:]
 _MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -50,6 +51,7 @@ class PartOfFile:
     definition: dict[str, Any]
     names: dict[str, str]
     bindings: list[dict[str, Any]]
+    loop_ports: list[tuple[str, str | None]]  #: of every loop the ports of its ends, None: the world
 
 
 def as_part(robot: Robot, options: Options = Options(), name: str | None = None) -> PartOfFile:
@@ -86,7 +88,11 @@ class _Builder:
         for link in self._links():
             self._add(link)
         for frame in self.robot.frames:
-            self._port(frame.name, frame.link, Seat(frame.position, frame.rpy))
+            self._port(f"frame {frame.name}", frame.link, Seat(frame.position, frame.rpy))
+        loop_ports = [self._loop(loop) for loop in self.robot.loops]
+        if len(self.ports) > MAX_PORTS:
+            message = f"{len(self.ports)} fixed frames; a part has at most {MAX_PORTS} ports: the others are left out"
+            self.robot.report.warning(self.robot.links[0].place, message, "topology")
         if len(self.bodies) > MAX_BODIES:
             first = list(self.bodies.values())[MAX_BODIES]
             message = f"{len(self.bodies)} bodies; a part has at most {MAX_BODIES}: cut the mechanism into several"
@@ -97,7 +103,7 @@ class _Builder:
             "name": library_name(name or self.robot.name),
             "title": self.robot.name[:200],
             "bodies": [self._document(body) for body in self.bodies.values()],
-            "ports": self.ports[:500],
+            "ports": self.ports[:MAX_PORTS],
             "loads": self.loads,
             "parameters": self.parameters,
         }
@@ -105,6 +111,7 @@ class _Builder:
             {key: x for key, x in document.items() if x},
             {**self.links.given, **{f"joint {k}": v for k, v in self.joints.given.items()}},
             [self._binding(m) for m in self.robot.mimics],
+            loop_ports,
         )
 
     def symbols_taken(self) -> None:
@@ -136,7 +143,7 @@ class _Builder:
             self.bodies[carrier].inertias.append(here.inertial(link.inertial))
             self.robot.report.merged(link.place, f"fixed to '{carrier}', and counted with it")
             if self.options.fixed == "ports":
-                self._port(link.name, link.name, Seat())
+                self._port(f"link {link.name}", link.name, Seat())
 
     def _moving(self, link: Link, carrier: str, here: Seat) -> None:
         """A chain of joints; the frame of a body is at the anchor of its joint, in the axes of the link."""
@@ -151,7 +158,7 @@ class _Builder:
         self.seats[link.name] = carrier, own
         self.bodies[carrier].inertias.append(own.inertial(link.inertial))
         if own.position != ORIGIN:
-            self._port(f"{link.name}_frame", link.name, Seat())
+            self._port(f"frame {link.name}_frame", link.name, Seat())
 
     def _body(self, link: Link, name: str, parent: str, joint: dict[str, Any]) -> None:
         self.bodies[name] = _Body(name, parent, joint, link.place)
@@ -163,6 +170,9 @@ class _Builder:
             steps = FREE if motion.type == "free" else TURNS
             joint["coordinate"] = [self.joints.new(f"{motion.name}_{step}") for step in steps]
             self.joints.given[motion.name] = ", ".join(joint["coordinate"])
+            for law in ("damping", "armature"):  # of the slides; of the turns: a load, a moment of inertia
+                if motion.type == "free" and not is_zero(getattr(motion, law)):
+                    joint[law] = [*(getattr(motion, law),) * 3, 0, 0, 0]
             self.loads += _turning_damping(joint["coordinate"][-3:], motion.damping)
             return joint
         joint["coordinate"] = self.joints.of(motion.name)
@@ -178,16 +188,30 @@ class _Builder:
             joint["limits"] = list(motion.limits)
         return joint
 
-    def _port(self, name: str, link: str, seat: Seat) -> None:
+    def _port(self, name: str, link: str, seat: Seat, first: bool = False) -> str:
         """A frame of a link as a port of its body; of what is fixed to the interface, too."""
         body, own = self.seats[link]
         here = own.beyond(seat)
-        port: dict[str, Any] = {"name": self.links.of(name), "body": body}
+        kind, _, plain = name.partition(" ")
+        key = plain if kind == "link" else name
+        self.links.given[key] = self.links.given.get(key) or self.links.new(plain)
+        port: dict[str, Any] = {"name": self.links.given[key], "body": body}
         if not all(map(is_zero, here.position)):
             port["position"] = list(here.position)
         if here.is_turned:
             port["rotation"] = {"rpy": list(here.rpy)}
-        self.ports.append(port)
+        self.ports.insert(0 if first else len(self.ports), port)
+        return str(port["name"])
+
+    def _loop(self, loop: Loop) -> tuple[str, str | None]:
+        """Ports where a loop is cut; they come first, so that none is left out."""
+        self.links.given[f"loop {loop.name}"] = self.links.new(loop.name)
+        start = self._port(f"frame {loop.name}_from", loop.link, Seat(loop.position, loop.rpy), first=True)
+        if loop.other is None:
+            return start, None
+        return start, self._port(
+            f"frame {loop.name}_to", loop.other, Seat(loop.other_position, loop.other_rpy), first=True
+        )
 
     def _document(self, body: _Body) -> dict[str, Any]:
         """A body with its numbers, or parameters in place of them."""

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from substructures.errors import InvalidDocument
+from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import refuse
 from substructures.interchange.robot import Robot
 from substructures.interchange.urdf import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
+#: what reads a root element, with the contents of included files by name
+Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 #: by the root element of XML formats
-_ROOTS: Mapping[str, tuple[str, Callable[[Node], Robot]]] = {"robot": ("urdf", read_urdf)}
-KINDS = ("urdf",)
+_ROOTS: Mapping[str, tuple[str, Reader]] = {
+    "robot": ("urdf", lambda root, _: read_urdf(root)),
+    "mujoco": ("mjcf", read_mjcf),
+}
+KINDS = ("urdf", "mjcf")
 
 
 def is_xml(data: bytes) -> bool:
@@ -21,8 +27,8 @@ def is_xml(data: bytes) -> bool:
     return beginning[:1] == b"<"
 
 
-def read_robot(data: bytes, kind: str | None = None) -> tuple[str, Robot]:
-    """The kind of a file (``kind``: what it has to be; default by content), and the robot in it. Raises InvalidDocument."""
+def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, bytes] | None = None) -> tuple[str, Robot]:
+    """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
     root = read_xml(data)
@@ -34,4 +40,4 @@ def read_robot(data: bytes, kind: str | None = None) -> tuple[str, Robot]:
     name, reader = found
     if kind is not None and kind != name:
         raise refuse(root.place, "wrong-kind", f"this is {name.upper()}, not {kind.upper()}")
-    return name, reader(root)
+    return name, reader(root, included or {})

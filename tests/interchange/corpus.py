@@ -5,6 +5,7 @@ python tests/interchange/corpus.py          # the table of all of them
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -22,6 +23,7 @@ from substructures.quantities.evaluation import evaluate
 
 sys.path.insert(0, str(Path(__file__).parent))
 from engines import deviation
+from with_mujoco import MujocoTwin
 from with_pinocchio import PinocchioTwin
 
 QUANTITIES = ["metric", "gravity", "bias", "inverse_dynamics", "forward_dynamics"]
@@ -53,6 +55,30 @@ def urdf_files() -> dict[str, Path]:
     return dict(_files("example-robot-data", "urdf"))
 
 
+def mjcf_files() -> dict[str, Path]:
+    """Of the packages dm_control and brax, by their path in them: what has <mujoco> as its root and a body."""
+    found = {**dict(_files("dm_control", "xml")), **dict(_files("brax", "xml"))}
+    return {name: path for name, path in found.items() if _is_whole(path)}
+
+
+def _is_whole(path: Path) -> bool:
+    text = path.read_text()
+    return "<mujoco" in text and "<body" in text
+
+
+def _included(path: Path) -> dict[str, bytes]:
+    """The contents of the files that a file includes, by their names in it."""
+    found: dict[str, bytes] = {}
+    waiting = [path]
+    while waiting:
+        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text()):
+            file = path.parent / name
+            if name not in found and file.exists():
+                found[name] = file.read_bytes()
+                waiting.append(file)
+    return found
+
+
 def _files(package: str, ending: str) -> Iterator[tuple[str, Path]]:
     try:
         found = files(package) or []
@@ -67,7 +93,7 @@ def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
     """Imported, derived, coupled at the world and evaluated, beside the other engine."""
     start = process_time()
     try:
-        found = import_file(path.read_bytes(), file=path.name)
+        found = import_file(path.read_bytes(), file=path.name, included=_included(path))
     except InvalidInput as error:
         return Row(name, refused=f"refused: {error}")
     instance = {"name": "x", "definition": found.definition}
@@ -83,11 +109,13 @@ def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
     return Row(name, model.dof, seconds, max(errors), any(x.forward_dynamics is None for x in expected))
 
 
-def compared_urdf(name: str) -> Row:
-    """A file of example-robot-data beside Pinocchio."""
-    return compared(name, urdf_files()[name], PinocchioTwin)
+def compared_file(name: str) -> Row:
+    """A URDF file beside Pinocchio, an MJCF file beside MuJoCo."""
+    path = (urdf_files() | mjcf_files())[name]
+    return compared(name, path, PinocchioTwin if path.suffix == ".urdf" else MujocoTwin)
 
 
 if __name__ == "__main__":
-    for file in urdf_files():
-        print(compared_urdf(file), flush=True)
+    for file in [*urdf_files(), *mjcf_files()]:
+        if not sys.argv[1:] or sys.argv[1] in file:
+            print(compared_file(file), flush=True)

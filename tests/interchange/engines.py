@@ -121,10 +121,12 @@ def in_our_coordinates(
 def deviation(found: Any, expected: Numbers, state: int) -> float:
     """The largest deviation of all quantities, each relative to its largest element; NaN is infinitely large."""
     worst = 0.0
+    # what cancels has no scale of its own
+    least = {name: 1e-4 * np.abs(expected.inverse_dynamics).max(initial=0) for name in ("gravity", "bias")}
     for name in ("metric", "gravity", "bias", "inverse_dynamics", "forward_dynamics"):
         ours, theirs = found[name][state], getattr(expected, name)
         if theirs is None:
             continue
-        error = np.abs(ours - theirs).max(initial=0) / max(np.abs(theirs).max(initial=0), 1e-6)
+        error = np.abs(ours - theirs).max(initial=0) / max(np.abs(theirs).max(initial=0), least.get(name, 0), 1e-6)
         worst = max(worst, float(error) if np.isfinite(error) else np.inf)
     return worst

@@ -8,12 +8,29 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
+pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
 sys.path.insert(0, str(Path(__file__).parent))
-from corpus import compared_urdf, urdf_files
+from corpus import compared_file, mjcf_files, urdf_files
 
 TOLERANCE = 1e-10
+MESH = "the mass of a mesh needs its file"
 #: what is refused, and why
-REFUSED = {"ur_description/urdf/ur3.urdf": "the robot has no <link>"}
+REFUSED = {
+    "ur_description/urdf/ur3.urdf": "the robot has no <link>",
+    "mjcf/test_assets/test_model.xml": "'diaginertia' or 'fullinertia' is needed",
+    "brax/test_data/world_body_transform.xml": "only a body of the world may have a free joint",
+    "build_fruitfly/assets/drosophila.xml": MESH,
+    "build_fruitfly/assets/drosophila_fused.xml": MESH,
+    "assets/build_fruitfly/fruitfly.xml": MESH,
+    "assets/fruitfly_v2/fruitfly.xml": MESH,
+    "assets/dog_v2/dog.xml": MESH,
+    "assets/dog_v2/scene.xml": MESH,
+    "dm_control/suite/dog.xml": MESH,
+    "third_party/kinova/jaco_arm.xml": MESH,
+    "third_party/kinova/jaco_hand.xml": MESH,
+    "brax/test_data/colour_objects.xml": MESH,
+    "brax/test_data/convex_convex.xml": MESH,
+}
 SAMPLE = (
     "ur_description/urdf/ur5_robot.urdf",
     "panda_description/urdf/panda.urdf",
@@ -21,27 +38,36 @@ SAMPLE = (
     "talos_data/robots/talos_left_arm.urdf",
     "quadruped_description/urdf/quadruped.urdf",
     "iris_description/robots/iris.urdf",
+    "dm_control/suite/cheetah.xml",
+    "dm_control/suite/quadruped.xml",
+    "dm_control/suite/fish.xml",
+    "third_party/ant/ant.xml",
+    "envs/assets/humanoid.xml",
+    "brax/test_data/nonzero_joint_ref.xml",
+    "testing/assets/model_with_ball_joints.xml",
 )
-without_package = pytest.mark.skipif(not urdf_files(), reason="pip install --no-deps example-robot-data")
+FILES = [*urdf_files(), *mjcf_files()]
+PACKAGES = "pip install --no-deps example-robot-data dm_control brax"
 
 
-def judge(name: str, refused: dict[str, str]) -> None:
-    row = compared_urdf(name)
-    if name in refused:
-        assert refused[name] in row.refused
-    else:
-        assert not row.refused
-        assert row.error < TOLERANCE
-
-
-@without_package
+@pytest.mark.filterwarnings("ignore:.*settotalmass")
 @pytest.mark.parametrize("name", SAMPLE)
-def test_urdf_files_are_what_pinocchio_makes_of_them(name: str) -> None:
-    judge(name, {})
+def test_files_are_what_another_engine_makes_of_them(name: str) -> None:
+    if name not in FILES:
+        pytest.skip(PACKAGES)
+    row = compared_file(name)
+    assert not row.refused
+    assert row.error < TOLERANCE
 
 
 @pytest.mark.deep
-@without_package
-@pytest.mark.parametrize("name", urdf_files())
-def test_all_urdf_files_are_what_pinocchio_makes_of_them(name: str) -> None:
-    judge(name, REFUSED)
+@pytest.mark.skipif(not FILES, reason=PACKAGES)
+@pytest.mark.filterwarnings("ignore:.*settotalmass")
+@pytest.mark.parametrize("name", FILES)
+def test_all_files_are_what_another_engine_makes_of_them(name: str) -> None:
+    row = compared_file(name)
+    if name in REFUSED:
+        assert REFUSED[name] in row.refused
+    else:
+        assert not row.refused
+        assert row.error < TOLERANCE

@@ -1,0 +1,4 @@
+"""MJCF: the mechanics of a MuJoCo model, without contacts.
+
+Source: https://mujoco.readthedocs.io/en/stable/XMLreference.html
+"""

@@ -1,0 +1,237 @@
+"""Bodies of an MJCF file: placements, joints in order, masses given or of geoms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.interchange.merge import Seat, vector
+from substructures.interchange.mjcf.geoms import Mass, mass_of, summed
+from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation
+from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, decimal_of, is_zero, triple, value
+from substructures.interchange.report import Report, refuse
+from substructures.interchange.robot import Inertial, Link, Motion, MotionType, NamedFrame
+from substructures.interchange.rotations import from_z_axis, six_of, tensor, to_rpy
+from substructures.interchange.urdf import judge
+from substructures.interchange.xml import Node
+
+_MOTION: dict[str, MotionType] = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical", "free": "free"}
+_REFUSED = {
+    "composite": "write its bodies out",
+    "flexcomp": "deformable bodies have no relative coordinates",
+    "replicate": "write the copies out",
+    "attach": "put the other model here",
+    "include": "put the file's content here",
+}
+_IGNORED = {"camera": "cameras", "light": "lights", "plugin": "plugins", "user": "user data"}
+_Z: Triple = (ZERO, ZERO, ONE)
+
+
+@dataclass
+class Bodies:
+    """Reads <worldbody>: ``links`` and ``frames`` in the order of the file."""
+
+    compiler: Compiler
+    defaults: Defaults
+    report: Report
+    links: list[Link] = field(default_factory=list)
+    frames: list[NamedFrame] = field(default_factory=list)
+    _joints: int = 0
+
+    def world(self, node: Node) -> None:
+        """The bodies on the world; what else is there does not move."""
+        self._children(node, None, node.attributes.get("childclass"), Seat())
+
+    def _children(self, node: Node, parent: str | None, childclass: str | None, outer: Seat) -> None:
+        """Bodies of a body or <frame>, whose placement ``outer`` they are given in, and its sites."""
+        for child in node.children:
+            if child.tag in _REFUSED:
+                raise refuse(child.place, "not-read", f"<{child.tag}> is not read: {_REFUSED[child.tag]}")
+            if child.tag == "body":
+                self._body(child, parent, childclass, outer)
+            elif child.tag == "frame":
+                inner = child.attributes.get("childclass", childclass)
+                self._children(child, parent, inner, outer.beyond(self._seat(child)))
+            elif child.tag == "site" and "name" in child.attributes and parent is not None:
+                seat = outer.beyond(self._seat(self.defaults.applied(child, childclass)))
+                self.frames.append(NamedFrame(child.attributes["name"], parent, seat.position, seat.rpy))
+            elif child.tag in _IGNORED:
+                self.report.ignored(child.place, f"{_IGNORED[child.tag]}: no influence on the equations of motion")
+
+    def _seat(self, node: Node) -> Seat:
+        if "fromto" in node.attributes:
+            ends = np.array([value(x) for x in node.numbers("fromto", 6)]).reshape(2, 3)
+            if np.linalg.norm(ends[0] - ends[1]) < 1e-12:
+                raise refuse(node.place, "zero-length", "the ends of fromto are one point")
+            return Seat(vector(ends.mean(axis=0)), to_rpy(from_z_axis(ends[0] - ends[1])))
+        return Seat(triple(node.numbers("pos", 3, ORIGIN)), to_rpy(orientation(node, self.compiler)))
+
+    def _body(self, node: Node, parent: str | None, childclass: str | None, outer: Seat) -> None:
+        name = node.attributes.get("name", f"body{len(self.links) + 1}")
+        childclass = node.attributes.get("childclass", childclass)
+        if float(value(node.number("gravcomp", ZERO))):
+            message = "gravcomp, a force against gravity, is left out: add a load for it"
+            self.report.warning(node.place, message)
+        seat = outer.beyond(self._seat(node))
+        inside = list(self._inside(node, childclass, Seat()))
+        motions = tuple(self._motion(child, inner) for child, inner in inside if child.tag in ("joint", "freejoint"))
+        if len(motions) > 1 and any(m.type == "free" for m in motions):
+            raise refuse(node.place, "two-joints", "a free joint is the only one of its body")
+        if parent is not None and any(m.type == "free" for m in motions):
+            raise refuse(node.place, "free-joint", "only a body of the world may have a free joint")
+        inertial = self._inertial(node, inside)
+        if any(m.type == "free" for m in motions):
+            motions, inertial = self._rotor(motions, inertial)
+        self.links.append(Link(name, parent, node.place, seat.position, seat.rpy, motions, inertial))
+        self._children(node, name, childclass, Seat())
+
+    def _inside(self, node: Node, childclass: str | None, outer: Seat) -> Iterator[tuple[Node, Seat]]:
+        """Joints and geoms with their classes applied, also those in <frame>s, with what they are placed in."""
+        for child in node.children:
+            if child.tag == "frame":
+                inner = child.attributes.get("childclass", childclass)
+                yield from self._inside(child, inner, outer.beyond(self._seat(child)))
+            elif child.tag in ("joint", "geom"):
+                yield self.defaults.applied(child, childclass), outer
+            elif child.tag == "freejoint":
+                yield child, outer
+
+    def _motion(self, node: Node, outer: Seat) -> Motion:
+        """One joint."""
+        self._joints += 1
+        name = node.attributes.get("name", f"joint{self._joints}")
+        if node.tag == "freejoint":
+            return Motion(name, "free", node.place)
+        kind = _MOTION[choice(node, "type", tuple(_MOTION))] if "type" in node.attributes else "revolute"
+        self._strict(node, kind)
+        read = self._angle if kind == "revolute" else _plain
+        laws = {key: self._law(node, key) for key in ("stiffness", "damping", "armature")}
+        if kind in ("free", "spherical"):
+            anchor = ORIGIN if kind == "free" else outer.point(triple(node.numbers("pos", 3, ORIGIN)))
+            return Motion(name, kind, node.place, anchor=anchor, damping=laws["damping"], armature=laws["armature"])
+        axis = triple(node.numbers("axis", 3, _Z))
+        if all(map(is_zero, axis)):
+            raise refuse(node.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
+        return Motion(
+            name,
+            kind,
+            node.place,
+            axis=Seat(ORIGIN, outer.rpy).point(axis) if outer.is_turned else axis,
+            anchor=outer.point(triple(node.numbers("pos", 3, ORIGIN))) if kind == "revolute" else ORIGIN,
+            offset=read(node.number("ref", ZERO)),
+            rest=read(node.number("springref", ZERO)),
+            limits=self._limits(node, kind),
+            **laws,
+        )
+
+    def _strict(self, node: Node, kind: str) -> None:
+        """What changes mechanics and is not read."""
+        if any(value(x) for x in node.numbers("springdamper", 2, (ZERO, ZERO))):
+            message = "springdamper is not read: give stiffness and damping (MuJoCo prints them after compilation)"
+            raise refuse(node.place, "not-read", message)
+        if kind in ("free", "spherical") and value(self._law(node, "stiffness")):
+            message = "the spring of a ball or free joint has no formula in yaw, pitch, roll: set stiffness to 0"
+            raise refuse(node.place, "not-read", message)
+        if kind == "spherical" and value(self._law(node, "armature")):
+            raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
+        if value(node.number("frictionloss", ZERO)):
+            message = "dry friction is no force with a formula here: add a load of the type 'joint' for it"
+            self.report.warning(node.place, message)
+
+    def _law(self, node: Node, name: str) -> Number:
+        """Stiffness, damping or armature; polynomials of higher order are refused."""
+        numbers = node.numbers(name, None, (ZERO,))
+        if not numbers or any(value(x) for x in numbers[1:]):
+            raise refuse(node.place, "not-read", f"{name} has to be one number")
+        return numbers[0]
+
+    def _angle(self, x: Number) -> Number:
+        return self.compiler.angle(x)
+
+    def _limits(self, node: Node, kind: str) -> tuple[Number, Number] | None:
+        if "range" not in node.attributes:
+            return None
+        limited = node.attributes.get("limited", "auto")
+        if limited == "false" or (limited == "auto" and not self.compiler.autolimits):
+            return None
+        low, high = node.numbers("range", 2)
+        return (self._angle(low), self._angle(high)) if kind == "revolute" else (low, high)
+
+    def _rotor(self, motions: tuple[Motion, ...], inertial: Inertial) -> tuple[tuple[Motion, ...], Inertial]:
+        """The armature a of a free joint: a |v|^2 / 2 remains a law of its slides, a |omega|^2 / 2 is a moment a 1."""
+        a = motions[0].armature
+        if is_zero(a):
+            return motions, inertial
+        self.report.merged(motions[0].place, f"its armature {a} is added to the moments of inertia of the body")
+        six = tuple(decimal_of(value(x) + (value(a) if i < 3 else 0)) for i, x in enumerate(inertial.inertia))
+        return motions, replace(inertial, inertia=six)
+
+    def _inertial(self, node: Node, inside: list[tuple[Node, Seat]]) -> Inertial:
+        """As given or, as the compiler says, of the geoms."""
+        given, of_geoms = node.one("inertial"), self.compiler.inertiafromgeom
+        if given is not None and of_geoms != "true":
+            return self._bounded(node, self._given(given))
+        if of_geoms == "false":
+            return Inertial()
+        masses = []
+        for child, outer in inside:
+            mass = mass_of(child, self.compiler) if child.tag == "geom" else None
+            if mass is not None:
+                masses.append(_moved(mass, outer))
+        total = summed(masses)
+        if total is None:
+            return Inertial()
+        six = tuple(map(decimal_of, six_of(_clean(total.theta))))
+        com = _clean(total.com, 1e-16 * max(1.0, float(np.abs(total.com).max())))
+        return self._bounded(node, Inertial(decimal_of(total.m), vector(com), six))
+
+    def _given(self, node: Node) -> Inertial:
+        """Mass, and R I R^T of <inertial>."""
+        mass, com = node.number("mass"), triple(node.numbers("pos", 3, ORIGIN))
+        R = orientation(node, self.compiler)
+        if "fullinertia" in node.attributes:
+            six = node.numbers("fullinertia", 6)
+        elif "diaginertia" in node.attributes:
+            six = (*node.numbers("diaginertia", 3), ZERO, ZERO, ZERO)
+        else:
+            raise refuse(node.place, "missing-attribute", "'diaginertia' or 'fullinertia' is needed")
+        if not np.array_equal(R, np.eye(3)):
+            six = tuple(map(decimal_of, six_of(_clean(R @ tensor([value(x) for x in six]) @ R.T))))
+        judge(node.place, mass, com, six, self.report)
+        return Inertial(mass, com, six)
+
+    def _bounded(self, node: Node, own: Inertial) -> Inertial:
+        """With the least mass and moments that the compiler asks for."""
+        low_mass, low_moment = self.compiler.boundmass, self.compiler.boundinertia
+        mass = own.mass if value(own.mass) >= low_mass else decimal_of(low_mass)
+        moments, axes = np.linalg.eigh(tensor([value(x) for x in own.inertia]))
+        if self.compiler.balanceinertia and moments[0] + moments[1] < moments[2]:
+            moments = np.full(3, moments.mean())
+        elif moments[0] >= low_moment:
+            return replace(own, mass=mass)
+        self.report.warning(node.place, "moments of inertia changed as <compiler> asks for", "physics")
+        theta = axes @ np.diag(np.maximum(moments, low_moment)) @ axes.T
+        return Inertial(mass, own.com, tuple(map(decimal_of, six_of(theta))))
+
+
+def _moved(mass: Mass, outer: Seat) -> Mass:
+    """The mass of a geom in a <frame>."""
+    if outer == Seat():
+        return mass
+    six = tuple(map(decimal_of, six_of(mass.theta)))
+    moved = outer.inertial(Inertial(decimal_of(mass.m), vector(mass.com), six))
+    com = np.array([value(x) for x in moved.com])
+    return Mass(mass.m, com, tensor([value(x) for x in moved.inertia]))
+
+
+def _plain(x: Number) -> Number:
+    return x
+
+
+def _clean(x: Array, least: float | None = None) -> Array:
+    """Without what is only rounding of products that cancel."""
+    bound = 1e-15 * float(np.abs(x).max(initial=0)) if least is None else least
+    return np.where(np.abs(x) < bound, 0.0, x)

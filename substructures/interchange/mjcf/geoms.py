@@ -1,0 +1,114 @@
+"""Masses and inertia tensors of geoms: homogeneous spheres, capsules, cylinders, ellipsoids and boxes.
+
+About its own centre, with mass m, radius r, half length h (height H = 2 h), half axes a, b, c:
+
+    sphere      V = 4/3 pi r^3              2/5 m r^2
+    capsule     V = pi r^2 H + 4/3 pi r^3   cylinder and two half spheres, whose mass is m 4 r / (4 r + 3 H)
+    cylinder    V = pi r^2 H                m (3 r^2 + H^2) / 12 across, m r^2 / 2 along
+    ellipsoid   V = 4/3 pi a b c            m (b^2 + c^2) / 5, ...
+    box         V = 8 a b c                 m (b^2 + c^2) / 3, ...
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.interchange.mjcf.settings import Compiler, orientation
+from substructures.interchange.numbers import ORIGIN, ZERO, value
+from substructures.interchange.report import refuse
+from substructures.interchange.rotations import from_z_axis
+from substructures.interchange.xml import Node
+
+DENSITY = Decimal(1000)
+_SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}
+_MASSLESS = ("plane", "hfield")
+
+
+@dataclass(frozen=True)
+class Mass:
+    """A rigid body in the frame of another: mass, mass centre, tensor about it in the axes of that frame."""
+
+    m: float
+    com: Array
+    theta: Array
+
+
+def mass_of(geom: Node, compiler: Compiler) -> Mass | None:
+    """The mass of a geom, None where it has none. Raises InvalidDocument for a mesh that has one."""
+    kind = geom.attributes.get("type", "mesh" if "mesh" in geom.attributes else "sphere")
+    low, high = compiler.inertiagrouprange
+    given = "mass" in geom.attributes
+    mass, density = (value(geom.number(name, x)) for name, x in (("mass", ZERO), ("density", DENSITY)))
+    if kind in _MASSLESS or not low <= value(geom.number("group", ZERO)) <= high or not (mass if given else density):
+        return None
+    if geom.attributes.get("shellinertia", "false") == "true":
+        raise refuse(geom.place, "shell", "shellinertia is not read: give the body an <inertial>")
+    if kind not in _SIZES or "mesh" in geom.attributes:
+        message = f"the mass of a {kind[:20]} needs its file: give the body an <inertial>, or the geom mass='0'"
+        raise refuse(geom.place, "mesh-inertia", message)
+    size, centre, R = _placed(geom, kind, compiler)
+    volume, unit = _shape(kind, *size)
+    m = mass if given else density * volume
+    if m < 0:
+        raise refuse(geom.place, "negative-mass", f"the mass {m:g} kg is negative")
+    return Mass(m, centre, R @ np.diag(unit) @ R.T * m)
+
+
+def _placed(geom: Node, kind: str, compiler: Compiler) -> tuple[list[float], Array, Array]:
+    """Sizes, centre and axes; by the ends of the third axis (fromto) or by position and orientation."""
+    sizes = [value(x) for x in geom.numbers("size", None, ())]
+    needed = _SIZES[kind]
+    if "fromto" in geom.attributes and kind != "sphere":
+        ends = np.array([value(x) for x in geom.numbers("fromto", 6)])
+        start, end = ends[:3], ends[3:]
+        length = float(np.linalg.norm(end - start))
+        if length < 1e-12:
+            raise refuse(geom.place, "zero-length", "the ends of fromto are one point")
+        _require(geom, sizes[:1], 1)
+        # the first size counts for both axes across
+        return [sizes[0]] * (needed - 1) + [length / 2], (start + end) / 2, from_z_axis(start - end)
+    _require(geom, sizes[:needed], needed)
+    centre = np.array([value(x) for x in geom.numbers("pos", 3, ORIGIN)])
+    return sizes[:needed], centre, orientation(geom, compiler)
+
+
+def _require(geom: Node, sizes: list[float], count: int) -> None:
+    if len(sizes) < count or not all(x > 0 for x in sizes):
+        raise refuse(geom.place, "bad-size", f"size needs {count} positive numbers")
+
+
+def _shape(kind: str, a: float, b: float = 0, c: float = 0) -> tuple[float, list[float]]:
+    """Volume, and moments of inertia of a mass of 1 kg."""
+    if kind == "sphere":
+        return 4 / 3 * math.pi * a**3, [0.4 * a * a] * 3
+    if kind == "box":
+        return 8 * a * b * c, [(b * b + c * c) / 3, (a * a + c * c) / 3, (a * a + b * b) / 3]
+    if kind == "ellipsoid":
+        return 4 / 3 * math.pi * a * b * c, [(b * b + c * c) / 5, (a * a + c * c) / 5, (a * a + b * b) / 5]
+    height = 2 * b
+    across, along = (3 * a * a + height**2) / 12, a * a / 2
+    if kind == "cylinder":
+        return math.pi * a * a * height, [across, across, along]
+    balls = 4 * a / (4 * a + 3 * height)
+    ball = 0.4 * a * a
+    across = (1 - balls) * across + balls * (ball + height * (3 * a + 2 * height) / 8)
+    along = (1 - balls) * along + balls * ball
+    return math.pi * (a * a * height + 4 / 3 * a**3), [across, across, along]
+
+
+def summed(masses: list[Mass]) -> Mass | None:
+    """All of them as one, about the common mass centre."""
+    m = sum(one.m for one in masses)
+    if not m:
+        return None
+    com = sum((one.m * one.com for one in masses), np.zeros(3)) / m
+    theta = np.zeros((3, 3))
+    for one in masses:
+        r = one.com - com
+        theta += one.theta + one.m * ((r @ r) * np.eye(3) - np.outer(r, r))
+    return Mass(m, com, theta)

@@ -1,0 +1,72 @@
+"""Equality constraints between bodies as closures: connect and weld; others are told of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.interchange.merge import vector
+from substructures.interchange.numbers import ORIGIN, value
+from substructures.interchange.report import Report, refuse
+from substructures.interchange.robot import Link, Loop
+from substructures.interchange.rotations import from_quaternion, from_rpy, to_rpy
+from substructures.interchange.xml import Node
+
+#: R and position in the world
+Pose = tuple[Array, Array]
+
+
+def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop, ...]:
+    """The closures of all active <connect> and <weld>; frames coincide where no joint has moved."""
+    found: list[Loop] = []
+    poses = _poses(links)
+    for section in root.all("equality"):
+        for node in section.children:
+            if node.attributes.get("active", "true") == "false":
+                report.ignored(node.place, "an equality constraint that is not active")
+            elif node.tag not in ("connect", "weld"):
+                message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
+                report.warning(node.place, message, "topology")
+            else:
+                name = node.attributes.get("name", f"loop{len(found) + 1}")
+                found.append(_loop(node, name, poses))
+    return tuple(found)
+
+
+def _poses(links: tuple[Link, ...]) -> dict[str | None, Pose]:
+    """Where the bodies are at the start."""
+    poses: dict[str | None, Pose] = {None: (np.eye(3), np.zeros(3))}
+    for link in links:
+        R, r = poses[link.parent]
+        poses[link.name] = R @ from_rpy(link.rpy), r + R @ [value(x) for x in link.position]
+    return poses
+
+
+def _loop(node: Node, name: str, poses: dict[str | None, Pose]) -> Loop:
+    if "site1" in node.attributes or "site2" in node.attributes:
+        raise refuse(node.place, "not-read", "constraints between sites are not read: give body1, body2 and anchor")
+    first, second = node.text_of("body1"), node.attributes.get("body2")
+    for body in (first, second):
+        if body not in poses:
+            raise refuse(node.place, "unknown-link", f"there is no body '{body}'")
+    if node.tag == "connect":
+        anchor = np.array([value(x) for x in node.numbers("anchor", 3)])
+        return _ball(name, first, second, anchor, poses)
+    return _weld(node, name, first, second, poses)
+
+
+def _ball(name: str, first: str, second: str | None, anchor: Array, poses: dict[str | None, Pose]) -> Loop:
+    """The anchor is given in the first body."""
+    (R1, r1), (R2, r2) = poses[first], poses[second]
+    other = R2.T @ (r1 + R1 @ anchor - r2)
+    return Loop(name, "ball", first, second, vector(anchor), ORIGIN, vector(other), ORIGIN)
+
+
+def _weld(node: Node, name: str, first: str, second: str | None, poses: dict[str | None, Pose]) -> Loop:
+    """The pose of the second body in the first one: as given, or what it is at the start."""
+    (R1, r1), (R2, r2) = poses[first], poses[second]
+    R, r = R1.T @ R2, R1.T @ (r2 - r1)
+    given = [value(x) for x in node.numbers("relpose", 7)] if "relpose" in node.attributes else [0.0] * 7
+    if any(given[3:]):
+        R, r = from_quaternion(given[3:]), np.array(given[:3])
+    return Loop(name, "weld", first, second, vector(r), to_rpy(R), ORIGIN, ORIGIN)

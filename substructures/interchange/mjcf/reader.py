@@ -1,0 +1,119 @@
+"""An MJCF document as a robot: settings, bodies, loops, gravity, and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from substructures.interchange.mjcf.bodies import Bodies
+from substructures.interchange.mjcf.loops import loops_of
+from substructures.interchange.mjcf.settings import Compiler, Defaults
+from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
+from substructures.interchange.report import Report, refuse
+from substructures.interchange.robot import Inertial, Link, Robot, in_order
+from substructures.interchange.xml import Node, read_xml
+
+GRAVITY = "0 0 -9.81"
+_READ = ("compiler", "option", "default", "worldbody", "equality", "include")
+_IGNORED = {
+    "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks, and meshes",
+    "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data", "actuator": "actuators: "
+    "every coordinate has the input tau.<coordinate>", "extension": "plugins",
+}  # fmt: skip
+_MOST_INCLUDES = 100
+
+
+def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
+    """The robot of an MJCF document. ``included``: contents of files by the names in <include>.
+
+    Raises InvalidDocument with line and element.
+    """
+    if root.tag != "mujoco":
+        raise refuse(root.place, "not-mjcf", "the root of an MJCF file is <mujoco>")
+    root = _with_included(root, included or {}, [])
+    report = Report()
+    bodies = Bodies(Compiler.of(root), Defaults(root), report)
+    for node in root.all("worldbody"):
+        bodies.world(node)
+    if not bodies.links:
+        raise refuse(root.place, "no-links", "the file has no <body>")
+    _tell_of_others(root, report)
+    links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
+    return Robot(
+        root.attributes.get("model", ""),
+        links,
+        report,
+        frames=tuple(bodies.frames),
+        loops=loops_of(root, links, report),
+        gravity=_gravity(root, report),
+    )
+
+
+def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) -> Node:
+    """With the children of other files' roots in the place of <include>. Raises InvalidDocument for files not given."""
+    children: list[Node] = []
+    for child in node.children:
+        if child.tag != "include":
+            children.append(_with_included(child, included, above))
+            continue
+        name = child.text_of("file")
+        if name not in included or name in above or len(above) > _MOST_INCLUDES:
+            message = f"the file '{name[:80]}' is not followed: put its content here"
+            raise refuse(child.place, "external-file", message)
+        children += _with_included(read_xml(included[name]), included, [*above, name]).children
+    return replace(node, children=children)
+
+
+def _gravity(root: Node, report: Report) -> Triple:
+    """The last one that is given."""
+    found, place = GRAVITY.split(), root.place
+    for node in root.all("option"):
+        found = node.attributes.get("gravity", " ".join(found)).split()
+        for name in ("density", "viscosity"):
+            if name in node.attributes and value(node.number(name)):
+                report.warning(node.place, f"forces of a fluid ({name}) are left out")
+        if any(flag.attributes.get("gravity") == "disable" for flag in node.all("flag")):
+            return ORIGIN
+    if len(found) != 3:
+        raise refuse(place, "wrong-length", "gravity needs 3 numbers")
+    return triple(tuple(number_of(x, place, "gravity") for x in found))
+
+
+def _tell_of_others(root: Node, report: Report) -> None:
+    for node in root.children:
+        if node.tag in _READ:
+            continue
+        if node.tag in _IGNORED:
+            report.ignored(node.place, f"{_IGNORED[node.tag]}: no influence on the equations of motion")
+        elif node.tag == "tendon":
+            for tendon in node.children:
+                _tell_of_tendon(tendon, report)
+        elif node.tag == "deformable":
+            raise refuse(node.place, "not-read", "deformable bodies have no relative coordinates")
+        else:
+            report.warning(node.place, f"<{node.tag[:40]}> is not known in <mujoco> and ignored")
+    for actuators in root.all("actuator"):
+        for node in actuators.children:
+            if any(value(x) for name in ("armature", "damping") for x in node.numbers(name, None, ())):
+                report.warning(node.place, "armature and damping of actuators are left out: give them to the joint")
+
+
+def _tell_of_tendon(node: Node, report: Report) -> None:
+    acting = [n for n in ("stiffness", "damping", "armature", "frictionloss") if n in node.attributes]
+    if acting:
+        report.warning(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
+    else:
+        report.ignored(node.place, "a tendon without stiffness and damping has no influence on the equations of motion")
+
+
+def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:
+    """All masses and moments scaled to a total mass, where one is asked for."""
+    if total <= 0:
+        return links
+    factor = total / sum(value(link.inertial.mass) for link in links)
+    scaled = []
+    for link in links:
+        own = link.inertial
+        six = tuple(decimal_of(value(x) * factor) for x in own.inertia)
+        scaled.append(replace(link, inertial=Inertial(decimal_of(value(own.mass) * factor), own.com, six)))
+    return tuple(scaled)

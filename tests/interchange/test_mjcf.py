@@ -1,0 +1,172 @@
+"""MJCF files: every way of saying something, beside MuJoCo; what is refused, and loops."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from substructures import Definition, TreeSpec, couple, derive
+from substructures.errors import InvalidDocument
+from substructures.expr.interpret import interpret
+from substructures.interchange.as_part import Options
+from substructures.interchange.importing import import_file
+
+mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
+pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
+sys.path.insert(0, str(Path(__file__).parent))
+from corpus import compared  # noqa: E402 -- the engine is optional
+from with_mujoco import MujocoTwin  # noqa: E402 -- the engine is optional
+
+TURNED = '<geom type="box" size=".1 .2 .3" pos=".1 .2 .3" {}/>'
+FEATURES = {
+    "quat": ("", TURNED.format('quat="1 2 3 4"')),
+    "axisangle": ("", TURNED.format('axisangle="1 2 3 40"')),
+    "xyaxes": ("", TURNED.format('xyaxes="1 2 0 0 1 3"')),
+    "zaxis": ("", TURNED.format('zaxis="1 -2 1"')),
+    "zaxis down": ("", TURNED.format('zaxis="0 0 -1"')),
+    "euler": ("", TURNED.format('euler="10 20 30"')),
+    "euler in radian": ('<compiler angle="radian"/>', TURNED.format('euler=".1 .2 .3"')),
+    "euler sequence": ('<compiler eulerseq="zyx"/>', TURNED.format('euler="10 20 30"')),
+    "euler about fixed axes": ('<compiler eulerseq="XZY"/>', TURNED.format('euler="10 20 30"')),
+    "mixed euler sequence": ('<compiler eulerseq="xYz"/>', TURNED.format('euler="10 20 30"')),
+    "sphere": ("", '<geom size=".2" pos="1 0 0"/>'),
+    "capsule": ("", '<geom type="capsule" size=".2 .5" density="300" pos="1 0 0"/>'),
+    "capsule from to": ("", '<geom type="capsule" size=".2" fromto="0 0 1 1 2 3"/>'),
+    "cylinder from to": ("", '<geom type="cylinder" size=".2" mass="3" fromto="0 0 1 1 2 3"/>'),
+    "box from to": ("", '<geom type="box" size=".2" fromto="0 0 1 1 2 3"/>'),
+    "ellipsoid": ("", '<geom type="ellipsoid" size=".2 .3 .4" quat="1 1 0 0"/>'),
+    "ellipsoid from to": ("", '<geom type="ellipsoid" size=".2" fromto="0 0 1 1 2 3"/>'),
+    "two geoms": ("", '<geom size=".2" pos="1 0 0"/><geom type="box" size=".1 .1 .4" pos="0 1 0"/>'),
+    "groups": ('<compiler inertiagrouprange="0 1"/>', '<geom size=".2"/><geom size=".5" group="2"/>'),
+    "inertial": ("", '<inertial pos="1 2 3" mass="2" quat="1 2 0 0" diaginertia="1 2 2.5"/><geom size="1"/>'),
+    "full inertia": ("", '<inertial pos="1 2 3" mass="2" fullinertia="3 4 5 .1 .2 .3"/>'),
+    "inertia from geoms": ('<compiler inertiafromgeom="true"/>', '<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
+                           '<geom size="1"/>'),
+    "bounds": ('<compiler boundmass="3" boundinertia=".5"/>', '<geom size=".1" pos="1 0 0"/>'),
+    "balanced": ('<compiler balanceinertia="true"/>', '<inertial pos="1 0 0" mass="2" diaginertia="1 1 9"/>'),
+    "total mass": ('<compiler settotalmass="7"/>', '<geom size=".1" pos="1 0 0"/>'),
+    "hinges": ("", '<geom size=".1"/><joint name="a" pos="1 2 3" axis="1 1 0"/><joint name="b" pos="-1 0 2"/>'),
+    "ref": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" pos="1 0 0" ref="30" springref="40" stiffness="3"/>'),
+    "slide with ref": ("", '<geom size=".1"/><joint name="a" type="slide" axis="1 2 3" ref=".3" springref=".1" '
+                       'stiffness="3" damping="2" armature=".5"/>'),
+    "slide, then hinge": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="slide" axis="1 0 0"/>'
+                          '<joint name="b" pos="0 1 0"/>'),
+    "ball": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="ball" pos="0 0 .3" damping="2"/>'),
+    "default classes": ('<default><joint damping="1"/><default class="x"><joint armature="2" axis="0 1 0"/>'
+                        '<default class="y"><joint damping="4"/></default></default></default>',
+                        '<geom size=".1" pos="1 0 0"/><joint name="a" class="y"/>'),
+    "child classes": ('<default><default class="x"><geom size=".3"/></default></default>',
+                      '<geom class="x"/><body childclass="x"><joint name="c"/><geom pos="0 1 0"/><body pos="1 0 0">'
+                      '<joint name="d"/><geom/></body></body>'),
+    "frames": ("", '<frame pos="1 2 3" euler="20 30 40"><geom type="box" size=".1 .2 .3"/><joint name="a" '
+               'axis="1 0 0" pos=".1 .2 .3"/><body pos="1 0 0"><joint name="b"/><geom size=".1"/></body></frame>'),
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("base", ["", "<freejoint/>"])
+@pytest.mark.parametrize("name", FEATURES)
+def test_features_are_what_mujoco_makes_of_them(name: str, base: str, tmp_path: Path) -> None:
+    head, body = FEATURES[name]
+    root = f'<body name="root" pos=".1 .2 .3" euler="30 0 0">{base}<geom size=".3"/><body name="body">{body}'
+    joint = "" if "<joint" in body else '<joint name="j"/>'
+    path = tmp_path / "model.xml"
+    path.write_text(f"<mujoco>{head}<worldbody>{root}{joint}</body></body></worldbody></mujoco>")
+    row = compared(name, path, MujocoTwin)
+    assert not row.refused
+    assert row.error < 1e-10
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_free_joints_have_armature_and_damping(tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    body = '<body euler="10 20 30" pos="1 2 3"><joint type="free" armature="2" damping="3"/>'
+    path.write_text(f'<mujoco><worldbody>{body}<geom size=".3" pos="1 0 0"/></body></worldbody></mujoco>')
+    assert compared("free", path, MujocoTwin).error < 1e-10
+
+
+def one(inside: str, head: str = "") -> bytes:
+    return f"<mujoco>\n{head}<worldbody>\n<body name='b'>\n{inside}\n</body></worldbody></mujoco>".encode()
+
+
+BAD = {
+    "mesh": (one('<geom name="g" type="mesh" mesh="m"/>'), 'line 4: <geom name="g">: the mass of a mesh needs'),
+    "path": (one('<geom type="mesh" mesh="../../etc/passwd"/>'), "the mass of a mesh needs its file"),
+    "include": (b'<mujoco>\n<include file="/etc/passwd"/></mujoco>', "line 2: <include>: the file '/etc/passwd'"),
+    "include in a body": (one('<include file="x.xml"/>'), "line 4: <include>: the file 'x.xml' is not followed"),
+    "global": (one("<geom size='1'/>", '<compiler coordinate="global"/>'), "no longer in MJCF"),
+    "class": (one('<geom class="c" size="1"/>'), "no default class 'c'"),
+    "zero axis": (one('<joint axis="0 0 0"/>'), "line 4: <joint>: the axis has no direction"),
+    "zero quaternion": (one('<geom size="1" quat="0 0 0 0"/>'), "quat has no direction"),
+    "two orientations": (one('<geom size="1" quat="1 0 0 0" euler="1 2 3"/>'), "give one of quat and euler"),
+    "type": (one('<joint type="screw"/>'), "type='screw' is none of hinge"),
+    "spring": (one('<joint type="ball" stiffness="1"/>'), "the spring of a ball or free joint"),
+    "springdamper": (one('<joint springdamper="1 1"/>'), "give stiffness and damping"),
+    "polynomial": (one('<joint stiffness="1 2"/>'), "stiffness has to be one number"),
+    "free below": (one('<body><freejoint/></body>'), "only a body of the world"),
+    "free and hinge": (one('<freejoint/><joint/>'), "the only one of its body"),
+    "replicate": (one('<replicate count="3"><geom size="1"/></replicate>'), "<replicate> is not read: write"),
+    "no size": (one("<geom/>"), "size needs 1 positive"),
+    "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
+    "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
+    "no body": (b"<mujoco/>", "the file has no <body>"),
+    "two bodies": (one("<body name='b'/>"), "a second link 'b'"),
+    "eulerseq": (one("", '<compiler eulerseq="abc"/>'), "three letters"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_files_are_refused_with_their_place(name: str) -> None:
+    data, message = BAD[name]
+    with pytest.raises(InvalidDocument, match=message):
+        import_file(data)
+
+
+def test_files_are_included_where_they_are_given_along() -> None:
+    file = b'<mujoco><include file="a.xml"/></mujoco>'
+    found = import_file(file, included={"a.xml": one('<geom size="1"/>')})
+    assert [b["name"] for b in found.definition["bodies"]] == ["b"]
+    with pytest.raises(InvalidDocument, match=r"'a\.xml' is not followed"):
+        import_file(file, included={"a.xml": file})
+
+
+def test_what_is_left_out_is_told() -> None:
+    tail = '<tendon><fixed name="t" stiffness="2"><joint joint="j" coef="1"/></fixed></tendon>'
+    data = one('<joint name="j" frictionloss="1"/><geom size="1"/>').replace(b"</mujoco>", f"{tail}</mujoco>".encode())
+    report = import_file(data.replace(b"<worldbody>", b'<option density="1.2"/><worldbody>')).report
+    said = [r["message"] for r in report if r["level"] == "warning"]
+    assert [any(word in text for text in said) for word in ("dry friction", "tendon", "fluid")] == [True] * 3
+
+
+LOOP = """<mujoco><option gravity="0 0 -5"/><worldbody>
+<body name="a" pos="0 0 1"><joint name="p" axis="0 1 0"/><geom type="capsule" size=".05" fromto="0 0 0 1 0 0"/>
+<body name="b" pos="1 0 0" euler="0 30 0"><joint name="q" axis="0 1 0"/><geom type="capsule" size=".05"
+ fromto="0 0 0 1 0 0"/></body></body>
+<body name="c" pos="2 0 0" euler="0 0 20"><joint name="r" axis="0 1 0"/><geom size=".1" pos=".3 0 0"/></body>
+</worldbody><equality>{}</equality></mujoco>"""
+
+
+@pytest.mark.parametrize(("kind", "rows"), [("connect", 3), ("weld", 6)])
+def test_connect_and_weld_are_closures(kind: str, rows: int) -> None:
+    text = LOOP.format(f'<{kind} name="z" body1="b" body2="c" {"anchor" * (kind == "connect")}'.replace(
+        "anchor", 'anchor="1 0 0"') + "/>")  # fmt: skip
+    found = import_file(text.encode(), Options(parameters="none"))
+    assert found.tree is not None
+    spec = TreeSpec.read(found.tree)
+    model = couple(spec, {"robot": derive(Definition.read(found.definition))})
+    assert [float(x) for x in spec.gravity] == [0, 0, -5]
+    engine = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(engine)
+    for q in (np.zeros(3), np.array([0.3, -0.5, 0.7])):
+        values = dict(zip(model.coordinates, q, strict=True))
+        ours = interpret(model.program, values, ["closure.residual"])["closure.residual"]
+        data.qpos[:] = q
+        mujoco.mj_forward(engine, data)
+        assert len(ours) == rows
+        # the gap of the anchors, in whatever axes
+        assert np.linalg.norm(ours[:3]) == pytest.approx(np.linalg.norm(data.efc_pos[:3]), abs=1e-12)
+        if not q.any():
+            assert np.abs(ours).max() < 1e-12
