@@ -32,6 +32,7 @@ COMMANDS = (
     Command("demo", "demo", "couple a gripper onto a Puma 560 over HTTP and compare with published numbers"),
     Command("derive", "parts", "derive and verify a definition here, without a server"),
     Command("submit", "parts", "submit a definition to a server"),
+    Command("import", "robots", "read a robot file as a definition, with a report of what became of everything in it"),
     Command("jobs", "jobs", "submit, watch and read batch jobs"),
     Command("backup", "backup", "copy the SQLite store to a file, also while a server runs"),
     Command("restore", "backup", "put a backup in the place of the SQLite store"),

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from service.cli.options import Add, add_server, read_document, tell_warnings
+from service.cli.options import Add, add_server, tell_warnings
 from service.cli.progress import follow
+from service.cli.robots import read_definition
 from substructures.client import Client
 from substructures.export import FORMATS, interface_of_part, render
 from substructures.part.definition import Definition
@@ -16,7 +17,7 @@ from substructures.part.part import derive
 
 def _add_derive(command: argparse.ArgumentParser) -> None:
     command.set_defaults(command=_derive)
-    command.add_argument("file", type=Path, help="definition, JSON or YAML")
+    command.add_argument("file", type=Path, help="definition, JSON or YAML, or a robot file")
     command.add_argument("--show", metavar="QUANTITY", help="print this stored quantity, e.g. metric")
     command.add_argument("--format", choices=sorted(FORMATS), default="text")
     command.add_argument("--name", default="model", help="prefix of functions, where the format is a language")
@@ -24,13 +25,13 @@ def _add_derive(command: argparse.ArgumentParser) -> None:
 
 def _add_submit(command: argparse.ArgumentParser) -> None:
     command.set_defaults(command=_submit)
-    command.add_argument("file", type=Path, help="definition, JSON or YAML")
+    command.add_argument("file", type=Path, help="definition, JSON or YAML, or a robot file")
     command.add_argument("--wait", action="store_true", help="wait where it takes so long that it becomes a job")
     add_server(command)
 
 
 def _derive(options: argparse.Namespace) -> int:
-    part = derive(Definition.read(read_document(options.file)))
+    part = derive(Definition.read(read_definition(options.file)))
     if options.show:
         names = [n for n in part.program.outputs if n == options.show or n.startswith(f"{options.show}.")]
         if not names:
@@ -51,7 +52,7 @@ def _derive(options: argparse.Namespace) -> int:
 
 def _submit(options: argparse.Namespace) -> int:
     with Client(options.server, options.key) as client:
-        answer = client.request("POST", "/v1/substructures", read_document(options.file))
+        answer = client.request("POST", "/v1/substructures", read_definition(options.file))
         version = answer.json()
         if answer.status_code == 202:
             print(f"became the job {version['id']}")

@@ -11,7 +11,7 @@ import orjson
 
 from service.addresses import version_path
 from service.pages.html import Content, Html, joined, link, tag
-from service.pages.layout import FILTER, document
+from service.pages.layout import SCRIPT, document
 from service.pages.trees import trees_table
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
@@ -46,9 +46,10 @@ def page(shown: Shown, address: str, with_key: bool) -> bytes:
             " of the whole, as formulas or as numbers, with any parameters left open.",
         ),
         *_example(shown.versions, address, with_key),
+        *_upload(),
         *_catalogue(shown),
         *_trees(shown),
-        script=FILTER,
+        script=SCRIPT,
     )
 
 
@@ -68,6 +69,12 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
     metric = f"{address}/v1/trees/cell/metric?format=text"
     after = ("Then read its metric at ", tag("code", metric), " and see it at ", tag("code", f"{address}/trees/cell"))
     return [tag("h2", "Couple two parts"), tag("pre", tag("code", command), tabindex="0"), tag("p", after, ".")]
+
+
+def _upload() -> list[Html]:
+    label = "A robot file of yours (URDF, MJCF): it is read, derived and stored, and every remark is told"
+    chosen = tag("input", id="file", type="file", accept=".urdf,.xml,.mjcf,.sdf,.csv,.json,.par", aria_label=label)
+    return [tag("h2", "Bring a robot"), tag("p", label, ". ", chosen), tag("ul", id="report", role="status")]
 
 
 def _pair(versions: Sequence[Version]) -> tuple[str, str, str] | None:

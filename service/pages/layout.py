@@ -13,7 +13,8 @@ from service.http.responses import conditional
 from service.pages.html import Html, html, joined, link, tag
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
-FILTER = Path(__file__).with_name("filter.js").read_text(encoding="utf-8")
+#: of the first page: filters cards, and sends a robot file
+SCRIPT = "".join(Path(__file__).with_name(f"{name}.js").read_text(encoding="utf-8") for name in ("filter", "upload"))
 
 
 def _source(text: str) -> str:
@@ -26,7 +27,8 @@ POLICY = "; ".join(
         "default-src 'none'",
         "img-src 'self'",
         f"style-src {_source(STYLE)}",
-        f"script-src {_source(FILTER)}",
+        f"script-src {_source(SCRIPT)}",
+        "connect-src 'self'",
         "base-uri 'none'",
         "form-action 'self'",
         "frame-ancestors 'none'",

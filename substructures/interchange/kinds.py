@@ -21,8 +21,8 @@ _ROOTS: Mapping[str, tuple[str, Reader]] = {
 KINDS = ("urdf", "mjcf")
 
 
-def is_xml(data: bytes) -> bool:
-    """Whether a file begins as XML does, in any of the encodings that XML has."""
+def is_foreign(data: bytes) -> bool:
+    """Whether a file is no document of ours, by its content: XML, in any of the encodings that XML has."""
     beginning = data[:4000].lstrip(b"\xef\xbb\xbf\xff\xfe\x00 \t\r\n")
     return beginning[:1] == b"<"
 
@@ -40,4 +40,4 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     name, reader = found
     if kind is not None and kind != name:
         raise refuse(root.place, "wrong-kind", f"this is {name.upper()}, not {kind.upper()}")
-    return name, reader(root, included or {})
+    return name, reader(root, {} if included is None else included)

@@ -30,7 +30,7 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     """
     if root.tag != "mujoco":
         raise refuse(root.place, "not-mjcf", "the root of an MJCF file is <mujoco>")
-    root = _with_included(root, included or {}, [])
+    root = _with_included(root, {} if included is None else included, [])
     report = Report()
     bodies = Bodies(Compiler.of(root), Defaults(root), report)
     for node in root.all("worldbody"):

@@ -1,0 +1,96 @@
+"""``/v1/imports``: robot files as definitions, with a report; stored on request."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.addresses import tree_path, version_path
+from service.answers import Answer, json_answer
+from service.database.connections import Connection
+from service.http.acting import ActOf, timed
+from service.http.requests import RawBody, StoreOf, media_type, needs
+from service.operations import catalogue, imports, trees
+from service.refusals import Refused
+from service.routes.bodies import binary
+from service.routes.deferred import ACCEPTED, deferred
+from service.schemas.entries import PLAIN
+from service.schemas.imports import ImportView
+from substructures.interchange.as_part import Base, Fixed, Options, Parameters
+from substructures.interchange.importing import Imported, import_file
+from substructures.interchange.kinds import KINDS
+from substructures.part.definition import Definition
+
+router = APIRouter(prefix="/v1/imports", tags=["imports"])
+#: media types that no HTML form of another site can send
+MEDIA_TYPES = ("application/xml", "text/xml", "application/json", "text/csv", "application/octet-stream")
+MADE: dict[int | str, dict[str, Any]] = {201: {"description": "It was stored", "model": ImportView}, **ACCEPTED}
+BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {m: binary() for m in MEDIA_TYPES}}}
+
+
+@router.post("", response_model=ImportView, dependencies=[needs("read")], openapi_extra=BODY, responses=MADE)
+@timed("derive")
+def read_file(
+    request: Request,
+    body: RawBody,
+    store: StoreOf,
+    act: ActOf,
+    kind: Annotated[str | None, Query(description=f"what the file has to be: {', '.join(KINDS)}")] = None,
+    name: Annotated[str | None, Query(max_length=64, description="name of the part")] = None,
+    file: Annotated[str, Query(max_length=200, description="name of the file, kept as its source")] = "",
+    license: Annotated[str, Query(max_length=200, description="licence of the file")] = "",  # noqa: A002 -- its name
+    parameters: Parameters = "inertia",
+    fixed: Fixed = "ports",
+    base: Base = "fixed",
+    stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
+) -> Response:
+    """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
+    if media_type(request) not in MEDIA_TYPES:
+        accepted = ", ".join(MEDIA_TYPES)
+        raise Refused(415, "unsupported-media-type", f"send one of {accepted}", headers={"Accept": accepted})
+    options = Options(parameters, fixed, base)
+    found = import_file(body, options, kind=kind, name=name, file=file, license_of_file=license)
+    if not stored:
+        return act.compute(lambda: json_answer(imports.answer_of(found)))
+    act.require("write")
+    return _part(store, act, found) if found.tree is None else _tree(store, act, found)
+
+
+def _part(store: StoreOf, act: ActOf, found: Imported) -> Response:
+    """Derived and stored as a substructure, at once or by a job."""
+    definition = Definition.read(found.definition)
+
+    def prepare() -> Any:
+        """Derive, unless that is stored already."""
+        submission = catalogue.prepare(store, act.viewer, definition, PLAIN)
+
+        def commit(connection: Connection) -> Answer:
+            """Store the version and tell of it."""
+            version, is_new = catalogue.submit(connection, act.viewer, submission)
+            told = {"name": version.name, "version": version.version, "digest": version.digest}
+            told |= {"href": version_path(version)}
+            body = imports.answer_of(found, told)
+            return json_answer(body, 201 if is_new else 200, {"Location": version_path(version)})
+
+        return commit
+
+    return act.run(prepare, deferred(act, "derive", found.definition))
+
+
+def _tree(store: StoreOf, act: ActOf, found: Imported) -> Response:
+    """Coupled and stored as a tree, at once or by a job."""
+
+    def prepare() -> Any:
+        """Couple."""
+        ready = trees.prepare(store, act.viewer, found.tree, PLAIN)
+
+        def commit(connection: Connection) -> Answer:
+            """Store the revision and tell of it."""
+            tree, is_new = trees.commit(connection, act.viewer, ready)
+            told = {"name": tree.name, "version": tree.revision, "digest": tree.digest, "href": tree_path(tree)}
+            return json_answer(imports.answer_of(found, told), 201 if is_new else 200, {"Location": tree_path(tree)})
+
+        return commit
+
+    return act.run(prepare, deferred(act, "assemble", found.tree))

@@ -1,0 +1,128 @@
+"""Robot files over HTTP, on the command line and on the first page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.cli.main import main
+
+LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+ARM = f"""<robot name="My Arm">
+<link name="base"/><link name="upper-arm">{LINK}</link><link name="tool"/>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper-arm"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+<joint name="flange" type="fixed"><parent link="upper-arm"/><child link="tool"/><origin xyz="0 0 1"/></joint>
+</robot>"""
+LOOP = """<mujoco model="four bar"><worldbody>
+<body name="a"><joint name="p" axis="0 1 0"/><geom size=".1" pos="1 0 0"/></body>
+<body name="b" pos="2 0 0"><joint name="q" axis="0 1 0"/><geom size=".1" pos="1 0 0"/></body>
+</worldbody><equality><connect name="pin" body1="a" body2="b" anchor="1 0 0"/></equality></mujoco>"""
+XML = {"Content-Type": "application/xml"}
+
+
+def test_a_file_is_read_and_nothing_is_stored(client: TestClient) -> None:
+    before = client.get("/v1/substructures").json()["items"]
+    answer = client.post("/v1/imports?file=arm.urdf", content=ARM, headers=XML)
+    assert answer.status_code == 200
+    found = answer.json()
+    assert found["kind"] == "urdf"
+    assert found["names"] == {
+        "base": "base_2", "upper-arm": "upper_arm", "tool": "tool", "joint shoulder": "shoulder"
+    }  # fmt: skip
+    assert found["definition"]["source"].startswith("URDF file arm.urdf, sha256:")
+    assert found["checks"]["schema"] == {"passed": True, "warnings": 0}
+    assert "stored" not in found
+    assert client.get("/v1/substructures").json()["items"] == before
+
+
+def test_what_is_read_can_be_stored_and_coupled(client: TestClient) -> None:
+    answer = client.post("/v1/imports?store=true&name=arm&parameters=none", content=ARM, headers=XML)
+    assert answer.status_code == 201
+    assert answer.json()["stored"] == {
+        "name": "arm", "version": 1, "digest": answer.json()["stored"]["digest"], "href": "/v1/substructures/arm@1"
+    }  # fmt: skip
+    assert client.get(answer.headers["Location"]).json()["ports"] == ["tool"]
+    again = client.post("/v1/imports?store=true&name=arm&parameters=none", content=ARM, headers=XML)
+    assert again.status_code == 200
+
+
+def test_a_file_with_loops_is_a_tree(client: TestClient) -> None:
+    answer = client.post("/v1/imports?store=true", content=LOOP, headers=XML)
+    assert answer.status_code == 201
+    found = answer.json()
+    assert "definition" not in found
+    assert found["tree"]["closures"][0]["type"] == "ball"
+    assert client.get("/v1/trees/four-bar").json()["closures"][0]["name"] == "pin"
+
+
+@pytest.mark.parametrize(
+    ("content", "query", "status", "said"),
+    [
+        (ARM.replace("0 1 0", "0 0 0"), "", 422, 'line 3: <axis>: the axis has no direction'),
+        (ARM, "?kind=mjcf", 422, "this is URDF, not MJCF"),
+        (ARM, "?kind=word", 422, "kind 'word' is none of"),
+        ("<html></html>", "", 422, "this is a web page"),
+        ("", "", 422, "no element found"),
+        ("\x00\x01", "", 422, "not well-formed"),
+        (" " * 3_000_000, "", 413, "larger than"),
+        (ARM, "?parameters=some", 422, "parameters"),
+    ],
+)  # fmt: skip
+def test_bad_files_are_refused_with_line_and_element(
+    client: TestClient, content: str, query: str, status: int, said: str
+) -> None:
+    answer = client.post(f"/v1/imports{query}", content=content, headers=XML)
+    assert answer.status_code == status
+    assert said in answer.text
+
+
+@pytest.mark.parametrize("sent", ["text/plain", "multipart/form-data", "application/x-www-form-urlencoded", ""])
+def test_forms_of_other_sites_are_kept_out(client: TestClient, sent: str) -> None:
+    assert client.post("/v1/imports", content=ARM, headers={"Content-Type": sent}).status_code == 415
+
+
+def test_the_first_page_takes_files(client: TestClient) -> None:
+    page = client.get("/")
+    assert 'id="file"' in page.text
+    assert "connect-src 'self'" in page.headers["Content-Security-Policy"]
+
+
+def test_import_prints_the_definition_and_tells_of_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM)
+    assert main(["import", str(path), "--parameters", "none"]) == 0
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["bodies"][1]["mass"] == 2
+    assert "urdf: checks of schema passed, topology passed, physics passed; 2 of 4 names changed" in shown.err
+    out = tmp_path / "arm.json"
+    assert main(["import", str(path), "--out", str(out)]) == 0
+    assert main(["derive", str(out)]) == 0
+
+
+def test_derive_takes_robot_files_by_their_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "arm.txt"
+    path.write_text(ARM)
+    assert main(["derive", str(path), "--show", "metric"]) == 0
+    assert "Iyy_upper_arm" in capsys.readouterr().out
+    path.write_text(ARM.replace("0 1 0", "0 0 0"))
+    assert main(["derive", str(path)]) == 1
+    assert f"{path}: line 3: <axis>: the axis has no direction" in capsys.readouterr().err
+
+
+def test_files_beside_an_mjcf_file_are_included_and_none_elsewhere(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "robot").mkdir()
+    inner = '<mujoco><worldbody><body name="b"><joint name="j"/><geom size="1"/></body></worldbody></mujoco>'
+    (tmp_path / "robot" / "inner.xml").write_text(inner)
+    (tmp_path / "secret.xml").write_text(inner)
+    path = tmp_path / "robot" / "robot.xml"
+    path.write_text('<mujoco><include file="inner.xml"/></mujoco>')
+    assert main(["derive", str(path)]) == 0
+    path.write_text('<mujoco><include file="../secret.xml"/></mujoco>')
+    assert main(["derive", str(path)]) == 1
+    assert "'../secret.xml' is not followed" in capsys.readouterr().err
