@@ -1,0 +1,178 @@
+"""Whether two models are the same: formulas with all parameters free, numbers at random states otherwise.
+
+Metric, gravity and velocity forces and all forces are compared; a different split of masses over links that the
+equations of motion do not see is no difference (base parameters). Where numbers differ, the culprits are looked for
+
+* among the screws of the joints where all coordinates are zero (axis, place);
+* among the ten inertial numbers of the bodies that a coordinate carries, up to what Y(q, q', q'') does not see
+  (M. Gautier and W. Khalil, 1990; notation.md, section 7);
+* among armature, stiffness, damping and loads of the coordinates otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.errors import InvalidArgument, InvalidInput, listed
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.replay import replay
+from substructures.interchange.culprits import Culprit, culprits
+from substructures.interchange.sides import Side
+
+QUANTITIES = ("metric", "gravity", "bias", "forces")
+#: relative difference of numbers that are equal
+TOLERANCE = 1e-9
+STATES = 4
+
+
+@dataclass(frozen=True)
+class Equivalence:
+    """``level``: what decided, ``formulas`` or ``values``; ``quantities``: whether the formulas of each are the same
+    (None: parameters have other names) and the relative difference of its numbers."""
+
+    equal: bool
+    level: str
+    quantities: dict[str, dict[str, Any]]
+    first_difference: dict[str, Any] | None
+    culprits: tuple[Culprit, ...]
+
+    def plain(self) -> dict[str, Any]:
+        """As JSON data."""
+        return {
+            "equal": self.equal,
+            "level": self.level,
+            "quantities": self.quantities,
+            "first_difference": self.first_difference,
+            "culprits": [c.plain() for c in self.culprits],
+        }
+
+
+def equivalence(a: Side, b: Side, coordinates: Mapping[str, str] | None = None) -> Equivalence:
+    """Compare two models; ``coordinates``: names in a to names in b, where they are not the same.
+
+    Raises InvalidArgument for coordinates that cannot be matched, MissingValue for parameters of one side alone that
+    have no value.
+    """
+    if a.model.dof != b.model.dof:
+        told = {"quantity": "coordinates", "a": list(a.names), "b": list(b.names)}
+        return Equivalence(False, "values", {}, told, ())
+    order = _order(a, b, coordinates or {})
+    formulas = _formulas(a, b, order)
+    rng = np.random.default_rng(1)
+    values = _open_parameters(a, b, rng)
+    found = [_Difference.of(name, *sides) for name, sides in _numbers(a, b, order, values, rng).items()]
+    quantities = {d.name: {"formulas": formulas.get(d.name), "error": d.error} for d in found}
+    if all(d.error <= TOLERANCE for d in found):
+        level = "formulas" if formulas and all(formulas.values()) else "values"
+        return Equivalence(True, level, quantities, None, ())
+    first = next(d for d in found if d.error > TOLERANCE)
+    return Equivalence(False, "values", quantities, first.plain(a.names), culprits(a, b, order, values))
+
+
+def _order(a: Side, b: Side, given: Mapping[str, str]) -> list[int]:
+    """Of every coordinate of a the number of the one in b."""
+    unknown = [*(x for x in given if x not in a.names), *(x for x in given.values() if x not in b.names)]
+    wanted = [given.get(name, name) for name in a.names]
+    missing = [name for name in wanted if name not in b.names]
+    if unknown or missing or len(set(wanted)) < len(wanted):
+        message = (
+            f"coordinates cannot be matched by name ({listed(unknown or missing)}): a has {listed(a.names)}, b has "
+            f"{listed(b.names)}; give 'coordinates', names in a to names in b"
+        )
+        raise InvalidArgument.at("/coordinates", "unknown-coordinate", message)
+    return [b.names.index(name) for name in wanted]
+
+
+def _formulas(a: Side, b: Side, order: list[int]) -> dict[str, bool]:
+    """For every quantity whether its formulas are the same functions; empty where parameters have other names."""
+    graph = Graph()
+    renamed = {}
+    for k, name in enumerate(a.model.coordinates):
+        for primes in ("", "'", "''"):
+            renamed[b.model.coordinates[order[k]] + primes] = graph.symbol(name + primes)
+        renamed[f"tau.{b.model.coordinates[order[k]]}"] = graph.symbol(f"tau.{name}")
+    names = [q for q in QUANTITIES if q in a.model.program.outputs and q in b.model.program.outputs]
+    if {n for n in a.model.effective if n in a.model.parameters} != {
+        n for n in b.model.effective if n in b.model.parameters
+    }:
+        return {}
+    try:
+        ours, theirs = (replay(s.model.program, graph, m, names) for s, m in ((a, {}), (b, renamed)))
+    except ZeroDivisionError:
+        return {}
+    return {name: _same(graph, ours[name].entries, theirs[name].entries, order) for name in names}
+
+
+def _same(graph: Graph, ours: Mapping[Any, Any], theirs: Mapping[Any, Any], order: list[int]) -> bool:
+    """Entry by entry, those of b at the places of a; symmetric ones are in either triangle."""
+    place = {k: i for i, k in enumerate(order)}
+    moved: dict[tuple[int, ...], Any] = {}
+    for index, x in theirs.items():
+        moved[tuple(sorted(place[i] for i in index))] = x
+    here = {tuple(sorted(index)): x for index, x in ours.items()}
+    return all(_is_zero(graph, here.get(k, 0), moved.get(k, 0)) for k in {*here, *moved})
+
+
+def _is_zero(graph: Graph, x: Expr | int, y: Expr | int) -> bool:
+    return (graph.lift(x) - graph.lift(y)).is_zero
+
+
+def _open_parameters(a: Side, b: Side, rng: np.random.Generator) -> dict[str, float]:
+    """The same random values for parameters of both sides that have none."""
+    missing = [
+        {name for name, p in side.model.parameters.items() if p.get("value") is None and name in side.model.effective}
+        for side in (a, b)
+    ]
+    return {name: float(rng.uniform(0.5, 1.5)) for name in sorted(missing[0] & missing[1])}
+
+
+def _numbers(
+    a: Side, b: Side, order: list[int], values: Mapping[str, float], rng: np.random.Generator
+) -> dict[str, tuple[Array, Array, dict[str, Array]]]:
+    """Of every quantity both sides at random states, in the order of a, and the states."""
+    states = {name: rng.uniform(-1, 1, (STATES, a.model.dof)) for name in ("q", "qd")}
+    place = np.argsort(order)
+    names = list(QUANTITIES)
+    ours = a.evaluate(names, values, **states)
+    theirs = b.evaluate(names, values, **{name: x[:, place] for name, x in states.items()})
+    result = {}
+    for name in names:
+        other = np.asarray(theirs[name], dtype=float)[:, order]
+        other = other[:, :, order] if name == "metric" else other
+        result[name] = np.asarray(ours[name], dtype=float), other, states
+    return result
+
+
+@dataclass(frozen=True)
+class _Difference:
+    """How far the numbers of a quantity are apart, relative to its largest element, and where most."""
+
+    name: str
+    error: float
+    index: tuple[int, ...]
+    a: float
+    b: float
+    state: dict[str, list[float]]
+
+    @classmethod
+    def of(cls, name: str, ours: Array, theirs: Array, states: dict[str, Array]) -> _Difference:
+        """Of both sides at some states. Raises InvalidInput where a number is not finite."""
+        if not (np.isfinite(ours).all() and np.isfinite(theirs).all()):
+            raise InvalidInput.at("", "not-finite", f"'{name}' is not finite at a random state")
+        if not ours.size:
+            return cls(name, 0.0, (), 0.0, 0.0, {})
+        apart = np.abs(ours - theirs)
+        at = tuple(int(i) for i in np.unravel_index(int(apart.argmax()), apart.shape))
+        scale = max(float(np.abs(ours).max()), float(np.abs(theirs).max()), 1e-12)
+        state = {key: [float(x) for x in values[at[0]]] for key, values in states.items()}
+        return cls(name, float(apart[at]) / scale, at[1:], float(ours[at]), float(theirs[at]), state)
+
+    def plain(self, names: Sequence[str]) -> dict[str, Any]:
+        """As JSON data."""
+        index = [names[i] for i in self.index]
+        return {"quantity": self.name, "index": index, "a": self.a, "b": self.b, "at": self.state}

@@ -1,0 +1,99 @@
+"""What is compared: a tree, or a part alone at the world under any gravity, with numbers of its links and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.part.definition import Definition
+from substructures.part.part import Part
+from substructures.quantities.evaluation import evaluate
+from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model, couple
+
+INSTANCE = "x"
+#: of a part alone; in general position, so that nothing escapes along an axis
+GRAVITY = {"gx": "0.7", "gy": "-1.3", "gz": "-9.5"}
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two models. ``names``: coordinates as they are compared, of a part alone without its instance."""
+
+    spec: TreeSpec
+    parts: Mapping[str, Part]
+    model: Model
+    names: tuple[str, ...]
+
+    @classmethod
+    def of_tree(cls, spec: TreeSpec, parts: Mapping[str, Part]) -> Side:
+        """A tree with the parts of its instances. Raises InvalidDocument, TooLarge as :func:`couple`."""
+        model = couple(spec, parts)
+        single = f"{spec.instances[0].name}." if len(spec.instances) == 1 else ""
+        return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates))
+
+    @classmethod
+    def of_part(cls, part: Part, gravity: Any = None) -> Side:
+        """A part at the world; ``gravity``: that of a tree it is compared with, default: three free parameters."""
+        return cls.of_tree(alone(part.definition, gravity), {INSTANCE: part})
+
+    @cached_property
+    def regressor(self) -> RegressorModel:
+        """Y and pi, made when they are first needed."""
+        return regressor(self.spec, self.parts)
+
+    def evaluate(self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None) -> Any:
+        """Numbers of quantities; parameters that this model does not have are left out."""
+        known = {name: x for name, x in parameters.items() if name in self.model.parameters}
+        return evaluate(self.model, names, q, qd, parameters=known)
+
+
+def alone(definition: Definition, gravity: Any = None) -> TreeSpec:
+    """The tree of a part at the world."""
+    free = {name: {"value": value, "unit": "m/s^2"} for name, value in GRAVITY.items()} if gravity is None else {}
+    instance = {"name": INSTANCE, "definition": definition.model_dump(exclude_defaults=True, by_alias=True)}
+    document = {"name": "alone", "gravity": gravity or list(GRAVITY), "parameters": free, "instances": [instance]}
+    return TreeSpec.stored(document)
+
+
+@dataclass(frozen=True)
+class Carriers:
+    """Numbers where all coordinates are zero, in the world.
+
+    ``screws`` (n, 6): of every coordinate the direction omega and the velocity v of the world's origin, for q' = 1;
+    ``carrier``: of every frame the last coordinate that moves it, -1 for none; ``R``, ``r``: its axes and place.
+    """
+
+    screws: Array
+    carrier: dict[str, int]
+    R: dict[str, Array]
+    r: dict[str, Array]
+
+    @classmethod
+    def of(cls, side: Side, order: list[int], parameters: Mapping[str, float]) -> Carriers:
+        """``order``: numbers of the coordinates that are compared, one by one."""
+        n = side.model.dof
+        found = side.evaluate(["kinematics"], parameters, q=np.zeros((1, n)))
+        kinematics = {name: np.asarray(x[0], dtype=float) for name, x in found["kinematics"].items()}
+        R, r = kinematics["rotation"], kinematics["position"]
+        omega = np.einsum("fij,faj->fai", R, kinematics["Omega"])
+        # v of the point at the world's origin = v of the frame's origin - omega x r
+        v = np.einsum("fij,faj->fai", R, kinematics["U"]) - np.cross(omega, r[:, None, :])
+        twists = np.concatenate([omega, v], axis=2)[:, order]
+        frames = side.model.frames
+        moves = np.abs(twists).max(axis=2, initial=0) > 1e-12
+        place = np.argsort(order) if n else np.zeros(0, dtype=int)
+        last = {f: max((a for a in range(n) if moves[i, place[a]]), default=-1) for i, f in enumerate(frames)}
+        screws = np.zeros((n, 6))
+        for a in range(n):
+            carried = [i for i in range(len(frames)) if moves[i, a]]
+            if carried:
+                screws[a] = twists[carried[0], a]
+        carrier = {f: int(place[a]) if a >= 0 else -1 for f, a in last.items()}
+        return cls(screws, carrier, dict(zip(frames, R, strict=True)), dict(zip(frames, r, strict=True)))

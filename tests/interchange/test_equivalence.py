@@ -1,0 +1,147 @@
+"""Two models are the same, or the body and the parameter that differ are named."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from substructures import Definition, TreeSpec, derive
+from substructures.errors import InvalidArgument
+from substructures.interchange.as_part import Options
+from substructures.interchange.equivalence import Equivalence, equivalence
+from substructures.interchange.importing import import_file
+from substructures.interchange.sides import Side
+
+ARM = """<robot name="arm"><link name="ground"/>
+<link name="upper"><inertial><origin xyz="0.1 0 0.3" rpy="0.1 0.2 0.3"/><mass value="4"/>
+ <inertia ixx="0.3" iyy="0.4" izz="0.2" ixy="0.01" ixz="0.02" iyz="0.03"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0 0.1 0.2"/><mass value="2"/>
+ <inertia ixx="0.1" iyy="0.1" izz="0.05"/></inertial>
+</link>
+<link name="tool"><inertial><origin xyz="0 0 0.05"/><mass value="0.5"/>
+ <inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>
+</link>
+<joint name="shoulder" type="revolute"><parent link="ground"/><child link="upper"/><axis xyz="0 1 0"/>
+ <origin xyz="0 0 0.4"/><dynamics damping="0.5"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><axis xyz="1 0 0"/>
+ <origin xyz="0 0.1 0.6" rpy="0.3 0 0"/></joint>
+<joint name="flange" type="fixed"><parent link="lower"/><child link="tool"/>
+ <origin xyz="0 0 0.5" rpy="0 0.7 0"/></joint>
+</robot>"""
+#: the same arm with the tool counted with the lower link, in MJCF, whose axes are turned there
+TWIN = """<mujoco><compiler angle="radian" eulerseq="XYZ"/><worldbody>
+<body name="first" pos="0 0 0.4"><joint name="shoulder" axis="0 1 0" damping="0.5"/>
+ <inertial pos="0.1 0 0.3" euler="0.1 0.2 0.3" mass="4" fullinertia="0.3 0.4 0.2 0.01 0.02 0.03"/>
+ <body name="second" pos="0 0.1 0.6" euler="0.3 0 0"><joint name="elbow" axis="1 0 0"/>
+  <geom type="ellipsoid" size="1 1 1" pos="0 0.1 0.2" mass="0"/>
+  <inertial pos="0 0.1 0.2" mass="2" diaginertia="0.1 0.1 0.05"/>
+  <body name="third" pos="0 0 0.5" euler="0 0.7 0">
+   <inertial pos="0 0 0.05" mass="0.5" diaginertia="0.01 0.01 0.01"/></body></body></body>
+</worldbody></mujoco>"""
+
+
+def side(text: str, **options: Any) -> Side:
+    definition = import_file(text.encode(), Options(**options)).definition
+    return Side.of_part(derive(Definition.read(definition)))
+
+
+def changed(pattern: str, new: str, text: str = ARM) -> str:
+    result, count = re.subn(pattern, new, text, count=1)
+    assert count
+    return result
+
+
+def compared(a: str, b: str, **options: Any) -> Equivalence:
+    return equivalence(side(a, **options), side(b, **options))
+
+
+def test_a_file_is_itself_by_formulas() -> None:
+    found = compared(ARM, ARM)
+    assert (found.equal, found.level) == (True, "formulas")
+    assert found.quantities["metric"] == {"formulas": True, "error": 0.0}
+
+
+def test_values_of_parameters_are_compared_where_formulas_are_the_same() -> None:
+    found = compared(ARM, changed('mass value="4"', 'mass value="4.5"'))
+    assert not found.equal
+    assert found.quantities["metric"]["formulas"]
+    assert found.first_difference is not None
+    assert found.first_difference["quantity"] == "metric"
+    assert [c.plain() for c in found.culprits] == [
+        {"body": "upper", "parameter": "mass", "a": pytest.approx(4), "b": pytest.approx(4.5)}
+    ]
+
+
+@pytest.mark.parametrize("ours", ["ports", "bodies"])
+def test_files_of_different_kinds_are_the_same(ours: str) -> None:
+    found = equivalence(side(ARM, fixed=ours, parameters="none"), side(TWIN, parameters="none"))
+    assert (found.equal, found.level) == (True, "values")
+    assert max(q["error"] for q in found.quantities.values()) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("pattern", "new", "body", "parameters"),
+    [
+        ('mass value="2"', 'mass value="2.1"', "lower", {"mass", "com.x", "com.y", "com.z", "inertia.xx"}),
+        ('ixy="0.01"', 'ixy="-0.01"', "upper", {"inertia.xy"}),
+        ('xyz="0.1 0 0.3"', 'xyz="0.1 0 0.31"', "upper", {"com.z"}),
+        ('rpy="0.1 0.2 0.3"', 'rpy="0.3 0.2 0.1"', "upper", {"inertia.xx", "inertia.yy", "inertia.xy"}),
+        ('xyz="0 0.1 0.6"', 'xyz="0 0.1 0.65"', "lower", {"position"}),
+        ('<axis xyz="1 0 0"/>', '<axis xyz="1 0.1 0"/>', "lower", {"axis"}),
+        ('damping="0.5"', 'damping="0.6"', "shoulder", {"damping"}),
+    ],
+)
+def test_the_culprit_is_named(pattern: str, new: str, body: str, parameters: set[str]) -> None:
+    found = compared(ARM, changed(pattern, new), parameters="none")
+    assert not found.equal
+    assert {c.body for c in found.culprits} == {body}
+    assert {c.parameter for c in found.culprits} & parameters
+
+
+def test_armature_is_named() -> None:
+    armed = changed('axis="1 0 0"', 'axis="1 0 0" armature="0.2"', TWIN)
+    assert {(c.body, c.parameter) for c in compared(TWIN, armed).culprits} == {("elbow", "armature")}
+
+
+def test_base_parameters_count_not_the_split() -> None:
+    """A mass on the elbow's axis may be counted with either link: no difference, and no culprit beside another one."""
+    point = '<link name="{0}"><inertial><mass value="1"/><inertia ixx="0" iyy="0" izz="0"/></inertial></link>'
+    fixed = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{0}"/><origin xyz="{2}"/></joint>'
+    before = ARM.replace("</robot>", point.format("w") + fixed.format("w", "upper", "0 0.1 0.6") + "</robot>")
+    after = ARM.replace("</robot>", point.format("w") + fixed.format("w", "lower", "0 0 0") + "</robot>")
+    assert compared(before, after, parameters="none").equal
+    other = changed('damping="0.5"', 'damping="0.6"', after)
+    assert {c.body for c in compared(before, other, parameters="none").culprits} == {"shoulder"}
+
+
+def test_coordinates_may_have_other_names() -> None:
+    renamed = ARM.replace('"elbow"', '"q2"')
+    with pytest.raises(InvalidArgument, match=r"coordinates cannot be matched by name \(elbow\)"):
+        compared(ARM, renamed)
+    assert equivalence(side(ARM), side(renamed), {"elbow": "q2"}).equal
+    assert not compared(ARM, changed('type="fixed"', 'type="revolute"')).equal
+
+
+def test_the_order_of_coordinates_does_not_matter() -> None:
+    two = '<robot name="r"><link name="g"/>{}</robot>'
+    one = (
+        '<link name="{0}"><inertial><origin xyz="0.1 0 0"/><mass value="{1}"/><inertia ixx="1" iyy="1" izz="1"/>'
+        '</inertial></link><joint name="j{0}" type="revolute"><parent link="g"/><child link="{0}"/></joint>'
+    )
+    first, second = one.format("a", 1), one.format("b", 2)
+    found = compared(two.format(first + second), two.format(second + first))
+    assert (found.equal, found.level) == (True, "formulas")
+
+
+def test_trees_are_compared_with_parts() -> None:
+    definition = import_file(ARM.encode()).definition
+    part = derive(Definition.read(definition))
+    document = {"name": "t", "gravity": [1, 2, 3], "instances": [{"name": "arm", "definition": definition}]}
+    tree = Side.of_tree(TreeSpec.read(document), {"arm": part})
+    assert equivalence(tree, Side.of_part(part, [1, 2, 3])).equal
+    found = equivalence(tree, Side.of_part(part, [1, 2, 4]))
+    assert not found.equal
+    assert found.first_difference is not None
+    assert found.first_difference["quantity"] == "gravity"
