@@ -22,8 +22,10 @@ from substructures.printers.render import FORMATS as WRITTEN
 from substructures.printers.render import LIMIT, check_form
 from substructures.printers.render import first_index as first_written
 from substructures.printers.render import render as write
+from substructures.printers.textbook import textbook
 from substructures.quantities.formulas import DERIVED
 
+_LISTINGS = {"expanded": expanded, "textbook": textbook}
 #: by name in the contract
 LANGUAGES: Mapping[str, type[Code]] = {"sympy": SymPy, "python": Python, "c": C, "matlab": Matlab, "julia": Julia}
 #: media type of every format
@@ -72,7 +74,7 @@ def text_of(exported: Exported, language: type[Code], limit: int) -> str:
 def definitions(exported: Exported, language: type[Code], limit: int) -> list[list[str]]:
     """The lines of every function. Raises as :func:`text_of`."""
     check_form(exported.form)
-    listing = expanded if exported.form == "expanded" else compact
+    listing = _LISTINGS.get(exported.form, compact)
     found = []
     for function in exported.functions:
         for output in function.program.outputs.values():

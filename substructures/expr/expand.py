@@ -26,7 +26,7 @@ from fractions import Fraction
 
 from substructures.errors import TooLarge
 from substructures.expr.canonical import RingEvaluator
-from substructures.expr.generators import Basis, Generators, Sum, is_function, times_power
+from substructures.expr.generators import Basis, Generators, is_function, times_power
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.trigonometry import cos, sin
 from substructures.expr.walk import reachable, transfer
@@ -87,6 +87,22 @@ def _term_expr(term: Term, graph: Graph, new: dict[Expr, Expr]) -> Expr:
     return graph.number(term.coefficient) * result
 
 
+def classified(exprs: Sequence[Expr], limit: int = LIMIT) -> Generators:
+    """The generators of expressions, functions recognised by the canonical form of their arguments. Raises TooLarge."""
+    generators, effort = Generators(), 0
+    for node in reachable(exprs):
+        if is_function(node):
+            arguments = []
+            for arg in node.args:
+                evaluator = RingEvaluator(generators, reachable([arg], is_function), limit)
+                effort += (evaluator.ring.size + evaluator.ring.angles) ** 2
+                if effort > EFFORT:
+                    raise TooLarge("the nesting of functions in an expansion (in squared generators)", effort, EFFORT)
+                arguments.append(evaluator.read(arg))
+            generators.classify(node, arguments)
+    return generators
+
+
 class Expander:
     """Expands several formulas of one graph that share subexpressions.
 
@@ -95,19 +111,9 @@ class Expander:
     """
 
     def __init__(self, exprs: Sequence[Expr], limit: int = LIMIT) -> None:
-        self.limit, self.effort = limit, 0
-        self.generators = Generators()
-        for node in reachable(exprs):
-            if is_function(node):
-                self.generators.classify(node, [self._argument(a) for a in node.args])
+        self.limit = limit
+        self.generators = classified(exprs, limit)
         self.evaluator = RingEvaluator(self.generators, reachable(exprs, is_function), limit)
-
-    def _argument(self, expr: Expr) -> Sum:
-        evaluator = RingEvaluator(self.generators, reachable([expr], is_function), self.limit)
-        self.effort += (evaluator.ring.size + evaluator.ring.angles) ** 2
-        if self.effort > EFFORT:
-            raise TooLarge("the nesting of functions in an expansion (in squared generators)", self.effort, EFFORT)
-        return evaluator.read(expr)
 
     def expand(self, expr: Expr) -> Expanded:
         """The canonical form of one of the expressions (or of a subexpression)."""

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import ClassVar, NamedTuple
 
 from substructures.expr.program import Program
+from substructures.printers.numbers import shortest_decimal
 
 SUM, NEGATION, PRODUCT, POWER, ATOM = range(5)
 
@@ -22,10 +23,14 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """``temporaries`` are (number, formula), each using earlier ones only; ``entries`` go with the outputs' index."""
+    """``temporaries`` are (number, formula), each using earlier ones only; ``entries`` go with the outputs' index.
+
+    ``abbreviations`` are (name, formula), used by all others.
+    """
 
     temporaries: tuple[tuple[int, str], ...]
     entries: Mapping[str, tuple[str, ...]]
+    abbreviations: tuple[tuple[str, str], ...] = ()
 
 
 class Language(ABC):
@@ -39,6 +44,10 @@ class Language(ABC):
     width = 80
     powers = True
     first = 0
+    #: whether people read it: names of the only instance are left out of textbook forms, c12 is cos(q1 + q2)
+    is_for_people = False
+    #: what else is to be said about names
+    remark = ""
     times, power_sign = "*", "^"
     functions: ClassVar[Mapping[str, str]] = {}
 
@@ -68,6 +77,31 @@ class Language(ABC):
         if value.denominator == 1:
             return Piece(str(value.numerator))
         return Piece(f"{value.numerator}/{value.denominator}", PRODUCT)
+
+    def decimal(self, value: Fraction) -> Piece:
+        """An exact constant as people write it: simple fractions, integers, decimal numbers where there are any."""
+        found = None if 12 % value.denominator == 0 else shortest_decimal(abs(value))
+        if found is None:
+            return self.number(value)
+        piece = self.scientific(*found) if found[1] else Piece(found[0])
+        return piece if value > 0 else self.neg(piece)
+
+    def scientific(self, mantissa: str, exponent: int) -> Piece:
+        """mantissa * 10^exponent."""
+        return Piece(f"{mantissa}e{exponent}")
+
+    def trig(self, op: str, angle: Piece, power: int) -> Piece:
+        """A power of a cosine or sine."""
+        piece = self.call(op, [angle])
+        return piece if power == 1 else self.power(piece, power)
+
+    def abbreviation(self, op: str, digits: str) -> Piece:
+        """What cos or sin of a sum of numbered angles is called."""
+        return Piece(op[0] + digits)
+
+    def finished(self, text: str) -> str:
+        """A whole formula, as it stands alone."""
+        return text
 
     def inside(self, piece: Piece, least: int) -> str:
         """Text of an operand, in parentheses when it binds less than demanded."""

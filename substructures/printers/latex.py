@@ -9,7 +9,7 @@ from typing import ClassVar
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, Language, Listing, Piece
 from substructures.printers.names import comment, latex_names
-from substructures.printers.text import decimal_text
+from substructures.printers.numbers import decimal_text
 
 _LETTERS = {"metric": "g", "christoffel": r"\Gamma", "forces": "Q", "coriolis": "C"}
 _NAMED = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
@@ -26,6 +26,7 @@ class Latex(Language):
     media = "application/x-latex; charset=utf-8"
     width = 300
     first = 1
+    is_for_people = True
     functions: ClassVar[Mapping[str, str]] = _NAMED
 
     def __init__(self, program: Program) -> None:
@@ -59,6 +60,20 @@ class Latex(Language):
         text = decimal_text(value) if value.denominator > 24 else None
         return Piece(text) if text else Piece(rf"\frac{{{value.numerator}}}{{{value.denominator}}}", PRODUCT)
 
+    def abbreviation(self, op: str, digits: str) -> Piece:
+        """c_{12} of cos(q_1 + q_2)."""
+        return Piece(f"{op[0]}_{{{digits}}}")
+
+    def scientific(self, mantissa: str, exponent: int) -> Piece:
+        """mantissa * 10^exponent."""
+        return Piece(rf"{mantissa} \cdot 10^{{{exponent}}}", PRODUCT)
+
+    def trig(self, op: str, angle: Piece, power: int) -> Piece:
+        """The exponent stands before the angle, which needs no parentheses as a single name."""
+        head = self.functions[op] + (f"^{{{power}}}" if power != 1 else "")
+        text = " " + angle.text if angle.precedence == ATOM else self.parentheses(angle.text)
+        return Piece(head + text, POWER)
+
     def mul(self, a: Piece, b: Piece) -> Piece:
         """A thin space, or a dot before digits."""
         left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
@@ -84,14 +99,15 @@ class Latex(Language):
 
     def render(self, listing: Listing, name: str) -> str:
         """An ``aligned`` environment; comments say what the symbols are."""
-        lines = [f"% {comment(name)}"]
+        lines = [f"% {comment(x)}" for x in (name, self.remark) if x]
         lines += [
             f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"
             for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
-        rows = [f"{self.letter}_{{{n}}} &= {text}" for n, text in listing.temporaries]
+        rows = [f"{name} &= {text}" for name, text in listing.abbreviations]
+        rows += [f"{self.letter}_{{{n}}} &= {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             rows += self._rows(output, array, listing.entries[output])
         return "\n".join([*lines, r"\begin{aligned}", " \\\\\n".join(rows), r"\end{aligned}"]) + "\n"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from substructures.expr.operations import Symbol
 from substructures.expr.syntax import RESERVED
 
 _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")
@@ -13,6 +14,8 @@ _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}", re.ASCII)
 _PIECE = re.compile(r"([A-Za-z]+)([0-9]*)((?:_[A-Za-z0-9]+)*)", re.ASCII)
 _LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
 _UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+#: first parts of the names of quantities that belong to coordinates: forces and momenta
+_OF_COORDINATES = ("tau", "p")
 GREEK = frozenset(_LOWER.split()) | frozenset(_UPPER.split())
 MAX_COMMENT = 200
 
@@ -46,6 +49,31 @@ def prefix(names: Iterable[str]) -> str:
     return next(p for p in ("t" * n for n in range(1, len(taken) + 2)) if p not in taken)
 
 
+def short_names(symbols: Sequence[Symbol]) -> list[str]:
+    """Names as textbooks write them, all different: no instance where there is only one, tau_1 for tau.arm.q1.
+
+    Where that would make two names equal they stay as they are.
+    """
+    names = [s.name for s in symbols]
+    owners = {parts[-2] for n in names if len(parts := _parts(n)) > 1}
+    if len(owners) != 1:
+        return names
+    short = [_short(s) for s in symbols]
+    return short if len(set(short)) == len(short) else names
+
+
+def _parts(name: str) -> list[str]:
+    return name.split(".")
+
+
+def _short(symbol: Symbol) -> str:
+    *owners, last = _parts(symbol.name)
+    if len(owners) < 2:
+        return last
+    numbered = re.fullmatch(r"q([0-9]+)", last, re.ASCII)
+    return "_".join([*owners[:-1], numbered.group(1) if numbered else last])
+
+
 def latex_names(names: Iterable[str]) -> list[str]:
     """LaTeX of names: Greek letters, digits and prefixes as subscripts, primes as dots. All different."""
     result: dict[str, None] = {}
@@ -63,12 +91,26 @@ def _latex_name(name: str) -> str:
     if match is None or primes > 4 or not all(re.fullmatch(r"[A-Za-z0-9_-]+", o, re.ASCII) for o in owners):
         return _typewriter(name)
     letters, digits, rest = match.groups()
-    base = "\\" + letters if letters in GREEK else letters if len(letters) == 1 else rf"\mathit{{{letters}}}"
+    base = _base(letters)
     if primes:
         base = rf"\{'d' * primes}ot{{{base}}}"
+    if len(owners) > 1 and owners[0] in _OF_COORDINATES:
+        # a force is no coordinate: tau_{arm,1}, not q_{tau,arm,1}
+        quantity, *owners = owners
+        base, digits = _base(quantity), digits if letters == "q" and digits else letters + digits
     parts = [*owners, *([digits] if digits else []), *rest.split("_")[1:]]
-    subscripts = [p if p.isdigit() else rf"\mathrm{{{p.replace('_', chr(92) + '_')}}}" for p in parts]
+    subscripts = [_subscript(p) for p in parts]
     return f"{base}_{{{','.join(subscripts)}}}" if subscripts else base
+
+
+def _base(letters: str) -> str:
+    return "\\" + letters if letters in GREEK else letters if len(letters) == 1 else rf"\mathit{{{letters}}}"
+
+
+def _subscript(part: str) -> str:
+    if part.isdigit():
+        return part
+    return "\\" + part if part in GREEK else rf"\mathrm{{{part.replace('_', chr(92) + '_')}}}"
 
 
 def _typewriter(name: str) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from math import prod
 from typing import Any
 
@@ -14,10 +15,15 @@ from substructures.expr.operations import MAX_ELEMENTS
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
+from substructures.expr.walk import transfer
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
 from substructures.printers.listing import check_size, compact, expanded, inlined
+from substructures.printers.names import short_names
 from substructures.printers.text import Text
+from substructures.printers.textbook import textbook, textbook_inlined
+from substructures.textbook import AT_ONCE, read
+from substructures.textbook.forms import atoms_of, to_expr
 
 LANGUAGES: Mapping[str, type[Language]] = {
     "text": Text,
@@ -26,7 +32,12 @@ LANGUAGES: Mapping[str, type[Language]] = {
 
 #: media type of every format
 FORMATS: Mapping[str, str] = {"json": "application/json", **{name: lang.media for name, lang in LANGUAGES.items()}}
-FORMS = ("compact", "expanded")
+FORMS = ("readable", "textbook", "compact", "expanded")
+_LISTINGS: Mapping[str, Callable[[Program, Language, int], Listing]] = {
+    "compact": compact,
+    "expanded": expanded,
+    "textbook": textbook,
+}
 #: nodes of a rendered program, and of formulas without temporaries
 LIMIT = 100_000
 INLINE_LIMIT = 20_000
@@ -36,20 +47,37 @@ def render(program: Program, format: str, form: str = "compact", name: str = "mo
     """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
-    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`). ``name`` is what the
-    text calls it. Raises InvalidDocument for an unknown format or form, TooLarge (size,
+    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
+    collected, factored and cancelled (:mod:`substructures.textbook`); ``readable``: ``textbook`` in formats for people
+    where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it.
+    Raises InvalidDocument for an unknown format or form, TooLarge (size,
     limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
     """
     if format not in FORMATS:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     check_form(form)
+    if form == "readable":
+        return _readable(program, format, name, limit)
     if format == "json":
         return _json(program, form, limit)
     for output in program.outputs.values():
         if prod(output.shape) > MAX_ELEMENTS:
             raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
-    language = LANGUAGES[format](program)
-    return language.render(_listing(program, language, form, limit), name)
+    program, language = _spoken(program, format, form)
+    return language.render(_LISTINGS[form](program, language, limit), name)
+
+
+def _readable(program: Program, format: str, name: str, limit: int) -> str:  # noqa: A002 -- the name in the contract
+    """The textbook form where it fits, otherwise the compact one with the reason."""
+    if format == "json" or not LANGUAGES[format].is_for_people:
+        return render(program, format, "compact", name, limit)
+    spoken, language = _spoken(program, format, "textbook")
+    try:
+        return language.render(textbook(spoken, language, limit, AT_ONCE), name)
+    except (TooLarge, ZeroDivisionError) as error:
+        language = LANGUAGES[format](program)
+        language.remark = f"compact, since there is no textbook form: {error}"
+        return language.render(compact(program, language, limit), name)
 
 
 def first_index(format: str) -> int:  # noqa: A002 -- the name in the contract
@@ -73,20 +101,29 @@ def entries(
     if format not in LANGUAGES:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(LANGUAGES)}")
     check_form(form)
-    language = LANGUAGES[format](part)
-    listing = (expanded if form == "expanded" else inlined)(part, language, limit)
-    index = part.outputs[output].index
-    return [{"index": list(i), "formula": text} for i, text in zip(index, listing.entries[output], strict=True)]
+    form = "compact" if form == "readable" else form
+    part, language = _spoken(part, format, form)
+    listing = {**_LISTINGS, "compact": inlined, "textbook": textbook_inlined}[form](part, language, limit)
+    texts = [language.finished(text) for text in listing.entries[output]]
+    return [{"index": list(i), "formula": x} for i, x in zip(part.outputs[output].index, texts, strict=True)]
+
+
+def _spoken(program: Program, format: str, form: str) -> tuple[Program, Language]:  # noqa: A002 -- the name in the contract
+    """The language, and the program with the names that it writes."""
+    if form == "textbook" and LANGUAGES[format].is_for_people:
+        names = short_names(program.symbols)
+        symbols = tuple(replace(s, name=name) for s, name in zip(program.symbols, names, strict=True))
+        owners = {s.name.split(".")[-2] for s in program.symbols if "." in s.name} if symbols != program.symbols else ()
+        language = LANGUAGES[format](replace(program, symbols=symbols))
+        language.remark = "".join(f"all names but those of the tree are of instance {owner}" for owner in owners)
+        return language.program, language
+    return program, LANGUAGES[format](program)
 
 
 def check_form(form: str) -> None:
     """Raises InvalidDocument for an unknown form."""
     if form not in FORMS:
         raise InvalidDocument.at("/form", "unknown-form", f"{form[:40]!r} is not one of {', '.join(FORMS)}")
-
-
-def _listing(program: Program, language: Language, form: str, limit: int) -> Listing:
-    return (expanded if form == "expanded" else compact)(program, language, limit)
 
 
 def _json(program: Program, form: str, limit: int) -> str:
@@ -106,5 +143,19 @@ def _json(program: Program, form: str, limit: int) -> str:
             for n, f in outputs.items()
         }
         program = collect(new, formulas, {s.name: s for s in program.symbols})
+    if form == "textbook":
+        program = _textbook_program(program)
     check_size(len(program), limit)
     return program.to_bytes().decode()
+
+
+def _textbook_program(program: Program) -> Program:
+    """A program that computes the textbook forms."""
+    reading, new = read(program), Graph()
+    atoms = atoms_of(reading.forms)
+    moved = dict(zip(atoms, transfer(atoms, new, {}), strict=True))
+    formulas = {}
+    for name, output in program.outputs.items():
+        entries = {i: to_expr(f, new, moved) for i, f in zip(output.index, reading.outputs[name], strict=True)}
+        formulas[name] = Formulas(output.shape, entries, output.symmetry)
+    return collect(new, formulas, {s.name: s for s in program.symbols})

@@ -7,17 +7,18 @@ from fractions import Fraction
 from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.names import comment, formula_name, prefix
+from substructures.printers.numbers import decimal_text
 from substructures.printers.symmetry import symmetry_rule
 
 #: denominators up to this one are written as fractions, larger ones as decimals where these are exact and short
 _FRACTIONS = 24
-_DIGITS = 17
 
 
 class Text(Language):
     """Text. Indices count from 1."""
 
     first = 1
+    is_for_people = True
 
     def __init__(self, program: Program) -> None:
         super().__init__(program)
@@ -42,10 +43,11 @@ class Text(Language):
 
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
-        lines = [f"# {comment(name)}"]
+        lines = [f"# {comment(x)}" for x in (name, self.remark) if x]
         lines += [
             f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
+        lines += [f"{name} = {text}" for name, text in listing.abbreviations]
         lines += [f"{self.prefix}{n} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             title = comment(output)
@@ -60,17 +62,3 @@ class Text(Language):
             if not array.shape and not array.index:
                 lines.append(f"{title} = 0")
         return "\n".join(lines) + "\n"
-
-
-def decimal_text(value: Fraction) -> str | None:
-    """A positive number as exact decimal of moderate length, if it is one."""
-    places, rest = 0, value.denominator
-    while rest % 10 == 0:
-        rest, places = rest // 10, places + 1
-    for p in (2, 5):
-        while rest % p == 0:
-            rest, places = rest // p, places + 1
-    if rest != 1 or places > _DIGITS:
-        return None
-    digits = str(value.numerator * 10**places // value.denominator).rjust(places + 1, "0")
-    return f"{digits[:-places]}.{digits[-places:]}".rstrip("0") if len(digits) <= 2 * _DIGITS else None

@@ -1,0 +1,83 @@
+"""Factors of trigonometric polynomials: ``(cos(q2)*sin(q5) + sin(q2)*cos(q4)*cos(q5))^2``, not its five terms.
+
+With t = tan(q/2) a polynomial in cosines and sines is a polynomial in t over powers of 1 + t^2, which FLINT factors;
+factors of even degree are polynomials in cosines and sines again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+
+from substructures.textbook.exponentials import Complex, harmonics_of, spread, tangent
+from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest
+
+#: terms and angles of what is factored
+TERMS, ANGLES = 40, 6
+
+Factors = tuple[Fraction, tuple[tuple[Waves, int], ...]]
+
+
+@lru_cache(maxsize=5000)
+def factors(waves: Waves) -> Factors:
+    """A number and factors with their powers, the polynomial itself where it has no shorter ones."""
+    whole: Factors = Fraction(1), ((waves, 1),)
+    angles = sorted({k for _, some in waves for _, k, _ in some}, key=angle_key)
+    if not 3 <= len(waves) <= TERMS or not 1 <= len(angles) <= ANGLES:
+        return whole
+    degrees = [max(sum(n for _, k, n in some if k == angle) for _, some in waves) for angle in angles]
+    number, parts = _polynomial(waves, angles, degrees).factor()
+    value, found = Fraction(int(number.p), int(number.q)), []
+    for part, n in parts:
+        form, halves = _read(part, angles)
+        if form is None:
+            return whole
+        degrees = [d - int(n) * h for d, h in zip(degrees, halves, strict=True)]
+        if any(halves) and form != ((Fraction(1), ()),):
+            scale = form[0][0] if len({abs(c) for c, _ in form}) == 1 else Fraction(-1 if form[0][0] < 0 else 1)
+            value *= scale ** int(n)
+            found.append((tuple((c / scale, some) for c, some in form), int(n)))
+    if any(degrees) or sum(3 + cost(form) for form, _ in found) >= 3 + cost(waves):
+        return whole
+    return value, tuple(sorted(found, key=lambda item: (cost(item[0]), item)))
+
+
+def _polynomial(waves: Waves, angles: Sequence[Mode], degrees: Sequence[int]) -> Any:
+    """The polynomial in tangents, over powers ``degrees`` of 1 + t^2."""
+    context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(len(angles))], Ordering.lex)
+    ts = context.gens()
+    result = context.constant(0)
+    for c, some in waves:
+        term = context.constant(fmpq(c.numerator, c.denominator))
+        left = list(degrees)
+        for op, k, n in some:
+            i = angles.index(k)
+            left[i] -= n
+            term *= (1 - ts[i] ** 2 if op == "cos" else 2 * ts[i]) ** n
+        for t, n in zip(ts, left, strict=True):
+            term *= (1 + t**2) ** n
+        result += term
+    return result
+
+
+def _read(part: Any, angles: Sequence[Mode]) -> tuple[Waves | None, list[int]]:
+    """A factor over the power of 1 + t^2 that makes it trigonometric, and that power; None where there is none."""
+    degrees = [max(int(n), 0) for n in part.degrees()]
+    halves = [n // 2 for n in degrees]
+    if any(n % 2 for n in degrees):
+        return None, halves
+    laurent: dict[Mode, Complex] = {}
+    for exponents, c in part.to_dict().items():
+        some = [tangent(int(j), e) for j, e in zip(exponents, halves, strict=True)]
+        spread(laurent, some, Fraction(int(c.p), int(c.q)))
+    waves = shortest(normal(harmonics_of(laurent)))
+    size = len(angles[0])
+    return tuple((c, tuple((op, _sum(k, angles, size), n) for op, k, n in some)) for c, some in waves), halves
+
+
+def _sum(k: Mode, angles: Sequence[Mode], size: int) -> Mode:
+    return tuple(sum(n * angle[i] for n, angle in zip(k, angles, strict=True)) for i in range(size))

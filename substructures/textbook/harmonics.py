@@ -1,0 +1,204 @@
+"""Trigonometric polynomials in their shortest form: products of powers of cosines and sines, or sums of angles.
+
+A trigonometric polynomial is given by its harmonics, sum over k of a_k cos(k.q) + b_k sin(k.q), which are unique. In
+a basis of angles (q1, q1 + q2, say, which is chosen so that the harmonics become small) it is a polynomial in c_i and
+s_i, from which c_i^2 + s_i^2 = 1 takes either all c_i^2 or all s_i^2. The shortest of these forms and of the harmonics
+themselves is what a person would write: sin(q)^2, not 1/2 - 1/2 cos(2 q), and cos(q1 + q2), not c1 c2 - s1 s2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from math import comb
+
+#: a harmonic: multiples of the angles, the first of which that is not zero is positive
+Mode = tuple[int, ...]
+#: cosine and sine coefficient of every harmonic
+Harmonics = Mapping[Mode, tuple[Fraction, Fraction]]
+#: powers of (cos, sin) of every angle of a basis
+Powers = tuple[tuple[int, int], ...]
+#: a factor: "cos" or "sin", multiples of the angles, power
+Wave = tuple[str, Mode, int]
+#: a sum of number * product of waves
+Waves = tuple[tuple[Fraction, tuple[Wave, ...]], ...]
+
+
+def shortest(harmonics: Harmonics) -> Waves:
+    """The shortest form of a trigonometric polynomial, terms and factors in their order."""
+    plain = _as_they_are(harmonics)
+    if len(harmonics) == 1 and all(abs(n) <= 1 for k in harmonics for n in k):
+        return plain
+    basis, modes = _reduced(list(harmonics))
+    polynomial: dict[Powers, Fraction] = {}
+    for mode, (a, b) in zip(modes, harmonics.values(), strict=True):
+        _add(polynomial, mode, a, b)
+    written = [_written(form, basis) for form in _eliminated(polynomial)]
+    return min([*written, plain], key=lambda form: (cost(form), form is plain))
+
+
+def _as_they_are(harmonics: Harmonics) -> Waves:
+    terms = []
+    for k, both in sorted(harmonics.items(), key=lambda item: _mode_key(item[0])):
+        for op, c in zip(("cos", "sin"), both, strict=True):
+            if c:
+                terms.append((c, ((op, k, 1),) if any(k) else ()))
+    return tuple(terms)
+
+
+def _mode_key(k: Mode) -> tuple[object, ...]:
+    return sum(map(abs, k)), tuple(-abs(n) for n in k), tuple(-n for n in k)
+
+
+def cost(form: Waves) -> int:
+    """Signs that are written: terms, factors, sums of angles; multiples of angles are dear."""
+    cost = 0
+    for c, waves in form:
+        cost += 2 + (abs(c) != 1)
+        for _, k, n in waves:
+            cost += 2 + (n != 1) + sum(1 for m in k if m) - 1 + sum(3 for m in k if abs(m) > 1)
+    return cost
+
+
+def _reduced(modes: list[Mode]) -> tuple[list[Mode], list[Mode]]:
+    """Angles (multiples of the given ones) in which the harmonics are smallest, and the harmonics in them.
+
+    As long as it helps one angle i is replaced by its sum or difference with another one: with phi = q_i + s q_j,
+    k_i q_i + k_j q_j = k_i phi + (k_j - s k_i) q_j.
+    """
+    size = len(modes[0]) if modes else 0
+    basis = [tuple(int(i == j) for j in range(size)) for i in range(size)]
+    if max((sum(1 for n in k if n) for k in modes), default=0) < 2:
+        return basis, modes
+    while True:
+        best, gain = None, (0, 0)
+        for i in range(size):
+            for j in range(size):
+                for sign in (1, -1) if i != j else ():
+                    pairs = [(abs(k[j]), abs(k[j] - sign * k[i])) for k in modes]
+                    change = sum(a - b for a, b in pairs), sum(a * a - b * b for a, b in pairs)
+                    if change > gain:
+                        best, gain = (i, j, sign), change
+        if best is None:
+            break
+        i, j, sign = best
+        basis[i] = tuple(a + sign * b for a, b in zip(basis[i], basis[j], strict=True))
+        modes = [tuple(n - sign * k[i] if m == j else n for m, n in enumerate(k)) for k in modes]
+    for i, angle in enumerate(basis):
+        if next(n for n in angle if n) < 0:
+            basis[i] = tuple(-n for n in angle)
+            modes = [tuple(-n if m == i else n for m, n in enumerate(k)) for k in modes]
+    return basis, modes
+
+
+@lru_cache(maxsize=1000)
+def _multiple(k: int) -> tuple[tuple[tuple[int, int], int, int], ...]:
+    """(c + i s)^k as ((power of c, power of s), coefficient, power of i)."""
+    n, sign = abs(k), 1 if k >= 0 else -1
+    return tuple(((n - m, m), comb(n, m) * sign**m, m) for m in range(n + 1))
+
+
+def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction) -> None:
+    """Add a cos(k.q) + b sin(k.q): real and imaginary part of the product of (c_i + i s_i)^k_i."""
+    terms: list[tuple[Powers, int, int]] = [((), 1, 0)]
+    for k in mode:
+        terms = [((*powers, p), c * d, (m + n) % 4) for powers, c, m in terms for p, d, n in _multiple(k)]
+    for powers, c, m in terms:
+        value = (a if m % 2 == 0 else b) * (c if m < 2 else -c)
+        if value:
+            polynomial[powers] = polynomial.get(powers, Fraction(0)) + value
+
+
+def polynomial_of(harmonics: Harmonics, sines: Sequence[int]) -> dict[Powers, Fraction]:
+    """The polynomial in cosines and sines without c_i^2 for the angles ``sines``, and without s_i^2 for the others."""
+    polynomial: dict[Powers, Fraction] = {}
+    for mode, (a, b) in harmonics.items():
+        _add(polynomial, mode, a, b)
+    for i in range(len(next(iter(harmonics), ()))):
+        polynomial = _without(polynomial, i, 0 if i in sines else 1)
+    return {powers: c for powers, c in polynomial.items() if c}
+
+
+def _eliminated(polynomial: Mapping[Powers, Fraction]) -> Iterable[dict[Powers, Fraction]]:
+    """The forms without s_i^2, or without c_i^2, whichever has fewer terms; first, and last for every angle."""
+    size = len(next(iter(polynomial))) if polynomial else 0
+    first = dict(polynomial)
+    for i in range(size):
+        first = _without(first, i, 1)
+    for i in range(size):
+        other = _without(first, i, 0)
+        if len(other) < len(first):
+            first = other
+    yield _merged(first)
+
+
+def _merged(polynomial: Mapping[Powers, Fraction]) -> dict[Powers, Fraction]:
+    """c x - c x c_i^2 = c x s_i^2, and the other way round, one by one."""
+    result = dict(polynomial)
+    for powers in sorted(polynomial, key=lambda p: (sum(map(sum, p)), p)):
+        for i, which in ((i, which) for i in range(len(powers)) for which in (0, 1)):
+            if powers not in result:
+                break
+            both = list(powers[i])
+            both[which] += 2
+            partner = (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
+            if result.get(partner) != -result[powers]:
+                continue
+            both[which], both[1 - which] = powers[i][which], powers[i][1 - which] + 2
+            merged = (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
+            if merged not in result:
+                result[merged] = result.pop(powers)
+                del result[partner]
+    return result
+
+
+def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int) -> dict[Powers, Fraction]:
+    """The polynomial without squares of c_i (``which`` 0) or s_i (1)."""
+    result: dict[Powers, Fraction] = {}
+    for powers, c in polynomial.items():
+        both = powers[i]
+        n, other = both[which], both[1 - which]
+        for m in range(n // 2 + 1):
+            # x^n = x^(n mod 2) (1 - y^2)^(n div 2)
+            new = (n % 2, other + 2 * m) if which == 0 else (other + 2 * m, n % 2)
+            key = (*powers[:i], new, *powers[i + 1 :])
+            value = result.get(key, Fraction(0)) + c * comb(n // 2, m) * (-1) ** m
+            if value:
+                result[key] = value
+            else:
+                result.pop(key, None)
+    return result
+
+
+def _written(polynomial: Mapping[Powers, Fraction], basis: Sequence[Mode]) -> Waves:
+    order = sorted(range(len(basis)), key=lambda i: angle_key(basis[i]))
+    terms = []
+    for powers, c in polynomial.items():
+        waves: list[Wave] = []
+        for i in order:
+            waves += [(op, basis[i], n) for op, n in zip(("sin", "cos"), reversed(powers[i]), strict=True) if n]
+        terms.append((c, tuple(waves)))
+    return tuple(sorted(terms, key=lambda term: wave_key(term[1])))
+
+
+def angle_key(k: Mode) -> tuple[object, ...]:
+    """Angles by their first coordinate, single ones before sums."""
+    first = next((i for i, n in enumerate(k) if n), len(k))
+    return first, sum(1 for n in k if n), tuple(-n for n in k)
+
+
+def wave_key(waves: tuple[Wave, ...]) -> tuple[object, ...]:
+    """Order of products: constants, then by angles, cosines before sines."""
+    return tuple((angle_key(k), op, n) for op, k, n in waves)
+
+
+def normal(harmonics: Mapping[Mode, tuple[Fraction, Fraction]]) -> dict[Mode, tuple[Fraction, Fraction]]:
+    """Harmonics by the sign rule of :data:`Mode`, zeros left out."""
+    result: dict[Mode, tuple[Fraction, Fraction]] = {}
+    for k, (a, b) in harmonics.items():
+        turned = next((n for n in k if n), 1) < 0
+        key = tuple(-n for n in k) if turned else k
+        old = result.get(key, (Fraction(0), Fraction(0)))
+        result[key] = old[0] + a, old[1] + (-b if turned else b)
+    return {k: (a, b if any(k) else Fraction(0)) for k, (a, b) in result.items() if a or (b and any(k))}
