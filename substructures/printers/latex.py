@@ -7,9 +7,10 @@ from fractions import Fraction
 from typing import ClassVar
 
 from substructures.expr.program import Output, Program
-from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, Language, Listing, Piece
+from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.names import comment, latex_names
 from substructures.printers.numbers import decimal_text
+from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, solid, width
 
 _LETTERS = {"metric": "g", "christoffel": r"\Gamma", "forces": "Q", "coriolis": "C"}
 _NAMED = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
@@ -48,8 +49,27 @@ class Latex(Language):
         return Piece(r"\pi")
 
     def parentheses(self, text: str) -> str:
-        """Parentheses that grow with what they hold."""
-        return rf"\left({text}\right)"
+        """Parentheses that grow with what they hold, unless a line ends in them."""
+        return OPENING + text + CLOSING
+
+    def add(self, a: Piece, b: Piece) -> Piece:
+        """a + b, where a line may end before the sign."""
+        if b.text.startswith("-"):
+            return Piece(
+                f"{a.text}{BREAK}- {b.text[1:]}"
+                if b.precedence == NEGATION
+                else f"{a.text}{BREAK}+ {self.parentheses(b.text)}",
+                SUM,
+            )
+        return Piece(f"{a.text}{BREAK}+ {b.text}", SUM)
+
+    def sub(self, a: Piece, b: Piece) -> Piece:
+        """a - b, where a line may end before the sign."""
+        return Piece(f"{a.text}{BREAK}- {self.inside(b, PRODUCT)}", SUM)
+
+    def finished(self, text: str) -> str:
+        """A whole formula on one line."""
+        return solid(text)
 
     def number(self, value: Fraction) -> Piece:
         """A fraction, or a decimal number where that is exact and shorter."""
@@ -71,7 +91,7 @@ class Latex(Language):
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
         """The exponent stands before the angle, which needs no parentheses as a single name."""
         head = self.functions[op] + (f"^{{{power}}}" if power != 1 else "")
-        text = " " + angle.text if angle.precedence == ATOM else self.parentheses(angle.text)
+        text = " " + angle.text if angle.precedence == ATOM else rf"\left({solid(angle.text)}\right)"
         return Piece(head + text, POWER)
 
     def mul(self, a: Piece, b: Piece) -> Piece:
@@ -81,8 +101,14 @@ class Latex(Language):
         return Piece(left + sign + right, PRODUCT)
 
     def div(self, a: Piece, b: Piece) -> Piece:
-        """A fraction."""
-        return Piece(rf"\frac{{{a.text}}}{{{b.text}}}", PRODUCT)
+        """A fraction; what is too wide for one is multiplied by it."""
+        above, below = solid(a.text), solid(b.text)
+        if width(below) > LINE - 50:
+            return Piece(f"{self.inside(a, PRODUCT)} \\, {self.parentheses(b.text)}^{{-1}}", PRODUCT)
+        if width(above) > LINE - 50:
+            left = self.inside(a, PRODUCT) if a.precedence != SUM else self.parentheses(a.text)
+            return Piece(rf"\frac{{1}}{{{below}}} \, {left}", PRODUCT)
+        return Piece(rf"\frac{{{above}}}{{{below}}}", PRODUCT)
 
     def power(self, a: Piece, n: int) -> Piece:
         """An exponent."""
@@ -92,10 +118,10 @@ class Latex(Language):
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A root sign, bars of an absolute value, or the function's name."""
         if op == "sqrt":
-            return Piece(rf"\sqrt{{{args[0].text}}}")
+            return Piece(rf"\sqrt{{{solid(args[0].text)}}}")
         if op == "abs":
-            return Piece(rf"\left|{args[0].text}\right|")
-        return Piece(self.functions[op] + self.parentheses(", ".join(a.text for a in args)))
+            return Piece(rf"\left|{solid(args[0].text)}\right|")
+        return Piece(self.functions[op] + rf"\left({', '.join(solid(a.text) for a in args)}\right)")
 
     def render(self, listing: Listing, name: str) -> str:
         """An ``aligned`` environment; comments say what the symbols are."""
@@ -106,8 +132,8 @@ class Latex(Language):
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
-        rows = [f"{name} &= {text}" for name, text in listing.abbreviations]
-        rows += [f"{self.letter}_{{{n}}} &= {text}" for n, text in listing.temporaries]
+        rows = [f"{name} &= {broken(text)}" for name, text in listing.abbreviations]
+        rows += [f"{self.letter}_{{{n}}} &= {broken(text)}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             rows += self._rows(output, array, listing.entries[output])
         return "\n".join([*lines, r"\begin{aligned}", " \\\\\n".join(rows), r"\end{aligned}"]) + "\n"
@@ -119,7 +145,7 @@ class Latex(Language):
         rows = []
         for index, text in zip(array.index, texts, strict=True):
             place = f"_{{{separator.join(str(i + 1) for i in index)}}}" if index else ""
-            rows.append(f"{letter}{place} &= {text}")
+            rows.append(f"{letter}{place} &= {broken(text)}")
         if not rows:
             rows.append(f"{letter} &= 0")
         if array.symmetry in _RULES:

@@ -12,6 +12,7 @@ _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz012345678
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*", re.ASCII)
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}", re.ASCII)
 _PIECE = re.compile(r"([A-Za-z]+)([0-9]*)((?:_[A-Za-z0-9]+)*)", re.ASCII)
+_INDEX = re.compile(r"[a-zA-Z]{0,2}[0-9]*", re.ASCII)
 _LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
 _UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
 #: first parts of the names of quantities that belong to coordinates: forces and momenta
@@ -91,6 +92,9 @@ def _latex_name(name: str) -> str:
     if match is None or primes > 4 or not all(re.fullmatch(r"[A-Za-z0-9_-]+", o, re.ASCII) for o in owners):
         return _typewriter(name)
     letters, digits, rest = match.groups()
+    if letters not in GREEK and (len(letters) == 2 or (len(letters) == 3 and letters[0] in "IJ")):
+        # lc1 is l_{c1}, Izz4 is I_{zz4}
+        letters, digits = letters[0], letters[1:] + digits
     base = _base(letters)
     if primes:
         base = rf"\{'d' * primes}ot{{{base}}}"
@@ -98,8 +102,8 @@ def _latex_name(name: str) -> str:
         # a force is no coordinate: tau_{arm,1}, not q_{tau,arm,1}
         quantity, *owners = owners
         base, digits = _base(quantity), digits if letters == "q" and digits else letters + digits
-    parts = [*owners, *([digits] if digits else []), *rest.split("_")[1:]]
-    subscripts = [_subscript(p) for p in parts]
+    inner = [digits] if _INDEX.fullmatch(digits) else [_subscript(digits)]
+    subscripts = [*map(_subscript, owners), *filter(None, inner), *map(_subscript, rest.split("_")[1:])]
     return f"{base}_{{{','.join(subscripts)}}}" if subscripts else base
 
 

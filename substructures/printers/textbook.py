@@ -31,7 +31,7 @@ def textbook_inlined(program: Program, language: Language, limit: int) -> Listin
 
 def _listing(program: Program, language: Language, limit: int, limits: Limits, abbreviates: bool) -> Listing:
     reading = read(program, limits)
-    check_size(sum(len(f) for f in reading.forms), limit)
+    check_size(reading.size, limit)
     short = _abbreviations(program, reading) if abbreviates else {}
     writer = TextbookWriter(program, language, reading)
     named = tuple((language.abbreviation(t.op, n).text, writer.trig(t, 1).text) for t, n in short.items())
@@ -66,8 +66,7 @@ class TextbookWriter:
         self.number = {s.name: n for n, s in enumerate(program.symbols)}
         self.short: Mapping[Trig, str] = {}
         self.atoms: dict[Expr, Piece] = {}
-        # functions that were found first are in none of the others
-        for function in reversed(list(reading.functions)):
+        for function in reading.inside_out:
             self.atoms[function] = language.write(function.op, [self.sum(f) for f in reading.functions[function]])
 
     def _atom(self, node: Expr) -> Piece:

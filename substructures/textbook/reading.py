@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from graphlib import TopologicalSorter
 
 from substructures.errors import TooLarge
 from substructures.expr.expand import Expanded, Expander
@@ -15,7 +17,7 @@ from substructures.expr.replay import replay
 from substructures.expr.walk import reachable
 from substructures.textbook.atoms import Atoms, Monomial, ordered
 from substructures.textbook.field import WORK, Field, common_unit
-from substructures.textbook.forms import Sum, atoms_of
+from substructures.textbook.forms import Sum, Trig, atoms_of, leaves
 from substructures.textbook.harmonics import Mode
 from substructures.textbook.layout import Layout
 from substructures.textbook.quotients import Quotients
@@ -42,6 +44,25 @@ class Reading:
 
     outputs: Mapping[str, Sequence[Sum]]
     functions: Mapping[Expr, Sequence[Sum]]
+
+    @cached_property
+    def inside_out(self) -> list[Expr]:
+        """The functions, those that others are made of first."""
+        below = {f: [a for a in atoms_of(some) if a in self.functions] for f, some in self.functions.items()}
+        return list(TopologicalSorter(below).static_order())
+
+    @property
+    def size(self) -> int:
+        """How many factors and numbers are written, those in functions every time that they are."""
+        sizes: dict[Expr, int] = {}
+        for function in self.inside_out:
+            sizes[function] = 1 + sum(self._size(f, sizes) for f in self.functions[function])
+        return sum(self._size(f, sizes) for some in self.outputs.values() for f in some)
+
+    @staticmethod
+    def _size(form: Sum, sizes: Mapping[Expr, int]) -> int:
+        atoms = [a for x in leaves(form) for a in ([a for a, _ in x.angle] if isinstance(x, Trig) else [x])]
+        return len(form) + sum(sizes[a] for a in atoms if a in sizes)
 
     @property
     def forms(self) -> list[Sum]:

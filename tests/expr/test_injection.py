@@ -59,7 +59,9 @@ def code_only(text: str, mark: str) -> str:
 def test_names_do_not_leave_their_line(format_: str) -> None:
     plain = Program(tuple(Symbol(f"n{i}", "parameter") for i in range(len(NASTY))), *_rest())
     nasty = render(nasty_program(), format_, name="x\ny")
-    assert len(nasty.split("\n")) == len(render(plain, format_).split("\n"))
+    going_on = " \\\\\n&\\quad "  # a long formula in LaTeX
+    lines = [text.replace(going_on, " ").split("\n") for text in (nasty, render(plain, format_))]
+    assert len(lines[0]) == len(lines[1])
     if format_ != "json":
         assert nasty.isascii()
         assert nasty.isprintable() or set(nasty) - set(map(chr, range(32, 127))) == {"\n"}
@@ -95,7 +97,7 @@ def test_names_of_latex_and_text() -> None:
         "q_{1}",
         r"\dot{q}_{\mathrm{arm},1}",
         r"\theta",
-        r"\mathit{lc}_{1}",
+        "l_{c1}",
         r"m_{\mathrm{hand}}",
         r"\ddot{q}",
         r"c_{\mathrm{a},\mathrm{b},2}",

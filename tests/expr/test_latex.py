@@ -15,7 +15,7 @@ from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.printers import render
 
 POINT = {"x": 0.6, "v": -0.4, "m": 1.3, "arm.l": 0.8}
-WRITTEN = {"x": "x", "v": "v", "m": "m", r"l_{\mathrm{arm}}": "arm.l", r"\pi": "pi"}
+WRITTEN = {"l": "arm.l", "x": "x", "v": "v", "m": "m", r"l_{\mathrm{arm}}": "arm.l", r"\pi": "pi"}
 FUNCTIONS: dict[str, Callable[..., float]] = {
     **{rf"\{name}": getattr(math, name) for name in ("sin", "cos", "tan", "exp")},
     **{rf"\arc{name}": getattr(math, f"a{name}") for name in ("sin", "cos", "tan")},
@@ -23,7 +23,9 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     r"\operatorname{atan2}": math.atan2,
     r"\operatorname{sgn}": lambda x: math.copysign(1, x),
 }
-TOKEN = re.compile(r"[a-z]_\{[^}]*\{?\w+\}?\}|\\(?:left|right)[(|)]|\\operatorname\{\w+\}|\\,|\\[a-z]+|[\d.]+|\S")
+TOKEN = re.compile(
+    r"[a-z]_\{[^}]*\{?\w+\}?\}|\\(?:left|right|bigl|bigr)[(|)]|\\operatorname\{\w+\}|\\,|\\[a-z]+|[\d.]+|\S"
+)
 
 
 class Reader:
@@ -66,20 +68,24 @@ class Reader:
             return abs(self.inside(r"\left|", r"\right|"))
         if self.tokens[0] == r"\left(":
             return self.inside(r"\left(", r"\right)")
+        if self.tokens[0] == r"\bigl(":
+            return self.inside(r"\bigl(", r"\bigr)")
         if name := self.take(*FUNCTIONS):
-            assert self.take(r"\left(")
+            exponent = self.inside("{", "}") if self.take("^") else 1
+            if not self.take(r"\left("):  # the angle is a single name
+                return FUNCTIONS[name](self.atom()) ** exponent
             arguments = [self.sum()]
             while self.take(","):
                 arguments.append(self.sum())
             assert self.take(r"\right)")
-            return FUNCTIONS[name](*arguments)
+            return FUNCTIONS[name](*arguments) ** exponent
         token = self.tokens.pop(0)
         return self.known[token] if token in self.known else float(token)
 
 
 def rows_of(text: str) -> list[tuple[str, str]]:
     """Left and right sides."""
-    body = text.split("\\begin{aligned}\n")[1].split("\n\\end{aligned}")[0]
+    body = text.split("\\begin{aligned}\n")[1].split("\n\\end{aligned}")[0].replace(" \\\\\n&\\quad ", " ")
     return [(left, right) for left, _, right in (row.partition(" &= ") for row in body.split(" \\\\\n"))]
 
 
@@ -108,7 +114,7 @@ def mixed() -> Program:
     return program(g, outputs, {n: Symbol(n, "parameter") for n in POINT})
 
 
-@pytest.mark.parametrize("form", ["compact", "expanded"])
+@pytest.mark.parametrize("form", ["compact", "expanded", "textbook"])
 def test_every_formula_has_the_value_of_its_element(mixed: Program, form: str) -> None:
     expected: dict[str, Any] = interpret(mixed, POINT)
     rows = rows_of(render(mixed, "latex", form))

@@ -19,7 +19,7 @@ def test_text_is_read_back_as_the_same_formulas() -> None:
         s = sample(6000 + seed, size=30)
         program = collected(s.graph, f=Formulas((len(s.exprs),), {(i,): e for i, e in enumerate(s.exprs)}))
         expected = interpret(program, s.point)["f"]
-        for form in ("compact", "expanded"):
+        for form in ("compact", "expanded", "textbook"):
             found = entries(program, "f", form=form)
             exprs = {f"e{e['index'][0]}": parse(s.graph, e["formula"], s.graph.symbol) for e in found}
             values = interpret(collected(s.graph, **exprs), s.point)
@@ -44,7 +44,7 @@ def test_a_small_program_may_be_a_large_formula() -> None:
         e = g.function("exp", e) + g.function("atan2", e, g.number(i))
     program = collected(g, f=e)
     assert len(render(program, "text")) < 10_000
-    for form in ("compact", "expanded"):
+    for form in ("compact", "expanded", "textbook"):
         with pytest.raises(TooLarge):
             entries(program, "f", form=form)
     with pytest.raises(TooLarge):

@@ -1,0 +1,90 @@
+"""LaTeX that fits a page: formulas are broken before the signs of sums, also of those in parentheses.
+
+While a formula is written its possible breaks and its parentheses are marks; they are decided on when it is whole.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+#: before the sign of a term; parentheses of a sum
+BREAK, OPENING, CLOSING = "\x1f", "\x1e", "\x1d"
+#: points that a line of a formula may be wide, beside the name on its left
+LINE = 365.0
+
+_SIGN = re.compile(r"\\[A-Za-z]+|\\.|.", re.DOTALL)
+_COMMANDS = {r"\,": 1.7, r"\cdot": 7.2, r"\quad": 10.0, r"\\": 0.0, r"\ ": 4.0, r"\_": 5.0}
+_SILENT = "left right bigl bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
+_INVISIBLE = frozenset("\\" + name for name in _SILENT.split(" "))
+
+
+def solid(text: str) -> str:
+    """A formula on one line."""
+    return text.replace(BREAK, " ").replace(OPENING, r"\left(").replace(CLOSING, r"\right)")
+
+
+def broken(text: str) -> str:
+    """A formula on as many lines as it needs, the others aligned under the first."""
+    whole = solid(text)
+    if width(whole) <= LINE:
+        return whole
+    lines: list[list[_Piece]] = [[]]
+    depth = 0
+    for part in text.split(BREAK):
+        lines[-1].append(_Piece(part, width(part), depth))
+        depth += part.count(OPENING) - part.count(CLOSING)
+        while len(lines[-1]) > 1 and sum(p.width for p in lines[-1]) > LINE - 20 * (len(lines) > 1):
+            at = _end(lines[-1])
+            lines[-1:] = [lines[-1][:at], lines[-1][at:]]
+    # parentheses that grow cannot be broken
+    whole = " \\\\\n&\\quad ".join(" ".join(p.text for p in line) for line in lines)
+    return whole.replace(OPENING, r"\bigl(").replace(CLOSING, r"\bigr)")
+
+
+class _Piece(NamedTuple):
+    """What stands between two breaks; ``depth``: parentheses around the break before it."""
+
+    text: str
+    width: float
+    depth: int
+
+
+def _end(line: list[_Piece]) -> int:
+    """Which piece of a line that is too long begins the next one: inside of few parentheses, and late."""
+    best, filled = len(line) - 1, 0.0
+    for n, piece in enumerate(line):
+        if n and filled > LINE * 0.4 and (piece.depth, -n) < (line[best].depth, -best):
+            best = n
+        filled += piece.width
+    return best
+
+
+def width(text: str) -> float:
+    """About how wide a formula is in points at a size of ten points; a fraction counts with all that is in it."""
+    total, scales, next_scale = 0.0, [1.0], 1.0
+    for sign in _SIGN.findall(text):
+        if sign == "{":
+            scales.append(scales[-1] * next_scale)
+        elif sign == "}":
+            scales = scales[:-1] if len(scales) > 1 else scales
+        elif sign in "_^":
+            next_scale = 0.7
+            continue
+        else:
+            total += _glyph(sign) * scales[-1] * next_scale
+        next_scale = 1.0
+    return total
+
+
+def _glyph(sign: str) -> float:
+    if sign.startswith("\\"):
+        if sign in _COMMANDS:
+            return _COMMANDS[sign]
+        # the name of a function, or a Greek letter
+        return 0.0 if sign in _INVISIBLE else 17.5 if sign in (r"\cos", r"\sin", r"\tan") else 7.0
+    if sign in "+-":
+        return 12.5
+    if sign.isupper() or sign in "mw":
+        return 8.5
+    return 0.0 if sign.isspace() else 4.6 if sign in OPENING + CLOSING + "(),." else 5.5
