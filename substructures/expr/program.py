@@ -142,14 +142,27 @@ class Program:
             {n: _moved(self.outputs[n], new) for n in names},
         )
 
-    def count(self, names: Iterable[str] | None = None) -> dict[str, int]:
+    def count(self, names: Iterable[str] | None = None, per_state: bool = False) -> dict[str, int]:
         """Operations by name; ``total`` = additions, subtractions, multiplications and divisions.
 
-        As in the literature the total leaves out signs, symbols, constants and functions.
+        As in the literature the total leaves out signs, symbols, constants and functions. ``per_state``: without
+        operations of parameters alone, which are done once for all states.
         """
-        counts = Counter(self.operations[i][0] for i in self.reachable(names))
+        found = self.reachable(names)
+        varies = self._of_state if per_state else [True] * len(self)
+        counts = Counter(self.operations[i][0] for i in found if varies[i])
         result = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
         result["total"] = sum(counts[op] for op in ARITHMETIC)
+        return result
+
+    @cached_property
+    def _of_state(self) -> list[bool]:
+        """Of every operation, whether it depends on more than parameters and inertia symbols."""
+        constant = [symbol.kind in ("parameter", "inertia") for symbol in self.symbols]
+        result: list[bool] = []
+        for operation in self.operations:
+            is_symbol = operation[0] == "sym"
+            result.append(not constant[operation[1]] if is_symbol else any(result[i] for i in operands(operation)))
         return result
 
     def totals(self) -> dict[str, int]:

@@ -7,7 +7,7 @@ momentum, paired with the columns of the base functions gives g and Gamma. The d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -168,26 +168,19 @@ def pairing(twist: Twist, force: Vector, moment: Vector) -> Scalar:
     return dot(twist.U, force) + dot(twist.Omega, moment)
 
 
-def metric_column(c: int, columns: Columns, momentum: JointMomentum) -> dict[int, Scalar]:
-    """g_ac for all a <= c (keys a), from the columns of joint c's carrier and the momentum of its unit velocity."""
-    # g_cc = p_3 = m (prismatic) or H_3 (revolute),   g_ac = U_ca . p + Omega_ca . H
-    own = momentum.p[2] if momentum.s else momentum.H[2]
-    return {a: own if a == c else pairing(t, momentum.p, momentum.H) for a, t in columns.items()}
-
-
 def christoffel_block(
-    c: int, columns: Columns, momentum: JointMomentum, inside: int = 0
-) -> dict[tuple[int, int], Scalar]:
-    """Gamma_abc for a < c, b <= c (keys a, b): U_ca . (Omega_cb x p) + Omega_ca^T K Omega_cb.
+    c: int, twists: Columns, p: Vector, moment: Callable[[Vector], Vector], known: int | None = None
+) -> dict[tuple[int, ...], Scalar]:
+    """Gamma_abc for a < c, b <= c: U_a . (Omega_b x p) + Omega_a^T K Omega_b.
 
-    ``inside``: leave out pairs in which both a and b are at least this coordinate (they are known already).
+    ``twists``: of the joints on the path to c, in one frame about one point, as p and K; ``moment``: K omega;
+    ``known``: leave out pairs in which both a and b are at least this coordinate.
     """
-    block: dict[tuple[int, int], Scalar] = {}
-    for b, twist in columns.items():
-        # Omega_cb x p  and  K Omega_cb
-        force = cross(twist.Omega, momentum.p)
-        moment = momentum.moment(twist.Omega)
-        for a, other in columns.items():
-            if a != c and (a < inside or b < inside or not inside):
-                block[a, b] = pairing(other, force, moment)
+    block: dict[tuple[int, ...], Scalar] = {}
+    for b, twist in twists.items():
+        # Omega_b x p  and  K Omega_b
+        F, N = cross(twist.Omega, p), moment(twist.Omega)
+        for a, other in twists.items():
+            if a != c and (known is None or min(a, b) < known):
+                block[a, b, c] = pairing(other, F, N)
     return block

@@ -168,6 +168,20 @@ class Planar:
         out[ik], out[jk] = self.c * t[ik] - self.s * t[jk], self.c * t[jk] + self.s * t[ik]
         return out[0], out[1], out[2], out[3], out[4], out[5]
 
+    def back_matrix(self, t: Matrix) -> Matrix:
+        """E^T t E for any matrix t."""
+        # w = s (t_ii - t_jj) + c (t_ij + t_ji):   ii - s w,   jj + s w,   ij -> c w - t_ji,   ji -> c w - t_ij
+        i, j, k = (self.axis + 1) % 3, (self.axis + 2) % 3, self.axis
+        w = self.s * (t[i][i] - t[j][j]) + self.c * (t[i][j] + t[j][i])
+        cw, sw = self.c * w, self.s * w
+        out = [list(row) for row in t]
+        out[i][i], out[j][j], out[i][j], out[j][i] = t[i][i] - sw, t[j][j] + sw, cw - t[j][i], cw - t[i][j]
+        # the row and the column of the axis are vectors
+        out[i][k], out[j][k] = self.c * t[i][k] - self.s * t[j][k], self.c * t[j][k] + self.s * t[i][k]
+        out[k][i], out[k][j] = self.c * t[k][i] - self.s * t[k][j], self.c * t[k][j] + self.s * t[k][i]
+        x, y, z = ((row[0], row[1], row[2]) for row in out)
+        return x, y, z
+
     def matrix(self) -> Matrix:
         """E, with v' = E v."""
         return transpose((self.forward((1, 0, 0)), self.forward((0, 1, 0)), self.forward((0, 0, 1))))
@@ -193,6 +207,10 @@ class Turn:
         x, y, z = transpose(multiply(dense(t), self.e))
         ex, ey, ez = transpose(self.e)
         return dot(ex, x), dot(ey, y), dot(ez, z), dot(ex, y), dot(ex, z), dot(ey, z)
+
+    def back_matrix(self, t: Matrix) -> Matrix:
+        """E^T t E for any matrix t."""
+        return multiply(transpose(self.e), multiply(t, self.e))
 
     def matrix(self) -> Matrix:
         """E."""
@@ -226,6 +244,12 @@ class Rotation:
         """E^T t E for a symmetric tensor."""
         for factor in reversed(self.factors):
             t = factor.back_tensor(t)
+        return t
+
+    def back_matrix(self, t: Matrix) -> Matrix:
+        """E^T t E for any matrix t."""
+        for factor in reversed(self.factors):
+            t = factor.back_matrix(t)
         return t
 
     def matrix(self) -> Matrix:

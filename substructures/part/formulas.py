@@ -40,11 +40,11 @@ from substructures.expr.program import Formulas, array
 from substructures.mechanics.composite_form import (
     Inertia,
     JointMomentum,
-    christoffel_block,
     composites,
     joint_momentum,
-    metric_column,
 )
+from substructures.mechanics.evaluation_frames import InertialEntries
+from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -106,7 +106,7 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False) -> dict[str, Formu
     columns = base_functions(chain)
     carried = composites(m.joints, inertia_symbols(m))
     momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
-    outputs = own_dynamics(m, columns, momenta, large)
+    outputs = own_dynamics(m, chain, columns, momenta, large)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])
@@ -207,20 +207,25 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum], large: bool)
 
 
 def own_dynamics(
-    m: Mechanism, columns: dict[int, Columns], momenta: list[JointMomentum], large: bool = False
+    m: Mechanism,
+    chain: tuple[Link, ...],
+    columns: dict[int, Columns],
+    momenta: list[JointMomentum],
+    large: bool = False,
 ) -> dict[str, Formulas]:
     """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5); of a ``large`` one
     the metric alone.
     """
     n = len(momenta)
+    entries = InertialEntries(chain, columns, evaluation_frames(chain, not large))
     g: dict[tuple[int, ...], Scalar] = {}
     gamma: dict[tuple[int, ...], Scalar] = {}
     for c, momentum in enumerate(momenta):
-        g |= {(a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
+        g |= entries.metric(c, momentum)
         # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
         if not large:
-            gamma |= {(a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
+            gamma |= entries.christoffel(c, momentum)
     metric = {"metric": Formulas((n, n), g, "symmetric")}
     return metric if large else metric | {"christoffel": Formulas((n, n, n), gamma, "christoffel")}
 

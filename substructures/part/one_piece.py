@@ -30,7 +30,7 @@ def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     chain = links(m.joints)
     carried = composites(m.joints, m.own)
     momenta = [joint_momentum(link.s, carried[c]) for c, link in enumerate(chain)]
-    outputs = own_dynamics(m, base_functions(chain), momenta)
+    outputs = own_dynamics(m, chain, base_functions(chain), momenta)
     gamma = {INTERFACE: gravity}
     for c, link in enumerate(chain):
         gamma[c] = link.rotation.forward(gamma[link.parent])

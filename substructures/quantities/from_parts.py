@@ -160,7 +160,7 @@ class NumericTree:
         limits = dict(zip(self.assembly.limits, zip(pairs[::2], pairs[1::2], strict=True), strict=False))
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), limits=limits)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
-        coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities)
+        coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities, False)
         coupled = replace(coupled, potential=coupled.potential + numbers.get(FOUND, [0])[0])
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))

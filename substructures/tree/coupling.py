@@ -1,9 +1,9 @@
 """Coupling of stored substructures: one pass from the leaves (payloads), one from the root (twists, gravity).
 
 Works from the stored programs alone: the inside of a substructure (its E, Z, own U, Omega, metric, Christoffel
-symbols and composites) is replayed with its symbols renamed or bound; only the host's columns are carried to its
-joints, where their products with the stored momenta give the coupled entries (notation.md, sections 5 and 6).
-Measured against expressing those products in the interface frame (f, n, K), this needs fewer operations.
+symbols and composites) is replayed with its symbols renamed or bound; the host's columns are carried to its joints, or
+the stored momenta to where the host's columns are, and their products give the coupled entries (notation.md, sections 5
+and 6, and :mod:`.inertial`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.mechanics.composite_form import Inertia, christoffel_block, joint_momentum, pairing
+from substructures.mechanics.composite_form import Inertia, joint_momentum, pairing
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -27,22 +27,22 @@ from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, d
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
 from substructures.part.part import Part
+from substructures.tree.inertial import EQUATIONS, FRAMES, inertial_entries, planned
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: outputs of a stored program that coupling uses
 USED = (
     *("E.tilt", "E.turn", "E.full", "Z", "tau", "U", "Omega", "subtree.m", "subtree.s", "subtree.J"),
-    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
-WITHOUT_CHRISTOFFEL = tuple(name for name in USED if name != "christoffel")
-FRAMES = ("frame.E", "frame.position")
 OWN = (*OWN_INERTIA, "armature")
 
 
 def asked(part: Part) -> tuple[tuple[str, ...], ...]:
     """All lists of outputs that coupling asks a part for."""
-    return (OWN, FRAMES, WITHOUT_CHRISTOFFEL, USED) if part.has_christoffel else (OWN, FRAMES, WITHOUT_CHRISTOFFEL)
+    equations = [EQUATIONS[:1], EQUATIONS] if part.has_christoffel else [EQUATIONS[:1]]
+    return (OWN, FRAMES, *((*USED, *names) for names in equations))
 
 
 #: what a part has to carry, by carrier, about its body frame origin (of the interface: about its own)
@@ -61,43 +61,47 @@ class Coupled:
     placed: list[PlacedPart]
 
 
-def couple_parts(run: Run, mounted: Sequence[MountedPart], gravity: Vector, christoffel: bool = True) -> Coupled:
+def couple_parts(
+    run: Run, mounted: Sequence[MountedPart], gravity: Vector, christoffel: bool = True, chosen: bool = True
+) -> Coupled:
     """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them.
 
     ``run`` gives the outputs of a stored program over the scalars of the bindings: formulas, floats or arrays.
-    ``christoffel``: False leaves the Christoffel symbols out.
+    ``christoffel``: False leaves the Christoffel symbols out. ``chosen``: in evaluation frames for the fewest
+    operations; False, for numbers of which none is known to be zero, in the frames of the joints.
     """
-    evaluated, total = evaluate_parts(run, mounted, USED if christoffel else WITHOUT_CHRISTOFFEL)
+    plan = planned(run, mounted, christoffel, chosen)
+    evaluated, total = evaluate_parts(run, mounted, [(*USED, *names) for names in plan.stored])
     n = sum(m.part.dof for m in mounted)
-    gamma_abc: dict[tuple[int, ...], Scalar] = {}
-    g_ab: dict[tuple[int, ...], Scalar] = {}
     Q_gravity: list[Scalar] = [0] * n
     Q: list[Scalar] = [0] * n
-    # V = -gamma . s of the whole about the world's origin, what every part has of its own, and constant forces
-    V = -dot(gravity, total.s)
     placed: list[PlacedPart] = []
     for part in evaluated:
-        here = place(part, placed, gravity)
-        placed.append(here)
-        _add_inertial(here, g_ab, gamma_abc if christoffel else None)
+        placed.append(place(part, placed, gravity))
+    inertial = inertial_entries(plan, placed, christoffel)
+    # V = -gamma . s of the whole about the world's origin, what every part has of its own, and constant forces
+    V = -dot(gravity, total.s)
+    for here in placed:
         _add_gravity(here, Q_gravity, Q)
-        V = V + part.outputs.scalar("potential") + _dead_potential(here)
+        V = V + here.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
-    return Coupled(g_ab, gamma_abc if christoffel else None, Q_gravity, Q, V, placed)
+    return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed)
 
 
 def evaluate_parts(
-    run: Run, mounted: Sequence[MountedPart], names: Sequence[str]
+    run: Run, mounted: Sequence[MountedPart], names: Sequence[Sequence[str]]
 ) -> tuple[list[EvaluatedPart], Inertia]:
     """From the leaves: every program with what is mounted on its bodies; the inertia of all about the world's origin.
+
+    ``names``: the outputs that are wanted, by part.
 
     What is mounted on a port acts on the body that carries it as additional inertia (notation.md, section 6, payload).
     """
     payloads: list[Payload] = [{} for _ in mounted]
     evaluated: list[EvaluatedPart] = []
     total = Inertia()
-    for m, payload in zip(reversed(mounted), reversed(payloads), strict=True):
-        part = _evaluated(run, m, payload, names)
+    for m, payload, some in zip(reversed(mounted), reversed(payloads), reversed(names), strict=True):
+        part = _evaluated(run, m, payload, some)
         evaluated.insert(0, part)
         # (m, s, J) of the whole about the origin of I
         whole = part.outputs.inertia("composite") + payload.get(INTERFACE, Inertia())
@@ -122,7 +126,6 @@ def _evaluated(run: Run, m: MountedPart, payload: Payload, names: Sequence[str])
     """The stored formulas with own inertia + payload for the inertia symbols of every body."""
     own = run(m.part, m.bindings, OWN)
     inertias = {k: own.own_inertia(k) + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
-    names = names if m.part.has_christoffel else [name for name in names if name != "christoffel"]
     outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, inertias)}, names)
     joints = m.part.topology.joints
     links = links_of(m.part, outputs)
@@ -160,29 +163,6 @@ def _columns(part: EvaluatedPart, outside: Columns) -> dict[int, Columns]:
             own = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
             columns[c][part.mounted.first + a] = own
     return columns
-
-
-def _add_inertial(
-    here: PlacedPart, g_ab: dict[tuple[int, ...], Scalar], gamma_abc: dict[tuple[int, ...], Scalar] | None
-) -> None:
-    """The stored own entries, and the products of host columns with the momenta of the joints."""
-    first, outside = here.first, here.columns[INTERFACE]
-    # a, b <= c in S: as stored
-    g_ab |= {(first + a, first + c): x for (a, c), x in here.outputs.entries("metric").items()}
-    # a large part has none that are stored: those of its own coordinates are found as those of its host
-    is_stored = here.part.has_christoffel
-    anew = gamma_abc is not None and not is_stored
-    if gamma_abc is not None and is_stored:
-        stored = here.outputs.entries("christoffel")
-        gamma_abc |= {(first + a, first + b, first + c): x for (a, b, c), x in stored.items()}
-    for c, momentum in enumerate(here.evaluated.momenta if outside or anew else ()):
-        columns = here.columns[c]
-        # a host, c in S:   g_ac = U_ca . p_c + Omega_ca . H_c
-        g_ab |= {(a, first + c): pairing(columns[a], momentum.p, momentum.H) for a in outside}
-        if gamma_abc is not None:
-            # a or b host, or both, c in S:   Gamma_abc = U_ca . (Omega_cb x p_c) + Omega_ca^T K_c Omega_cb
-            block = christoffel_block(first + c, columns, momentum, inside=first if is_stored else 0)
-            gamma_abc |= {(a, b, first + c): x for (a, b), x in block.items()}
 
 
 def _add_gravity(here: PlacedPart, Q_gravity: list[Scalar], Q: list[Scalar]) -> None:

@@ -17,11 +17,11 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.mechanics.composite_form import (
     Inertia,
-    christoffel_block,
     composites,
     joint_momentum,
-    metric_column,
 )
+from substructures.mechanics.evaluation_frames import InertialEntries
+from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import OneDofJoint, base_functions, links
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.part.one_piece import derive_in_one_piece
@@ -106,13 +106,13 @@ def recursion(joints: tuple[OneDofJoint, ...], bodies: tuple[Inertia, ...], grav
     """Metric, Christoffel symbols and gravity by calling the mechanics directly."""
     carried = composites(joints, bodies)
     chain = links(joints)
-    columns = base_functions(chain)
+    entries = InertialEntries(chain, base_functions(chain), evaluation_frames(chain))
     result: dict[tuple[Any, ...], Any] = {}
     gamma: list[Any] = []
     for c, joint in enumerate(joints):
         momentum = joint_momentum(joint.s, carried[c])
-        result |= {("g", a, c): x for a, x in metric_column(c, columns[c], momentum).items()}
-        result |= {("Gamma", a, b, c): x for (a, b), x in christoffel_block(c, columns[c], momentum).items()}
+        result |= {("g", *index): x for index, x in entries.metric(c, momentum).items()}
+        result |= {("Gamma", *index): x for index, x in entries.christoffel(c, momentum).items()}
         gamma.append(joint.rotation.forward(gamma[joint.parent] if joint.parent >= 0 else gravity))
         result["Q", c] = dot(gamma[c], momentum.p)
     return result

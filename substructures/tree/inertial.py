@@ -1,0 +1,127 @@
+"""Metric and Christoffel symbols of a tree of parts, in evaluation frames (notation.md, sections 5 and 6).
+
+Frames are chosen for the tree as a whole, as they would be for the same joints in one piece. Where the frames of a part
+are those of its stored formulas its own entries are taken over as they are; where its momenta are carried on into a
+host, a component of theirs gives its own entries as well, with fewer operations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from substructures.expr.graph import Graph
+from substructures.mechanics.evaluation_frames import Entries, Frames, InertialEntries
+from substructures.mechanics.frame_choice import evaluation_frames
+from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, joint_rotation
+from substructures.mechanics.linear3 import ZERO, Planar, Rotation, add, multiply
+from substructures.part.outputs import Run, over_formulas
+from substructures.part.part import Part
+from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
+
+#: stored outputs that make up the links of a part
+LINKS = ("E.tilt", "E.turn", "E.full", "Z", "tau")
+#: constant placements of its frames
+FRAMES = ("frame.E", "frame.position")
+EQUATIONS = ("metric", "christoffel")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The links of a tree and e(c), by index there; of every part, which of EQUATIONS are taken over as stored."""
+
+    chain: Sequence[Link]
+    frames: Frames
+    stored: Sequence[Sequence[str]]
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """g_ab and Gamma_abc by indices of the tree's coordinates."""
+
+    metric: Entries
+    christoffel: Entries | None
+
+
+def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen: bool) -> Plan:
+    """Frames for the fewest operations; not ``chosen``: every joint in its own frame and all own entries as stored."""
+    kinds = [EQUATIONS if christoffel and m.part.has_christoffel else EQUATIONS[:1] for m in mounted]
+    if not chosen:
+        # where nothing is carried from joint to joint, links are only of some kind
+        kind_only = [Link(j.parent, j.s, Rotation(), ZERO) for m in mounted for j in m.part.topology.joints]
+        return Plan(kind_only, range(len(kind_only)), kinds)
+    chain = _tree_links(_outlined(run, mounted))
+    frames = evaluation_frames(chain, christoffel)
+    is_same = [
+        [m.first + e for e in stored_frames(m.part)] == list(frames[m.first : m.first + m.part.dof]) for m in mounted
+    ]
+    return Plan(chain, frames, [some if same else () for some, same in zip(kinds, is_same, strict=True)])
+
+
+def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool) -> Inertial:
+    """Of all parts; hosts come before what is mounted on them."""
+    columns = {here.first + c: here.columns[c] for here in placed for c in range(len(here.links))}
+    entries = InertialEntries(plan.chain, columns, plan.frames)
+    g_ab: Entries = {}
+    gamma_abc: Entries = {}
+    for here, names in zip(placed, plan.stored, strict=True):
+        first = here.first
+        # a, b <= c in the part: as stored
+        for name, all_of in ((name, g_ab if name == "metric" else gamma_abc) for name in names):
+            stored = here.outputs.entries(name)
+            all_of |= {tuple(first + a for a in index): x for index, x in stored.items()}
+        for c, momentum in enumerate(here.evaluated.momenta, first):
+            g_ab |= entries.metric(c, momentum, first if "metric" in names else None)
+            if "metric" not in names:
+                # the rotor of joint c turns with q'^c alone
+                g_ab[c, c] = g_ab[c, c] + here.evaluated.own.scalar("armature", c - first)
+            if christoffel:
+                gamma_abc |= entries.christoffel(c, momentum, first if "christoffel" in names else None)
+    return Inertial(g_ab, gamma_abc if christoffel else None)
+
+
+def stored_frames(part: Part) -> Frames:
+    """The evaluation frames of the stored formulas of a part."""
+    return evaluation_frames(links_of(part, over_formulas(Graph())(part, {}, LINKS)), part.has_christoffel)
+
+
+def _outlined(run: Run, mounted: Sequence[MountedPart]) -> list[PlacedPart]:
+    """Links and seats of all parts, without columns and momenta."""
+    result: list[PlacedPart] = []
+    for m in mounted:
+        outputs = run(m.part, m.bindings, (*LINKS, *FRAMES))
+        host = None if m.host == WORLD else result[m.host]
+        seat = Link(INTERFACE, 0, constant_rotation(m.E), m.position)
+        if host is not None:
+            seat = host.frame_link(m.frame, m.E, m.position)
+        result.append(PlacedPart(EvaluatedPart(m, outputs, outputs, links_of(m.part, outputs), ()), host, seat, {}, {}))
+    return result
+
+
+def _tree_links(placed: Sequence[PlacedPart]) -> list[Link]:
+    """What leads from joint to joint in the tree, by index there: the way over an interface is part of it."""
+    result: list[Link] = []
+    for here in placed:
+        for link in here.links:
+            part, whole = here, link
+            while whole.parent == INTERFACE and part.host is not None:
+                part, whole = part.host, _joined(part.seat, whole)
+            index = INTERFACE if whole.parent == INTERFACE else part.first + whole.parent
+            result.append(Link(index, whole.s, whole.rotation, whole.Z, whole.tau))
+    return result
+
+
+def _joined(outer: Link, inner: Link) -> Link:
+    """One link after the other: E = E_inner E_outer, Z = Z_outer + E_outer^T Z_inner; the outer one is constant."""
+    Z = add(outer.Z, outer.rotation.back(inner.Z))
+    return Link(outer.parent, inner.s, _after(outer.rotation, inner.rotation), Z, inner.tau)
+
+
+def _after(outer: Rotation, inner: Rotation) -> Rotation:
+    """E_inner E_outer, of which the outer one is constant, in the form in which a joint has it (as few operations)."""
+    if not outer.factors:
+        return inner
+    *constant, turn = inner.factors or (Planar(2, 1, 0),)
+    if isinstance(turn, Planar) and turn.axis == 2:
+        return joint_rotation(multiply(Rotation(tuple(constant)).matrix(), outer.matrix()), turn.c, turn.s)
+    return constant_rotation(multiply(inner.matrix(), outer.matrix()))
