@@ -175,7 +175,8 @@ def _forces(
             inertia[c] += g * second[a]
     # g q'' + Gamma q' q' - Q
     needed = [i + b - q for i, b, q in zip(inertia, bias, total, strict=True)]
-    named = {"gravity": weight, "forces": total, "bias": bias, "inverse_dynamics": needed}
+    effects = [b - w for b, w in zip(bias, weight, strict=True)]
+    named = {"gravity": weight, "forces": total, "bias": bias, "nonlinear_effects": effects, "inverse_dynamics": needed}
     for name, some in named.items():
         result.array(name, (n,)).update({(a,): x for a, x in enumerate(some)})
     for name in ("linear_momentum", "angular_momentum"):

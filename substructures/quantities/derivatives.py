@@ -134,5 +134,9 @@ def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], dict[str, For
 
 def _accelerations(r: Workspace, factors: Factors[Expr]) -> list[Expr]:
     """q'' with g q'' = Q - Gamma q' q'."""
-    # ID at q'' = 0 is Gamma_abc q'^b q'^c - Q_a
-    return factors.solve([-x for x in r.inverse_dynamics([r.graph.zero] * r.n)])
+    forces = r.vector("forces")
+    if "nonlinear_effects" not in r.model.program.outputs:  # a model of an older version
+        return factors.solve([force - bias for force, bias in zip(forces, r.vector("bias"), strict=True)])
+    # Q_a without gravity, which is among the nonlinear effects
+    others = [force - weight for force, weight in zip(forces, r.vector("gravity"), strict=True)]
+    return factors.solve([x - effect for x, effect in zip(others, r.vector("nonlinear_effects"), strict=True)])

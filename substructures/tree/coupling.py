@@ -51,7 +51,7 @@ Payload = dict[int, Inertia]
 
 @dataclass(frozen=True)
 class Coupled:
-    """The result, by indices of the tree's coordinates."""
+    """The result, by indices of the tree's coordinates; ``chain``: the links from joint to joint."""
 
     metric: dict[tuple[int, ...], Scalar]
     christoffel: dict[tuple[int, ...], Scalar] | None
@@ -59,6 +59,7 @@ class Coupled:
     forces: list[Scalar]
     potential: Scalar
     placed: list[PlacedPart]
+    chain: Sequence[Link]
 
 
 def couple_parts(
@@ -85,7 +86,7 @@ def couple_parts(
         _add_gravity(here, Q_gravity, Q)
         V = V + here.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
-    return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed)
+    return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed, plan.chain)
 
 
 def evaluate_parts(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
@@ -25,6 +25,7 @@ from substructures.tree.load_potentials import found_potential
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units, tree_warnings
+from substructures.tree.velocity_forces import least_forces
 
 EFFORTS = {"R": "N m", "P": "N"}
 
@@ -172,7 +173,9 @@ def couple(
         coupled = couple_parts(run, assembly.mounted, assembly.gravity, not entries.is_large)
         found = found_potential(assembly.scope.graph, coupled.placed, names)
         coupled = replace(coupled, potential=coupled.potential + found)
-        outputs = model_outputs(assembly, coupled, *rate_symbols(assembly))
+        rates, accelerations = rate_symbols(assembly)
+        least = partial(least_forces, assembly.scope.graph, coupled, rates)
+        outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)

@@ -6,7 +6,8 @@ output                 shape        meaning
 metric                 n n          g_ab [kg m^2, kg m, kg]
 christoffel            n n n        Gamma_abc, first kind, first index = equation
 gravity                n            generalised gravity forces
-bias                   n            Gamma_abc q'^b q'^c, by recursion (fewer operations than from christoffel)
+bias                   n            Gamma_abc q'^b q'^c, in the way with the fewest operations
+nonlinear_effects      n            Gamma_abc q'^b q'^c - Q_a of gravity, with which forward dynamics begins
 forces                 n            Q_a: gravity, loads, joint springs and dampers, actuators
 inverse_dynamics       n            g_ab q''^b + Gamma_abc q'^b q'^c - Q_a, by recursion
 potential_energy                    of gravity (zero at the world's origin) and of all forces that have one [J]
@@ -24,7 +25,7 @@ A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Chris
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
@@ -45,8 +46,12 @@ def model_outputs(
     rates: Sequence[Scalar],
     accelerations: Sequence[Scalar],
     names: frozenset[str] | None = None,
+    forces: Callable[[], Mapping[str, Sequence[Scalar]]] | None = None,
 ) -> dict[str, Formulas]:
-    """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more."""
+    """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more.
+
+    ``forces``: ``bias`` and ``nonlinear_effects``, if not by Newton and Euler's recursion.
+    """
     n, placed = len(coupled.gravity), coupled.placed
 
     def wanted(*some: str) -> bool:
@@ -62,12 +67,12 @@ def model_outputs(
         "potential_energy": array((), lambda: coupled.potential),
     }
     # by recursion, so that neither needs the Christoffel symbols
-    if wanted("bias"):
-        bias = bias_forces(placed, rates)
-        outputs["bias"] = array((n,), lambda a: bias[a])
     if wanted("inverse_dynamics"):
         inverse = inverse_dynamics(placed, rates, accelerations)
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
+    if wanted("bias", "nonlinear_effects"):
+        found = by_recursion(coupled, rates) if forces is None else forces()
+        outputs |= {name: array((n,), lambda a, some=some: some[a]) for name, some in found.items()}
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
     if assembly.limits and wanted("limits"):
@@ -78,6 +83,12 @@ def model_outputs(
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
+
+
+def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequence[Scalar]]:
+    """Velocity forces, alone and less the gravity forces, by Newton and Euler's recursion."""
+    bias = bias_forces(coupled.placed, rates)
+    return {"bias": bias, "nonlinear_effects": [x - q for x, q in zip(bias, coupled.gravity, strict=True)]}
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from random_cuts import all_cuts, owners
 from random_trees import Kind, Plain, random_definition
+from serial_chains import IIWA, RX90, SIX, SIX14, revolute
 
 from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
 from substructures.expr.interpret import interpret
@@ -72,27 +73,6 @@ def test_chosen_frames_are_on_the_path_and_nested(seed: int) -> None:
         for c, e in enumerate(frames):
             assert e in path(chain, c)
             assert chain[c].parent < 0 or frames[chain[c].parent] <= e
-
-
-def revolute(rows: list[Plain]) -> Definition:
-    """A chain with ten parameters of inertia for every body."""
-    names = {x for row in rows for x in row.values() if re.fullmatch(r"[a-z]+\d", x)}
-    bodies = [
-        {"name": f"b{k}", "parent": f"b{k - 1}" if k else "base", "joint": {"type": "revolute", **row}}
-        for k, row in enumerate(rows)
-    ]
-    return Definition.read({"name": "chain", "parameters": {x: {} for x in sorted(names)}, "bodies": bodies})
-
-
-#: rows of the modified Denavit-Hartenberg convention: W. Khalil and E. Dombre, Modeling, Identification and Control of
-#: Robots, 2002 (Staubli RX90); KUKA iiwa with a spherical shoulder and wrist; M. Schappler, serroblib, S6RRRRRR10
-HALF = ("pi/2", "-pi/2")
-RX90 = [{}, {"theta": HALF[0]}, {"d": "d3"}, {"theta": HALF[1], "tau": "r4"}, {"theta": HALF[0]}, {"theta": HALF[1]}]
-IIWA = [{}, {"theta": HALF[1]}, {"theta": HALF[0], "tau": "r3"}, {"theta": HALF[0]}]
-IIWA += [{"theta": HALF[1], "tau": "r5"}, {"theta": HALF[1]}, {"theta": HALF[0]}]
-SIX14: list[Plain] = [{"tau": "d1"}, *({"theta": f"al{i}", "d": f"a{i}", "tau": f"d{i}"} for i in (2, 3, 4))]
-SIX14 += [{"theta": "pi/2", "d": f"a{i}", "tau": f"d{i}"} for i in (5, 6)]
-SIX: list[Plain] = [{"theta": f"al{i}", "d": f"a{i}", "tau": f"d{i}", "phi": f"ph{i}"} for i in range(1, 7)]
 
 
 @pytest.mark.parametrize(

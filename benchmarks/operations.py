@@ -1,0 +1,90 @@
+"""Operations per state of the formulas of published chains and of some trees, beside published figures.
+
+python -m benchmarks.operations [--json FILE]
+
+Additions, subtractions, multiplications and divisions, each shared one once; ``_all``: those of
+parameters alone, too. M + bias and the like: of both outputs together.
+"""
+
+from __future__ import annotations
+
+from benchmarks.report import keep, options
+from benchmarks.serial_chains import CHAINS, PUBLISHED, definition, gravity
+from substructures import Definition, Model, Program, TreeSpec, catalogue, couple, derive
+from substructures.quantities.formulas import derived
+
+#: outputs of a model that are counted together
+QUANTITIES = {
+    "metric": ("metric",),
+    "gravity": ("gravity",),
+    "christoffel": ("christoffel",),
+    "metric_christoffel": ("metric", "christoffel"),
+    "bias": ("bias",),
+    "metric_bias": ("metric", "bias"),
+    "inverse_dynamics": ("inverse_dynamics",),
+}
+#: entries and trees of the catalogue with their own numbers or parameters
+TREES = {
+    "double_pendulum": "double-pendulum",
+    "acrobot": "acrobot",
+    "cart_pole": "cart-pendulum",
+    "scara": "scara",
+}
+
+
+def chain(name: str) -> Model:
+    """A chain on the ground."""
+    instance = {"name": "c", "substructure": name, "at": "world"}
+    tree = {"name": name, "gravity": gravity(name), "parameters": {"g": {}}, "instances": [instance]}
+    return couple(TreeSpec.read(tree), {"c": derive(definition(name))})
+
+
+def entry(name: str) -> Model:
+    """An entry of the catalogue on the ground."""
+    instance = {"name": "c", "substructure": name, "at": "world"}
+    tree = {"name": "tree", "gravity": [0, "-g", 0], "parameters": {"g": {}}, "instances": [instance]}
+    return couple(TreeSpec.read(tree), {"c": derive(Definition.read(catalogue.load(name)))})
+
+
+def humanoid() -> Model:
+    """The tree of 34 coordinates."""
+    spec = TreeSpec.read(catalogue.load_tree("humanoid"))
+    parts = {str(i.substructure): derive(Definition.read(catalogue.load(str(i.substructure)))) for i in spec.instances}
+    return couple(spec, {i.name: parts[str(i.substructure)] for i in spec.instances})
+
+
+def counted(name: str, model: Model) -> dict[str, float]:
+    """Figures by quantity, per state and (``_all``) in all."""
+    figures: dict[str, float] = {}
+
+    def add(quantity: str, program: Program, outputs: tuple[str, ...]) -> None:
+        if set(outputs) <= program.outputs.keys():
+            figures[f"{name}_{quantity}"] = program.count(outputs, per_state=True)["total"]
+            figures[f"{name}_{quantity}_all"] = program.count(outputs)["total"]
+
+    for quantity, outputs in QUANTITIES.items():
+        add(quantity, model.program, outputs)
+    add("forward_dynamics", derived(model, "forward_dynamics"), ("forward_dynamics",))
+    return figures
+
+
+def main() -> None:
+    """The table, then what others have."""
+    arguments = options(__doc__).parse_args()
+    figures: dict[str, float] = {}
+    models = {name: lambda name=name: chain(name) for name in CHAINS}
+    models |= {name: lambda name=name: entry(name) for name in TREES.values()}
+    for name, make in (models | {"humanoid": humanoid}).items():
+        short = {value: key for key, value in TREES.items()}.get(name, name)
+        found = counted(short, make())
+        figures |= found
+        row = {key.removeprefix(f"{short}_"): int(x) for key, x in found.items() if not key.endswith("_all")}
+        print(f"{short:16}", "  ".join(f"{key} {x}" for key, x in row.items()), flush=True)
+    for each in PUBLISHED:
+        ours = figures.get(f"{each.chain}_{each.quantity}")
+        print(f"{each.chain} {each.quantity}: {ours} per state; published {each.operations} ({each.source})")
+    keep(figures, arguments.json)
+
+
+if __name__ == "__main__":
+    main()
