@@ -32,11 +32,11 @@ TREES = {
 }
 
 
-def chain(name: str) -> Model:
-    """A chain on the ground."""
+def chain(name: str, group: bool = False) -> Model:
+    """A chain on the ground; ``group``: with base parameters."""
     instance = {"name": "c", "substructure": name, "at": "world"}
     tree = {"name": name, "gravity": gravity(name), "parameters": {"g": {}}, "instances": [instance]}
-    return couple(TreeSpec.read(tree), {"c": derive(definition(name))})
+    return couple(TreeSpec.read(tree), {"c": derive(definition(name))}, group=group)
 
 
 def entry(name: str) -> Model:
@@ -53,14 +53,14 @@ def humanoid() -> Model:
     return couple(spec, {i.name: parts[str(i.substructure)] for i in spec.instances})
 
 
-def counted(name: str, model: Model) -> dict[str, float]:
-    """Figures by quantity, per state and (``_all``) in all."""
+def counted(name: str, model: Model, suffix: str = "") -> dict[str, float]:
+    """Figures by quantity, per state and (``_all``) in all; with base parameters (``_base``)."""
     figures: dict[str, float] = {}
 
     def add(quantity: str, program: Program, outputs: tuple[str, ...]) -> None:
         if set(outputs) <= program.outputs.keys():
-            figures[f"{name}_{quantity}"] = program.count(outputs, per_state=True)["total"]
-            figures[f"{name}_{quantity}_all"] = program.count(outputs)["total"]
+            figures[f"{name}_{quantity}{suffix}"] = program.count(outputs, per_state=True)["total"]
+            figures[f"{name}_{quantity}{suffix}_all"] = program.count(outputs)["total"]
 
     for quantity, outputs in QUANTITIES.items():
         add(quantity, model.program, outputs)
@@ -77,6 +77,8 @@ def main() -> None:
     for name, make in (models | {"humanoid": humanoid}).items():
         short = {value: key for key, value in TREES.items()}.get(name, name)
         found = counted(short, make())
+        if name in CHAINS:
+            found |= counted(short, chain(name, True), "_base")
         figures |= found
         row = {key.removeprefix(f"{short}_"): int(x) for key, x in found.items() if not key.endswith("_all")}
         print(f"{short:16}", "  ".join(f"{key} {x}" for key, x in row.items()), flush=True)

@@ -25,8 +25,9 @@ from substructures.mechanics.kinematics import (
 )
 from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, dot, transpose
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings
+from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
 from substructures.part.part import Part
+from substructures.tree.grouping import Admitted, Inertias, as_they_are, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, inertial_entries, planned
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
@@ -63,16 +64,26 @@ class Coupled:
 
 
 def couple_parts(
-    run: Run, mounted: Sequence[MountedPart], gravity: Vector, christoffel: bool = True, chosen: bool = True
+    run: Run,
+    mounted: Sequence[MountedPart],
+    gravity: Vector,
+    christoffel: bool = True,
+    chosen: bool = True,
+    group: Admitted = numbers,
 ) -> Coupled:
     """Metric, Christoffel symbols and forces of a tree of parts; hosts come before what is mounted on them.
 
     ``run`` gives the outputs of a stored program over the scalars of the bindings: formulas, floats or arrays.
     ``christoffel``: False leaves the Christoffel symbols out. ``chosen``: in evaluation frames for the fewest
-    operations; False, for numbers of which none is known to be zero, in the frames of the joints.
+    operations; False, for numbers of which none is known to be zero, in the frames of the joints, and nothing is moved;
+    ``group``: which masses are moved to what carries them, see :mod:`.grouping`.
     """
     plan = planned(run, mounted, christoffel, chosen)
-    evaluated, total = evaluate_parts(run, mounted, [(*USED, *names) for names in plan.stored])
+    # from the leaves, as they are evaluated: of equal formulas the graph keeps the first
+    own = [run(m.part, m.bindings, OWN) for m in reversed(mounted)][::-1]
+    inertias, ground = grouped(plan.outlined, own, group) if chosen else (as_they_are(mounted, own), Inertia())
+    evaluated, total = evaluate_parts(run, mounted, own, inertias, [(*USED, *names) for names in plan.stored])
+    total = total + ground
     n = sum(m.part.dof for m in mounted)
     Q_gravity: list[Scalar] = [0] * n
     Q: list[Scalar] = [0] * n
@@ -90,19 +101,23 @@ def couple_parts(
 
 
 def evaluate_parts(
-    run: Run, mounted: Sequence[MountedPart], names: Sequence[Sequence[str]]
+    run: Run,
+    mounted: Sequence[MountedPart],
+    own: Sequence[PartOutputs],
+    inertias: Sequence[Inertias],
+    names: Sequence[Sequence[str]],
 ) -> tuple[list[EvaluatedPart], Inertia]:
     """From the leaves: every program with what is mounted on its bodies; the inertia of all about the world's origin.
 
-    ``names``: the outputs that are wanted, by part.
-
-    What is mounted on a port acts on the body that carries it as additional inertia (notation.md, section 6, payload).
+    By part: ``own`` values, ``inertias`` of the carriers, ``names`` of the outputs that are wanted. What is mounted on
+    a port acts on the body that carries it as additional inertia (notation.md, section 6, payload).
     """
     payloads: list[Payload] = [{} for _ in mounted]
     evaluated: list[EvaluatedPart] = []
     total = Inertia()
-    for m, payload, some in zip(reversed(mounted), reversed(payloads), reversed(names), strict=True):
-        part = _evaluated(run, m, payload, some)
+    for i in reversed(range(len(mounted))):
+        m, payload = mounted[i], payloads[i]
+        part = _evaluated(run, m, payload, own[i], inertias[i], names[i])
         evaluated.insert(0, part)
         # (m, s, J) of the whole about the origin of I
         whole = part.outputs.inertia("composite") + payload.get(INTERFACE, Inertia())
@@ -123,15 +138,16 @@ def _load(run: Run, host: MountedPart, payload: Payload, m: MountedPart, whole: 
     payload[carrier] = payload.get(carrier, Inertia()) + whole
 
 
-def _evaluated(run: Run, m: MountedPart, payload: Payload, names: Sequence[str]) -> EvaluatedPart:
-    """The stored formulas with own inertia + payload for the inertia symbols of every body."""
-    own = run(m.part, m.bindings, OWN)
-    inertias = {k: own.own_inertia(k) + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
-    outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, inertias)}, names)
+def _evaluated(
+    run: Run, m: MountedPart, payload: Payload, own: PartOutputs, inertias: Inertias, names: Sequence[str]
+) -> EvaluatedPart:
+    """The stored formulas with the inertia of every body + payload for its inertia symbols."""
+    loaded = {k: inertias[k] + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
+    outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, loaded)}, names)
     joints = m.part.topology.joints
     links = links_of(m.part, outputs)
     momenta = tuple(joint_momentum(j.s, outputs.inertia("subtree", c)) for c, j in enumerate(joints))
-    return EvaluatedPart(m, outputs, own, links, momenta)
+    return EvaluatedPart(m, outputs, own, links, momenta, inertias)
 
 
 def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) -> PlacedPart:

@@ -28,11 +28,15 @@ EQUATIONS = ("metric", "christoffel")
 
 @dataclass(frozen=True)
 class Plan:
-    """The links of a tree and e(c), by index there; of every part, which of EQUATIONS are taken over as stored."""
+    """The links of a tree and e(c), by index there; of every part, which of EQUATIONS are taken over as stored.
+
+    ``outlined``: links and seats of the parts, where they were looked at.
+    """
 
     chain: Sequence[Link]
     frames: Frames
     stored: Sequence[Sequence[str]]
+    outlined: Sequence[PlacedPart] = ()
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,13 @@ def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen:
         # where nothing is carried from joint to joint, links are only of some kind
         kind_only = [Link(j.parent, j.s, Rotation(), ZERO) for m in mounted for j in m.part.topology.joints]
         return Plan(kind_only, range(len(kind_only)), kinds)
-    chain = _tree_links(_outlined(run, mounted))
+    outlined = _outlined(run, mounted)
+    chain = _tree_links(outlined)
     frames = evaluation_frames(chain, christoffel)
     is_same = [
         [m.first + e for e in stored_frames(m.part)] == list(frames[m.first : m.first + m.part.dof]) for m in mounted
     ]
-    return Plan(chain, frames, [some if same else () for some, same in zip(kinds, is_same, strict=True)])
+    return Plan(chain, frames, [some if same else () for some, same in zip(kinds, is_same, strict=True)], outlined)
 
 
 def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool) -> Inertial:

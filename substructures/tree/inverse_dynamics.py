@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, from_body
 from substructures.mechanics.linear3 import Scalar, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
@@ -78,7 +79,10 @@ def _interface_motion(here: PlacedPart, motions: Sequence[Motions], falling: boo
 def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
     """What moves every body, and what is fixed to an interface, like that."""
     return [
-        {c: inertial_load(own[c], here.evaluated.own.own_inertia(c)) for c in (*range(len(here.links)), INTERFACE)}
+        {
+            c: inertial_load(own[c], here.evaluated.inertias.get(c, Inertia()))
+            for c in (*range(len(here.links)), INTERFACE)
+        }
         for here, own in zip(placed, motions, strict=True)
     ]
 

@@ -21,6 +21,7 @@ from substructures.tree.certificate import certify_tree
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
+from substructures.tree.grouping import every, numbers
 from substructures.tree.load_potentials import found_potential
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
@@ -148,8 +149,12 @@ def couple(
     parts: Mapping[str, Part],
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
+    group: bool = False,
 ) -> Model:
     """Couple stored parts (by instance name) to a model and verify it.
+
+    ``group``: base parameters also of masses, lengths and inertias that are symbols, not only of numbers: fewer
+    operations for each state, more for the parameters (:mod:`substructures.tree.grouping`).
 
     ``admit`` is told how many operations to expect before the work begins, and may raise instead.
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
@@ -170,7 +175,8 @@ def couple(
     ]
     run = over_formulas(assembly.scope.graph)
     try:
-        coupled = couple_parts(run, assembly.mounted, assembly.gravity, not entries.is_large)
+        admitted = every if group else numbers
+        coupled = couple_parts(run, assembly.mounted, assembly.gravity, not entries.is_large, group=admitted)
         found = found_potential(assembly.scope.graph, coupled.placed, names)
         coupled = replace(coupled, potential=coupled.potential + found)
         rates, accelerations = rate_symbols(assembly)

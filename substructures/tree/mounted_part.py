@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from substructures.mechanics.composite_form import JointMomentum
+from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -55,13 +55,17 @@ def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
 
 @dataclass(frozen=True)
 class EvaluatedPart:
-    """The stored formulas of a part: ``outputs`` with what is mounted on its bodies, ``own`` values without it."""
+    """The stored formulas of a part: ``outputs`` with what is mounted on its bodies, ``own`` values without it.
+
+    ``inertias``: what its carriers and its interface have of their own, as :mod:`.grouping` counts it.
+    """
 
     mounted: MountedPart
     outputs: PartOutputs
     own: PartOutputs
     links: tuple[Link, ...]
     momenta: tuple[JointMomentum, ...]
+    inertias: Mapping[int, Inertia] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,106 @@
+"""Base parameters as a change of binding: masses that a joint does not move are counted with what carries it.
+
+A distribution along the axis of a revolute joint (m, s_3 and J_33 about a point of it) is at rest against the parent of
+the joint, and so is J of what a prismatic joint carries, if m and s stay (M. Gautier, W. Khalil, Direct calculation of
+minimum set of inertial parameters of serial robots, IEEE Transactions on Robotics and Automation 6(3), 1990). What is
+bound to the inertia symbols of stored programs changes; the formulas and all that they give for the tree do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from substructures.expr.graph import Expr
+from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, from_body
+from substructures.mechanics.linear3 import E3, ZERO, ZERO6, add, scale
+from substructures.part.outputs import PartOutputs
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
+
+#: inertia of the carriers of a part about their body frame origins, of the interface about its own
+Inertias = dict[int, Inertia]
+#: whether an inertia may be moved, and another one be moved onto it
+Admitted = Callable[[Inertia], bool]
+
+
+def every(_: Inertia) -> bool:
+    """All that may be moved is."""
+    return True
+
+
+def numbers(inertia: Inertia) -> bool:
+    """Numbers alone: to move them takes no operations."""
+    ten = (inertia.m, *inertia.s, *inertia.J)
+    return all(not isinstance(x, Expr) or x.is_number for x in ten)
+
+
+def as_they_are(mounted: Sequence[MountedPart], own: Sequence[PartOutputs]) -> list[Inertias]:
+    """The own inertias of all parts."""
+    return [
+        {k: outputs.own_inertia(k) for k in (INTERFACE, *m.part.inertia_symbols)}
+        for m, outputs in zip(mounted, own, strict=True)
+    ]
+
+
+def grouped(
+    outlined: Sequence[PlacedPart], own: Sequence[PartOutputs], admitted: Admitted
+) -> tuple[list[Inertias], Inertia]:
+    """The own inertias of all parts with what is moved, and what is left on the ground, about the world's origin.
+
+    ``outlined``: links and seats of the parts; hosts come first, what is mounted is looked at first.
+    """
+    result = as_they_are([here.mounted for here in outlined], own)
+    ground = Inertia()
+    for i in reversed(range(len(outlined))):
+        here, inertias = outlined[i], result[i]
+        for k in sorted(here.part.inertia_symbols, reverse=True):
+            link = here.links[k]
+            if not admitted(inertias[k]):
+                continue
+            moved, left = _unmoved(link, inertias[k])
+            host, carrier, above = _carried_by(outlined, i, link.parent, _before(here.links, link, moved))
+            onto = ground if host == WORLD else result[host].get(carrier)
+            if onto is None or not (admitted(above) and admitted(onto)):
+                continue
+            inertias[k] = left
+            if host == WORLD:
+                ground = onto + above
+            else:
+                result[host][carrier] = onto + above
+    return result, ground
+
+
+def _carried_by(outlined: Sequence[PlacedPart], i: int, carrier: int, inertia: Inertia) -> tuple[int, int, Inertia]:
+    """The part and the carrier that move what is fixed in a carrier of part i, and it in the body frame of that one."""
+    while carrier == INTERFACE:
+        m = outlined[i].mounted
+        inertia = inertia.in_parent(constant_rotation(m.E), m.position)
+        if m.host == WORLD:
+            return WORLD, INTERFACE, inertia
+        host = outlined[m.host]
+        E, position = host.outputs.matrix("frame.E", m.frame), host.outputs.vector("frame.position", m.frame)
+        inertia = inertia.in_parent(constant_rotation(E), position)
+        i, carrier = m.host, host.part.frame_carriers[m.frame]
+    return i, carrier, inertia
+
+
+def _unmoved(link: Link, own: Inertia) -> tuple[Inertia, Inertia]:
+    """What the joint of a link does not move, in the axes and about the origin of its body frame, and what it does."""
+    if link.s:
+        return Inertia(0, ZERO, own.J), Inertia(own.m, own.s, ZERO6)
+    x, y, z = own.s
+    xx, yy, zz, xy, xz, yz = own.J
+    return Inertia(own.m, (0, 0, z), (0, 0, zz, 0, 0, 0)), Inertia(0, (x, y, 0), (xx, yy, 0, xy, xz, yz))
+
+
+def _before(links: Sequence[Link], link: Link, moved: Inertia) -> Inertia:
+    """In the body frame of the parent, whatever the coordinate of the joint is."""
+    if link.s:
+        return moved.turned_back(link.rotation)
+    # the axis of the joint, which its turn leaves as it is, and r = Z - tau_p e3 + tau_k z
+    z = link.rotation.back(E3)
+    r = add(from_body(links, link), scale(link.tau, z))
+    zz = moved.J[2]
+    along = scale(zz, z)
+    J = (along[0] * z[0], along[1] * z[1], along[2] * z[2], along[0] * z[1], along[0] * z[2], along[1] * z[2])
+    return Inertia(moved.m, scale(moved.s[2], z), J).shifted(r)
