@@ -19,6 +19,7 @@ from substructures.documents import escape
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import InvalidArgument
 from substructures.expr.dimensions import Dimensioned
+from substructures.expr.exact import nearest_float
 from substructures.expr.unit_check import dimension_of
 
 #: the SI unit of a place, empty where it is not known: one for all numbers, or by name (of lists: in that order)
@@ -76,9 +77,12 @@ def _si_numbers(given: Mapping[str, Any], units: Mapping[str, PlaceUnits], point
     for message in _contradictions(found, given["unit"], units):
         raise InvalidArgument.at(pointer, "unit-mismatch", message)
     values = numeric(given["value"], f"{pointer}/value")
-    if not values.ndim:
-        return _scaled(given["value"], found)
-    scaled: Array = values * found.scale
+    with np.errstate(over="ignore"):
+        scaled: Array = values * found.scale if values.ndim else np.asarray(_scaled(given["value"], found))
+    if not np.isfinite(scaled).all():
+        raise InvalidArgument.at(f"{pointer}/value", "number-not-finite", "in SI the number is not finite")
+    if not scaled.ndim:
+        return float(scaled)
     return scaled if isinstance(given["value"], np.ndarray) else scaled.tolist()
 
 
@@ -92,7 +96,7 @@ def _contradictions(found: Unit, text: str, units: Mapping[str, PlaceUnits]) -> 
 def _scaled(given: Any, unit: Unit) -> float:
     """One number in SI, correctly rounded; a float stands for its shortest decimal text."""
     exact = Fraction(repr(float(given)) if isinstance(given, float | np.floating) else str(given)) * unit.factor
-    return float(exact) * math.pi**unit.pi if unit.pi else float(exact)
+    return nearest_float(exact) * math.pi**unit.pi if unit.pi else nearest_float(exact)
 
 
 def numeric(given: Any, pointer: str) -> Array:

@@ -235,6 +235,15 @@ def test_the_table_has_all_numbers_of_all_requests() -> None:
     assert not missing
 
 
+@pytest.mark.parametrize("value", [1e308, -1e308, [1, 1e308], 10**308])
+def test_numbers_that_are_not_finite_in_si_are_refused(filled: TestClient, value: Any) -> None:
+    """Beyond the range of doubles only when they are converted."""
+    body = SPAN | {"inputs": {"tau.arm.q": {"values": measured(value, "kN m"), "times": [0, 1]}}}
+    answer = filled.post("/v1/trees/cell/simulations", json=body)
+    assert answer.status_code == 422, answer.text
+    assert [fault["code"] for fault in answer.json()["errors"]] == ["number-not-finite"]
+
+
 def test_a_fault_of_many_numbers_names_the_coordinate(model: Model) -> None:
     with pytest.raises(InvalidInput) as caught:
         read_request(ANALYSES["linearisations"].schema, {"q": measured([[0, 0]], "deg")}, model)
