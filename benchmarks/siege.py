@@ -10,6 +10,8 @@ drip     bodies of which a byte arrives every second
 readers  answers that nobody reads
 streams  streams of events of one job; printed besides: the reads of the database, as CPU time of the server
 derivations  definitions of chains of 40 joints, all at once; the server computes jobs
+
+Servers, workers and runners that are killed: benchmarks.kills; many clients at other works: benchmarks.mixed.
 """
 
 from __future__ import annotations

@@ -39,3 +39,4 @@ def test_every_answer_keeps_the_contract(kind: str, tmp_path: Path) -> None:
             found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     lines = [line[:300] for line in (found.stdout + found.stderr).splitlines()]
     assert found.returncode == 0, "\n".join(lines)
+    print(*(line for line in lines if " generated, " in line))
