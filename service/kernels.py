@@ -34,6 +34,7 @@ from service.cache import Cache
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.compile.cache import prune
+from substructures.compile.kernel import NO_PLACES, Places, with_elements
 from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
@@ -81,25 +82,31 @@ class Kernels:
         self._lock = Lock()
         self._compiler = ThreadPoolExecutor(1, thread_name_prefix="compiler")
 
-    def __call__(self, program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+    def __call__(
+        self, program: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
+    ) -> dict[str, Array]:
         """Outputs for values, by a kernel if there is one or if there are many states."""
         kernel = self._ready(program, names, states)
         if kernel is None:
-            return interpreted(program, values, names, states)
-        return kernel.evaluate(values, threads=os.cpu_count() or 1)
+            return interpreted(program, values, names, states, places)
+        return kernel.evaluate(values, threads=os.cpu_count() or 1, places=places)
 
     def of_tree(self, program: Program, parts: Iterable[Part], tree: Callable[[], NumericTree]) -> Evaluator:
         """An engine that also takes the way over the parts, for outputs of the tree's own ``program``."""
 
-        def run(given: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+        def run(
+            given: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
+        ) -> dict[str, Array]:
             """By kernel, by the parts, or as for any program."""
             if given is program and quickest(states, coupled=True, warm=self.warm(parts)) is Way.PARTS:
                 kernel = self._ready(given, names, states)
                 try:
-                    return tree().answer(values, names, states) if kernel is None else kernel.evaluate(values)
+                    if kernel is not None:
+                        return kernel.evaluate(values, places=places)
+                    return with_elements(tree().answer(values, names, states), places)
                 except MissingValue:  # of a parameter that the coupled formulas do not depend on
                     pass
-            return self(given, values, names, states)
+            return self(given, values, names, states, places)
 
         return run
 

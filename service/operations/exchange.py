@@ -16,10 +16,11 @@ from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
 from substructures.formats import arrays, arrow
-from substructures.quantities.evaluation import Evaluation, Evaluator, Sources, evaluate
+from substructures.quantities.evaluation import Evaluation, Evaluator, Sources, evaluate, evaluate_in_parts
 from substructures.quantities.states import longest
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
+PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
 _KNOWN = ", ".join(MEDIA_TYPES)
 _EXTRA = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use application/x-npz"
 
@@ -76,10 +77,17 @@ class TreeEvaluation:
         """The answer to one request in one piece, as JSON or npz. Raises as :meth:`answer`."""
         arguments = request.arguments()
         evaluations.check_size(self.sources, request.quantities, longest(arguments), self.limits)
-        if wanted == arrays.MEDIA_TYPE:
+        return self._npz(arguments) if wanted == arrays.MEDIA_TYPE else self.json(arguments)
+
+    def _npz(self, arguments: Mapping[str, Any]) -> Answer | Stream:
+        """The answer as npz: as a whole where it is small, otherwise sent while it is computed."""
+        count = longest(arguments)
+        if count <= self._size_of_part(arguments):
             file = arrays.as_npz(self._evaluated(arguments).plain(self.digest))
-            return Stream(iter(file.pieces), {"Content-Type": wanted, "Content-Length": str(file.size)})
-        return self.json(arguments)
+            return Stream(iter(file.pieces), {"Content-Type": arrays.MEDIA_TYPE, "Content-Length": str(file.size)})
+        parts = self._in_parts(arguments, told_first=True)
+        names = list(dict.fromkeys(arguments["quantities"]))
+        return streamed(arrays.npz_parts(parts, names, count), arrays.MEDIA_TYPE)
 
     def json(self, arguments: Mapping[str, Any]) -> Answer:
         """The answer to arguments of a size that was checked, as JSON. Raises InvalidInput, MissingValue."""
@@ -87,16 +95,37 @@ class TreeEvaluation:
 
     def _arrow(self, requests: Iterator[EvaluationRequest]) -> Iterator[memoryview | bytes]:
         first = next(requests)
-        cuts = chain([self._cut(first)], map(self._cut, requests))
-        return batches.as_arrow(self._plain, cuts, first.quantities)
+        return batches.as_arrow(self._batches(chain([first], requests)), first.quantities)
 
-    def _cut(self, request: EvaluationRequest) -> Iterable[EvaluationRequest]:
-        states = longest(request.arguments())
-        evaluations.check_size(self.sources, request.quantities, states, self.limits, streamed=True)
-        return batches.split(self.sources, request, self.limits)
+    def _batches(self, requests: Iterable[EvaluationRequest]) -> Iterator[Iterator[dict[str, Any]]]:
+        """The answers to each request, whose states are counted on."""
+        done = 0
+        for request in requests:
+            arguments = request.arguments()
+            states = longest(arguments)
+            evaluations.check_size(self.sources, request.quantities, states, self.limits, streamed=True)
+            yield self._in_parts(arguments, done)
+            done += states
 
-    def _plain(self, request: EvaluationRequest, first: int) -> dict[str, Any]:
-        return self._evaluated(request.arguments(), first).plain(self.digest)
+    def _in_parts(
+        self, arguments: Mapping[str, Any], first: int = 0, told_first: bool = False
+    ) -> Iterator[dict[str, Any]]:
+        """The answer part by part. What is wrong with the arguments is raised at once."""
+        parts = evaluate_in_parts(
+            self.sources,
+            arguments["quantities"],
+            arguments,
+            self._size_of_part(arguments),
+            limit=self.limits.states,
+            evaluator=self.evaluator,
+            first=first,
+            told_first=told_first,
+        )
+        return (part.plain(self.digest) for part in parts)
+
+    def _size_of_part(self, arguments: Mapping[str, Any]) -> int:
+        """States."""
+        return max(1, PART // evaluations.bytes_per_state(self.sources, arguments["quantities"]))
 
     def _evaluated(self, arguments: Mapping[str, Any], first: int = 0) -> Evaluation:
         return evaluate(

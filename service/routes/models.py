@@ -47,6 +47,8 @@ async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
     digest are metadata of the schema. It begins when the first states are computed, which `sync_seconds` limits; a
     fault in a later batch cuts it off before the end-of-stream marker and without the last chunk of the body.
 
+    An npz answer of more than 4 MiB begins when the first states are computed, too.
+
     With `Prefer: respond-async`, or when it takes too long, it becomes a job, acknowledged when all states are checked
     and on the disk. States are evaluated in items of at most `job_states`, whose results, npz or Arrow by Accept (npz
     for JSON), can be fetched while the job runs; what was uploaded goes with the job.

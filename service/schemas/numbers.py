@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, SkipValidation, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation, StrictBool, ValidationError
 
 from service.schemas.measured import WithUnits
 from service.schemas.shapes import Digest, Shape, Warned
@@ -72,6 +72,8 @@ class EvaluationRequest(Shape):
     inputs: ValueColumns = _values("tau.<coordinate> (N m or N) and inputs of loads")
     t: Annotated[Column, SkipValidation, WithUnits()] = Field(0, description="s")
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
+    packed: StrictBool = Field(False, description="of metric and christoffel the independent elements alone")
+    float32: StrictBool = Field(False, description="results in single precision")
 
     @classmethod
     def read(cls, data: Any) -> EvaluationRequest:
@@ -114,6 +116,8 @@ class EvaluationRequest(Shape):
             "inputs": self.inputs,
             "parameters": self.parameters,
             "t": self.t,
+            "packed": self.packed,
+            "float32": self.float32,
             "along": None
             if along is None
             else derivative_directions.Direction(along.q, along.qd, along.qdd, along.inputs),

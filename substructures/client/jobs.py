@@ -14,7 +14,7 @@ import numpy as np
 from substructures.client.connection import Caller, ProblemError, check, step
 from substructures.formats import arrow
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
-from substructures.formats.arrays import Npz, as_answer, flat, nested, view_npz, write_npz
+from substructures.formats.arrays import Npz, as_answer, flat, nested, placed, view_npz, write_npz
 from substructures.formats.columns import parted, request_of
 
 #: seconds between looks at a job, for one look, and without an answer
@@ -196,10 +196,5 @@ def joined_parts(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _noted(parts: Sequence[Mapping[str, Any]], name: str) -> list[dict[str, Any]]:
     """What the parts say about their states, with the places of the states in the whole; the same is said once."""
-    told = []
-    for part in parts:
-        for note in part.get(name, ()):
-            state = note["state"] + part["range"][0] if "state" in note else None
-            placed = {**note, **({} if state is None else {"state": state})}
-            told.append({**placed, "pointer": f"/q/{state}"} if state is not None and "pointer" in note else placed)
+    told = [placed(note, part["range"][0]) for part in parts for note in part.get(name, ())]
     return [note for i, note in enumerate(told) if "state" in note or note not in told[:i]]

@@ -19,8 +19,8 @@ from substructures.compile.lowering import ProgramStep
 from substructures.compile.runtime import CONTEXT, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
-#: groups of vectors that have been taken
-Counter = ctypes.c_int64
+#: groups of vectors that have been taken, and whether a result was not finite
+Counter = ctypes.c_int64 * 2
 #: of the scratch arrays: a cache line, and the widest vector
 ALIGNMENT = 64
 

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,17 @@ Packed = bool | Collection[str]
 OPERATION_BYTES = 200
 
 
+#: elements of outputs by name: their places in the dense array of a state, row by row
+Places = Mapping[str, NDArray[np.int64]]
+NO_PLACES: Places = MappingProxyType({})
+
+
+class Evaluated(dict[str, Array]):
+    """Arrays by name. ``finite``: it was seen that all their numbers are finite; otherwise that is not known."""
+
+    finite = False
+
+
 def is_packed(name: str, packed: Packed) -> bool:
     """Whether only the independent elements of this output are wanted."""
     return packed if isinstance(packed, bool) else name in packed
@@ -37,6 +49,7 @@ class KernelCall(NamedTuple):
     packed: Packed
     threads: int = 1
     clean: bool = True
+    places: Places = NO_PLACES
 
 
 @dataclass(frozen=True)
@@ -93,16 +106,19 @@ class Kernel(ABC):
         columns: Iterable[NamedColumns] = (),
         packed: Packed = False,
         threads: int = 1,
-    ) -> dict[str, Array]:
-        """Arrays of shape batch + :meth:`shape`; ``packed``: all or the named ones by independent elements only.
+        places: Places = NO_PLACES,
+    ) -> Evaluated:
+        """Arrays of shape batch + :meth:`shape`; ``packed``: all or the named ones by independent elements only;
+        ``places``: batch + (k,) with the k elements there, zeros included, of the outputs that are named.
 
         Same bits for any number of threads and any split of the batch."""
         columns = list(columns)
         batch = batch_shape(values, columns)
-        out = {
-            n: np.zeros(batch + self.shape(n, is_packed(n, packed))) for n in (self.names if names is None else names)
-        }
-        self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads))
+        out = Evaluated()
+        for n in self.names if names is None else names:
+            shape = (len(places[n]),) if n in places else self.shape(n, is_packed(n, packed))
+            out[n] = np.zeros(batch + shape)
+        out.finite = self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads, places=places))
         return out
 
     def evaluate_into(
@@ -186,8 +202,8 @@ class Kernel(ABC):
             yield out
 
     @abstractmethod
-    def _run(self, request: KernelCall) -> None:
-        """Fills ``out``."""
+    def _run(self, request: KernelCall) -> bool:
+        """Fills ``out``; whether it was seen that all results are finite."""
 
     @abstractmethod
     def _bound(self, request: KernelCall) -> Callable[[], None]:
@@ -236,14 +252,32 @@ class InterpretedKernel(Kernel):
             out[...] = array
         return Blocks(count, array if out is None else out, places)
 
-    def _run(self, request: KernelCall) -> None:
+    def _run(self, request: KernelCall) -> bool:
         values = {n: _array(v) for n, v in request.values.items() if n in self.symbols}
         for name, result in interpret(self.program, values, list(request.out)).items():
-            chosen = _independent(self.outputs[name], result) if is_packed(name, request.packed) else result
-            request.out[name][...] = chosen
+            if name in request.places:
+                result = elements(result, request.places[name], len(request.batch))
+            elif is_packed(name, request.packed):
+                result = _independent(self.outputs[name], result)
+            request.out[name][...] = result
+        return False
 
     def _bound(self, request: KernelCall) -> Callable[[], None]:
-        return lambda: self._run(request)
+        def run() -> None:
+            """The same again."""
+            self._run(request)
+
+        return run
+
+
+def elements(dense: Array, places: NDArray[np.int64], axes: int = 1) -> Array:
+    """The elements at places of an array with so many axes of the batch, along one axis."""
+    return dense.reshape(*dense.shape[:axes], prod(dense.shape[axes:]))[..., places]
+
+
+def with_elements(found: Mapping[str, Array], places: Places) -> dict[str, Array]:
+    """Arrays (N, ...) with the elements at places alone of those outputs that are named."""
+    return {name: elements(x, places[name]) if name in places else x for name, x in found.items()}
 
 
 def _array(value: Any) -> Any:

@@ -32,12 +32,21 @@ class Layout:
 
 def dense(output: Output, place: Mapping[int, int], width: int) -> Layout:
     """All elements, dependent ones filled in from the symmetry. ``place``: of operations among the results."""
+    return _layout(output.shape, _codes(output, place), width)
+
+
+def chosen(output: Output, place: Mapping[int, int], width: int, elements: Words) -> Layout:
+    """The elements at these places of the dense array, row by row, in their order."""
+    return _layout((len(elements),), _codes(output, place)[elements], width)
+
+
+def _codes(output: Output, place: Mapping[int, int]) -> Words:
     codes = np.zeros(prod(output.shape), dtype=np.int64)
     strides = [prod(output.shape[k + 1 :]) for k in range(len(output.shape))]
     for index, entry, sign in output.expanded():
         at = sum(i * n for i, n in zip(index, strides, strict=True))
         codes[at] = 2 * place[entry] + (sign < 0)
-    return _layout(output.shape, codes, width)
+    return codes
 
 
 def packed(output: Output, place: Mapping[int, int], width: int) -> Layout:

@@ -41,7 +41,7 @@ class _Job(NamedTuple):
     arguments: list[Arguments]
     inputs: WordTable
     outputs: WordTable
-    counter: Counter
+    counter: ctypes.Array[ctypes.c_int64]
     blocks: Array | None
 
 
@@ -69,7 +69,7 @@ class MachineKernel(Kernel):
         self._o_row = width * (1 + self._stages.results[-1])
         row = 8 * (sum(self._stages.rows[1:]) + self._o_row)
         self.group = min(MAX_GROUP, max(1, GROUP_BYTES // row))
-        self._layouts: dict[tuple[str, bool], tuple[Layout, tuple[int, ...]]] = {}
+        self._layouts: dict[tuple[str, bool | bytes], tuple[Layout, tuple[int, ...]]] = {}
         self._scratch: list[list[Scratch]] = []
         # the object code lies in memory about twice: as it is loaded, and as tables
         self._held = ENGINE_BYTES + 2 * len(code) + KEPT * self.group * row
@@ -84,9 +84,12 @@ class MachineKernel(Kernel):
         """True."""
         return True
 
-    def _run(self, request: KernelCall) -> None:
-        if prod(request.batch):
-            self._run_job(self._job(request.values, request.batch, self._outputs(request)), request.threads)
+    def _run(self, request: KernelCall) -> bool:
+        if not prod(request.batch):
+            return True
+        job = self._job(request.values, request.batch, self._outputs(request))
+        self._run_job(job, request.threads)
+        return not job.counter[1]
 
     def blocks(
         self,
@@ -154,17 +157,25 @@ class MachineKernel(Kernel):
         return WordTable.written([self._output(name, array, request) for name, array in request.out.items()])
 
     def _output(self, name: str, array: Array, request: KernelCall) -> tuple[int, ...]:
+        chosen = request.places.get(name)
         packed = is_packed(name, request.packed)
-        if (name, packed) not in self._layouts:
-            made = (layout.packed if packed else layout.dense)(self.outputs[name], self._place, self.width)
+        key = name, packed if chosen is None else chosen.tobytes()
+        if key not in self._layouts:
+            made = self._layout(name, packed, chosen)
             words = [word for table in (made.groups, made.singles) for word in (address(table), len(table))]
             # the first one of several threads' stays: others may be using its tables
-            self._layouts.setdefault((name, packed), (made, tuple(words)))
-        where, tables = self._layouts[name, packed]
+            self._layouts.setdefault(key, (made, tuple(words)))
+        where, tables = self._layouts[key]
         if where.sparse and not request.clean:
             array.fill(0)
         stride = array.strides[0] if len(request.batch) == 1 else 8 * prod(where.shape)
         return (address(array), stride, *tables)
+
+    def _layout(self, name: str, packed: bool, chosen: Words | None) -> Layout:
+        output = self.outputs[name]
+        if chosen is not None:
+            return layout.chosen(output, self._place, self.width, chosen)
+        return (layout.packed if packed else layout.dense)(output, self._place, self.width)
 
     def _share(self, job: _Job, threads: int) -> None:
         """Threads take groups of vectors until none is left; only the last one can have a partial vector."""
@@ -202,17 +213,20 @@ class MachineKernel(Kernel):
         else:
             # the array has no zero
             words += (address(job.blocks) - 8 * width, job.blocks.strides[0], job.blocks.strides[0])
+        n_results = self._stages.results[-1]
         tables = (*job.inputs[:2], *self._stages.steps(done), *job.outputs[:2])
-        return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group))
+        return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group, n_results))
 
 
 class _Bound:
     """A prepared call."""
 
-    def __init__(self, alive: Any, call: Callable[[Any], None], prepared: _Prepared, counter: Counter) -> None:
+    def __init__(
+        self, alive: Any, call: Callable[[Any], None], prepared: _Prepared, counter: ctypes.Array[ctypes.c_int64]
+    ) -> None:
         self.alive, self.call, self.counter = (alive, prepared), call, counter
         self.context = WORDS(*prepared.words)
 
     def __call__(self) -> None:
-        self.counter.value = 0
+        self.counter[0] = 0
         self.call(self.context)

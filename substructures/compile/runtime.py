@@ -15,11 +15,12 @@ from substructures.compile.order import REGIONS
 from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body
 
-#: words of the driver's context
+#: words of the driver's context; ``counter`` counts the groups that were taken, and the word behind it is not zero
+#: when a result of any state is not finite
 CONTEXT = (
     *(word for region in REGIONS for word in (region, f"{region}_stride")),
     *("o", "o_stride", "o_advance", "last", "counter"),
-    *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group"),
+    *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group", "n_results"),
 )
 #: words of the rows of the tables
 INPUT = ("base", "stride", "offset", "stage")
@@ -35,6 +36,7 @@ def runtime(width: int) -> str:
         _load(width),
         scatter(width),
         scatter_some(width),
+        _look(width),
         _drive(width),
     ]
     declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
@@ -105,6 +107,19 @@ def _load(width: int) -> str:
     return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %context, i64 %block")
 
 
+def _look(width: int) -> str:
+    """Sets the word ``seen`` when one of the ``count`` results at o is not finite, for which x - x is not a number."""
+    w = AssemblyWriter(width)
+    with w.loop("1", w.arithmetic("add", "%count", 1)) as i:  # behind the zero
+        x = w.do(f"load {w.kind}, ptr {w.offset('%o', w.arithmetic('mul', i, 8 * width))}, align 8")
+        difference = w.real("fsub", x, x)
+        bad = w.do(f"fcmp uno {w.kind} {difference}, {difference}")
+        mask = w.do(f"bitcast <{width} x i1> {bad} to i{width}")
+        with w.when(w.do(f"icmp ne i{width} {mask}, 0")):
+            w.put("store i64 1, ptr %seen, align 8")
+    return w.function("look", "ptr %o, i64 %count, ptr %seen")
+
+
 def _scratch(w: AssemblyWriter, stage: str, block: str) -> str:
     """Scratch row of a stage for a vector of the group."""
     row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))
@@ -145,7 +160,10 @@ def _drive(width: int) -> str:
             w.put(f"call void @load({arguments}, ptr %context, i64 {block})")
         _steps(w, tables["steps"], c["n_steps"], blocks, rows)
         with w.loop("0", blocks) as block:
-            _rows(w, c, tables["outputs"], row(moved, "o", block), (start, block))
+            results = row(moved, "o", block)
+            seen = w.offset(tables["counter"], 8)
+            w.put(f"call void @look(ptr {results}, i64 {c['n_results']}, ptr {seen})")
+            _rows(w, c, tables["outputs"], results, (start, block))
     return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
 
 

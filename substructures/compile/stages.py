@@ -80,6 +80,6 @@ class Stages:
         results.array[:, : once.results.array.size] = once.results.array
         rows = [word for x in scratch for word in x[:2]] + [0] * 2 * (len(REGIONS) - stop)
         counter, nothing = Counter(), (0, 0)
-        words = (*results[:2], 0, 1, ctypes.addressof(counter), *nothing, *self.steps(start, stop), *nothing, 1)
+        words = (*results[:2], 0, 1, ctypes.addressof(counter), *nothing, *self.steps(start, stop), *nothing, 1, 0)
         self.runtime.drive(*rows, *words)
         return PreparedStages(tuple(scratch), results)

@@ -8,8 +8,9 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import IO, Any
 
 import numpy as np
@@ -18,21 +19,15 @@ from numpy.typing import NDArray
 from zlib_ng.zlib_ng import crc32
 
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.formats.npz_writer import END, KINDS, LOCAL, NpzWriter
 
 MEDIA_TYPE = "application/x-npz"
 #: what an answer says about states, and the fields that it has beside state, quantity, code and message
 NOTES: dict[str, tuple[str, ...]] = {"failures": (), "warnings": ("pointer",)}
-KINDS = "biufU"  # booleans, integers, floats, text
 MAX_ARRAYS = 10_000
 MAX_HEADER = 10_000  # bytes
 MAX_LISTED = 2**21  # bytes of the directory of a zip file, for which its reader takes many times as much memory
-ALIGNMENT = 64  # bytes
-# of a zip file: a header before each file, a line of the directory, its end, a field that other readers pass over
-LOCAL, LISTED = struct.Struct("<4s5H3I2H"), struct.Struct("<4s6H3I5H2I")
-END, PADDING = struct.Struct("<4s4H2IH"), struct.Struct("<2H")
-VERSION, UTF_8, ENCRYPTED, FIRST_DAY, PADDING_ID = 20, 0x800, 1, 0x21, 0xD935  # 2.0; 1 January 1980; as zipalign's
-UNIX, READABLE = 3 << 8, 0o644 << 16  # whose names and permissions these are
-
+ENCRYPTED = 1  # the flag of a file in a zip
 MAX_DIMENSIONS = 32
 #: an entry of the header of an array, which is a dictionary of Python; there is no need to read any other literal
 _ENTRY = re.compile(
@@ -182,44 +177,10 @@ def write_npz(arrays: Mapping[str, Any]) -> Npz:
 
     The numbers start at multiples of 64 bytes, so that they can be used where they lie (:func:`view_npz`).
     """
-    pieces: list[memoryview] = []
-    directory, position = bytearray(), 0
-    for name, value in arrays.items():
-        array = np.asarray(value, order="C")
-        if array.dtype.kind not in KINDS:
-            raise TypeError(f"'{name}' is no array of numbers or texts")
-        entry = _entry(f"{name}.npy".encode(), array, position)
-        pieces += entry.pieces
-        directory += entry.listed
-        position += sum(map(len, entry.pieces))
-        if position > zipfile.ZIP64_LIMIT:  # beyond it the directory has fields of other lengths
-            raise ValueError(f"{position} bytes are too many for an npz file to be sent")
-    count = len(arrays)
-    end = END.pack(b"PK\5\6", 0, 0, count, count, len(directory), position, 0)
-    return Npz(position + len(directory) + len(end), [*pieces, memoryview(directory + end)])
-
-
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """A file in a zip: header and data, and its line in the directory."""
-
-    pieces: Sequence[memoryview]
-    listed: bytes
-
-
-def _entry(name: bytes, array: NDArray[Any], position: int) -> _Entry:
-    """The array as a file that begins at a position, not compressed (APPNOTE.TXT 6.3, sections 4.3.7 and 4.3.12)."""
-    header = io.BytesIO()
-    npy.write_array_header_1_0(header, npy.header_data_from_array_1_0(array))
-    data = array.reshape(-1).view(np.uint8).data
-    checked = crc32(data, crc32(header.getvalue()))
-    size = len(header.getvalue()) + len(data)
-    common = (VERSION, UTF_8, zipfile.ZIP_STORED, 0, FIRST_DAY, checked, size, size, len(name))
-    start = position + LOCAL.size + len(name) + PADDING.size
-    padding = PADDING.pack(PADDING_ID, -start % ALIGNMENT) + bytes(-start % ALIGNMENT)
-    local = LOCAL.pack(b"PK\3\4", *common, len(padding)) + name + padding
-    listed = LISTED.pack(b"PK\1\2", UNIX | VERSION, *common, 0, 0, 0, 0, READABLE, position) + name
-    return _Entry([memoryview(local + header.getvalue()), data], listed)
+    writer = NpzWriter()
+    pieces = [piece for name, value in arrays.items() for piece in writer.whole(name, [np.asarray(value)])]
+    pieces.append(writer.directory())
+    return Npz(writer.size, pieces)
 
 
 def flat(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -247,8 +208,51 @@ def nested(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 def as_npz(answer: Mapping[str, Any]) -> Npz:
     """The answer as npz: arrays by name, nested ones joined by dots, ``failures`` and ``warnings`` parallel arrays."""
-    told = {name: _parallel(answer.get(name, ()), also) for name, also in NOTES.items()}
-    return write_npz(flat({**answer, **told}))
+    return write_npz(flat({**answer, **parallel(answer)}))
+
+
+def npz_parts(answers: Iterable[Mapping[str, Any]], names: Sequence[str], count: int) -> Iterator[memoryview]:
+    """The pieces of :func:`as_npz` for an answer of ``count`` states that comes in parts, each as soon as it is there.
+
+    The largest of the arrays ``names`` leaves part by part, the others are kept until it has ended.
+    """
+    rest = iter(answers)
+    first = next(rest)
+    columns = flat({name: first[name] for name in names})
+    largest = max(columns, key=lambda name: columns[name].nbytes)
+    waiting: dict[str, list[NDArray[Any]]] = {name: [] for name in columns if name != largest}
+    notes: dict[str, list[dict[str, Any]]] = {name: [] for name in NOTES}
+    writer, done = NpzWriter(), 0
+    yield writer.begin(largest, (count, *columns[largest].shape[1:]), columns[largest].dtype)
+    for answer in chain([first], rest):
+        part = flat({name: answer[name] for name in names})
+        yield writer.go_on(part[largest])
+        for name, kept in waiting.items():
+            kept.append(part[name])
+        for kind, told in notes.items():
+            told += [placed(note, done) for note in answer[kind]]
+        done += answer["count"]
+    yield writer.end()
+    order = {name: k for k, name in enumerate(names)}
+    for rows in notes.values():  # as of the whole: by quantity, then by state, behind what is about no state
+        rows.sort(key=lambda row: (order[row["quantity"]], row["state"]) if "state" in row else (-1, -1))
+    about = {key: x for key, x in first.items() if key not in {*names, *NOTES}} | {"count": count}
+    for name, parts in (waiting | {key: [np.asarray(x)] for key, x in flat(about | parallel(notes)).items()}).items():
+        yield from writer.whole(name, parts)
+    yield writer.directory()
+
+
+def placed(note: Mapping[str, Any], first: int) -> dict[str, Any]:
+    """What is said of a state of a part, whose first one has this number in the whole."""
+    if "state" not in note:
+        return dict(note)
+    state = note["state"] + first
+    return {**note, "state": state} | ({"pointer": f"/q/{state}"} if "pointer" in note else {})
+
+
+def parallel(answer: Mapping[str, Any]) -> dict[str, dict[str, np.ndarray[Any, Any]]]:
+    """What an answer says about states as parallel arrays."""
+    return {name: _parallel(answer.get(name, ()), also) for name, also in NOTES.items()}
 
 
 def _parallel(rows: Sequence[Mapping[str, Any]], also: tuple[str, ...]) -> dict[str, np.ndarray[Any, Any]]:

@@ -244,8 +244,13 @@ def _texts(notes: Mapping[int, str], count: int) -> Any:
 
 def _field_of(name: str, values: Array) -> Any:
     shape = values.shape[1:]
-    kind = pa.list_(pa.float64(), prod(shape)) if shape else pa.float64()
+    number = _number_type(values)
+    kind = pa.list_(number, prod(shape)) if shape else number
     return pa.field(name, kind, metadata={"shape": orjson.dumps(shape)})
+
+
+def _number_type(values: Array) -> Any:
+    return pa.float32() if values.dtype == np.float32 else pa.float64()
 
 
 def _to_arrow(values: Array, missing: NDArray[np.bool_] | None) -> Any:
@@ -254,5 +259,5 @@ def _to_arrow(values: Array, missing: NDArray[np.bool_] | None) -> Any:
         return pa.array(values, mask=missing)
     flat, width = pa.array(np.ascontiguousarray(values).reshape(-1)), prod(values.shape[1:])
     if not width:  # from_arrays cannot tell how many rows there are
-        return pa.Array.from_buffers(pa.list_(pa.float64(), 0), len(values), [None], children=[flat])
+        return pa.Array.from_buffers(pa.list_(_number_type(values), 0), len(values), [None], children=[flat])
     return pa.FixedSizeListArray.from_arrays(flat, width, mask=mask)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, Protocol
 
 import numpy as np
 
 from substructures.array import Array
+from substructures.compile.kernel import Places
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
 from substructures.mechanics.closure_rows import POSITIONS, row_sizes
@@ -18,8 +19,16 @@ from substructures.tree.model import Model
 
 #: numbers of a block where an intermediate result is larger than the result
 BLOCK = 2_000_000
-#: outputs of a program for (program, values, names, number of states)
-Evaluator = Callable[[Program, Mapping[str, Any], list[str], int], dict[str, Array]]
+
+
+class Evaluator(Protocol):
+    """Outputs of a program, arrays (N, ...) by name."""
+
+    def __call__(
+        self, program: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = ..., /
+    ) -> dict[str, Array]:
+        """``states`` = N; ``places``: of some outputs the elements there alone, (N, K)."""
+        ...
 
 
 def _blocks(

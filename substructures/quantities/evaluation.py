@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from substructures.array import Array
+from substructures.compile.kernel import NO_PLACES, Evaluated, Places, with_elements
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
+from substructures.formats.packing import SYMMETRIES, packed_elements
 from substructures.quantities.accelerations import (
     Evaluator,
     accelerations,
@@ -45,7 +48,7 @@ from substructures.quantities.table import (
     read_quantities,
     steps,
 )
-from substructures.quantities.warnings import value_warnings
+from substructures.quantities.warnings import Notice, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
@@ -59,6 +62,7 @@ __all__ = [
     "check",
     "cost",
     "evaluate",
+    "evaluate_in_parts",
     "interpreted",
     "numbers_per_state",
     "read_quantities",
@@ -73,9 +77,11 @@ _ENDLESS = "the metric is singular to rounding, or not positive definite, or not
 _NOT_FINITE = "the result is not finite: numbers overflow, or a formula divides by zero in this state"
 
 
-def interpreted(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+def interpreted(
+    program: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
+) -> dict[str, Array]:
     """The engine that needs nothing: the reference interpreter, in blocks of states."""
-    return interpret_in_blocks(program, values, names, states)
+    return with_elements(interpret_in_blocks(program, values, names, states), places)
 
 
 def evaluate(
@@ -89,6 +95,8 @@ def evaluate(
     parameters: ValueInput | None = None,
     t: ArrayLike | None = 0.0,
     along: Direction | None = None,
+    packed: bool = False,
+    float32: bool = False,
     limit: int | None = None,
     evaluator: Evaluator = interpreted,
     sources: Sources | None = None,
@@ -104,6 +112,9 @@ def evaluate(
     ``forward_dynamics`` of a model with closures are the accelerations on them, in states that meet them
     (:func:`substructures.mechanics.accelerations.closed_solve`); other quantities are those of the tree without them.
 
+    ``packed``: of metric and Christoffel symbols the independent elements alone
+    (:mod:`substructures.formats.packing`); ``float32``: results in single precision.
+
     ``limit``: most states; ``evaluator``: what computes outputs of programs; ``sources``: the programs (default: formed
     when they are first needed, and kept); ``first``: the number of the first state in warnings, if they are part of
     more. Raises InvalidArgument (pointers start with the name of the argument), MissingValue (a parameter without a
@@ -118,30 +129,144 @@ def evaluate(
     Evaluation of 2 state(s) of p.q1
       metric (2, 1, 1), forces (2, 1)
     """
+    given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t, "along": along}
+    form = _Form(packed, float32)
+    asked = _asked(sources or Sources(model), quantities, given, form, limit, evaluator)
+    states, values = asked.states, asked.values
+    return _answered(asked, states, values, _told_of_values(asked, states.q, values, first))
+
+
+def evaluate_in_parts(
+    sources: Sources,
+    quantities: str | Sequence[str],
+    given: ArgumentsByName,
+    size: int,
+    *,
+    limit: int | None = None,
+    evaluator: Evaluator = interpreted,
+    first: int = 0,
+    told_first: bool = False,
+) -> Iterator[Evaluation]:
+    """:func:`evaluate` for so many states after the other, always with the axis N first.
+
+    ``given``: the other arguments by name. All of them are checked, and what is wrong is raised, before the first part
+    is asked for. Warnings about the values of a part are told with it, with ``told_first`` those about all states with
+    the first one; states in failures, and in warnings about one state, are counted from the beginning of the part.
+    """
+    form = _Form(bool(given.get("packed")), bool(given.get("float32")))
+    asked = _asked(sources, quantities, given, form, limit, evaluator)
+    return _parts(asked, size, first, told_first)
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """What results look like."""
+
+    packed: bool
+    float32: bool
+
+    def places(self, names: Sequence[str], n: int) -> Places:
+        """The elements of the outputs that are packed."""
+        return {name: packed_elements(name, n) for name in names if name in SYMMETRIES} if self.packed else NO_PLACES
+
+    def shown(self, result: Any) -> Any:
+        """Results in the precision wanted."""
+        if not self.float32:
+            return result
+        if isinstance(result, dict):
+            return {name: self.shown(x) for name, x in result.items()}
+        with np.errstate(over="ignore"):  # then it is a failure
+            return result.astype(np.float32)
+
+    def is_beyond(self, result: Any, state: int) -> bool:
+        """Whether a result that is not finite is so only in the precision wanted."""
+        each = result.values() if isinstance(result, dict) else (result,)
+        return self.float32 and all(bool(np.isfinite(x[state]).all()) for x in each)
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """Arguments that were checked, with the values of all symbols; ``chosen``, ``inputs``: names of those given."""
+
+    sources: Sources
+    names: Sequence[str]
+    form: _Form
+    evaluator: Evaluator
+    states: States
+    values: Mapping[str, Any]
+    chosen: Sequence[str]
+    inputs: Sequence[str]
+
+
+def _asked(
+    sources: Sources,
+    quantities: str | Sequence[str],
+    given: ArgumentsByName,
+    form: _Form,
+    limit: int | None,
+    evaluator: Evaluator,
+) -> _Asked:
     names = read_quantities(quantities)
-    sources = sources or Sources(model)
-    given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
-    states = read_states(model, given, limit)
-    values = _values(sources, given, along, states, names)
-    found = _computed(sources, names, values, evaluator, states)
+    states = read_states(sources.model, given, limit)
+    values = _values(sources, given, given.get("along"), states, names)
+    chosen, inputs = (tuple(given.get(field) or ()) for field in ("parameters", "inputs"))
+    return _Asked(sources, names, form, evaluator, states, values, chosen, inputs)
+
+
+def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[Evaluation]:
+    states, count = asked.states, asked.states.count
+    varying = {name for name, x in asked.values.items() if np.shape(x) == (count,)}
+    told = _told_of_values(asked, states.q, asked.values, first) if told_first else None
+    for start in range(0, max(1, count), size):
+        some = slice(start, min(start + size, count))
+        values = {name: x[some] if name in varying else x for name, x in asked.values.items()}
+        q, qd = (x[some] if len(x) == count else x for x in (states.q, states.qd))
+        part = States(q, qd, None, some.stop - start, single=False)
+        yield _answered(asked, part, values, _told_of_values(asked, q, values, first + start) if told is None else told)
+        told = told and []
+
+
+def _told_of_values(asked: _Asked, q: Array, values: Mapping[str, Any], first: int) -> list[Notice]:
+    sources, chosen = asked.sources, {name: values[name] for name in asked.chosen}
+    is_regressor = any(QUANTITIES[name].source == REGRESSOR for name in asked.names)
+    return value_warnings(sources, chosen, asked.inputs, q, sources.columns().parameters if is_regressor else (), first)
+
+
+def _answered(
+    asked: _Asked, states: States, values: Mapping[str, Any], warnings: Iterable[Mapping[str, Any]]
+) -> Evaluation:
+    """The numbers of some states; ``warnings`` about their values."""
+    sources, names, model = asked.sources, asked.names, asked.sources.model
+    found = _computed(asked, values, states.count)
     results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
     told = _told(names, found, results, _looking(model, values, states.count))
     columns = sources.columns() if REGRESSOR in found else None
-    chosen = {name: values[name] for name in parameters or ()}
+    shown = {name: asked.form.shown(result) for name, result in results.items()}
+    failures: tuple[Failure, ...] = ()
+    if asked.form.float32 or not _is_finite(names, found):
+        failures = failures_of(
+            shown,
+            lambda name, state: _advice(
+                name, told.get(name, {}).get(state), asked.form.is_beyond(results[name], state)
+            ),
+        )
     return Evaluation(
         model.coordinates,
         states.count,
         model.program.digest,
-        {name: without_axis(value) for name, value in results.items()} if states.single else results,
-        failures_of(results, lambda name, state: _advice(name, told.get(name, {}).get(state))),
+        {name: without_axis(value) for name, value in shown.items()} if states.single else shown,
+        failures,
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
-        (
-            *value_warnings(sources, chosen, inputs or (), states.q, columns.parameters if columns else (), first),
-            *_warnings(results, told, states.single),
-        ),
+        (*warnings, *_warnings(results, told, states.single)),
     )
+
+
+def _is_finite(names: Sequence[str], found: Mapping[str, Mapping[str, Array]]) -> bool:
+    """Whether the engine has seen that all results are, and nothing is put in their places for another reason."""
+    seen = all(isinstance(outputs, Evaluated) and outputs.finite for outputs in found.values())
+    return seen and not any(QUANTITIES[name].pivots for name in names)
 
 
 def check(
@@ -155,6 +280,7 @@ def check(
     parameters: ValueInput | None = None,
     t: ArrayLike | None = 0.0,
     along: Direction | None = None,
+    **_form: bool,
 ) -> States:
     """The states, when :func:`evaluate` would accept the arguments; nothing is computed.
 
@@ -171,16 +297,15 @@ def check(
     return states
 
 
-def _computed(
-    sources: Sources, quantities: Sequence[str], values: Mapping[str, Any], evaluator: Evaluator, states: States
-) -> dict[str, dict[str, Array]]:
+def _computed(asked: _Asked, values: Mapping[str, Any], count: int) -> dict[str, dict[str, Array]]:
     """Outputs by source."""
-    count, model = states.count, sources.model
+    sources, evaluator, model = asked.sources, asked.evaluator, asked.sources.model
     look = _looking(model, values, count)
     found: dict[str, dict[str, Array]] = {}
-    for source, program, names in steps(sources, quantities):
+    for source, program, names in steps(sources, asked.names):
+        places = asked.form.places(names, model.dof) if source in (PARTS, MODEL) else NO_PLACES
         if source == PARTS and sources.numbers is not None:
-            found[MODEL] = sources.numbers(values, names, count)
+            found[MODEL] = with_elements(sources.numbers(values, names, count), places)
             continue
         if program is None:
             nothing = {name: np.full((count, model.dof), np.nan) for name in names}
@@ -194,7 +319,9 @@ def _computed(
         elif program is model.program and source == FD:
             found[source] = accelerations(model, values, evaluator, count)
         else:
-            found[source] = found.get(source, {}) | evaluator(program, values, names, count)
+            # engines that do not know of places are not asked for them
+            given = evaluator(program, values, names, count, *((places,) if places else ()))
+            found[source] = {**found[source], **given} if source in found else given
             if "inertias" in names:
                 found[source] = solved_anew(found[source], source, look)
     return found
@@ -260,8 +387,10 @@ def _told(
     return told
 
 
-def _advice(name: str, doubt: Doubt | None) -> tuple[str, str]:
-    """Code and message of a failure."""
+def _advice(name: str, doubt: Doubt | None, is_beyond: bool) -> tuple[str, str]:
+    """Code and message of a failure. ``is_beyond``: only in the precision wanted."""
+    if is_beyond:
+        return "overflow", "the result is beyond 3.4e38, the largest number of single precision"
     if doubt is not None:
         return doubt.code, doubt.message
     return "not-finite", _ENDLESS if name == CONDITION else _NOT_FINITE

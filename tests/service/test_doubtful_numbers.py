@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
 
-from service.operations import batches
+from service.operations import exchange
 from substructures.client.jobs import joined_parts
 from substructures.formats.arrays import as_answer, as_npz, read_npz
 
@@ -71,7 +71,7 @@ def test_warnings_in_arrow_whatever_the_parts(ball: TestClient, monkeypatch: pyt
     body = stream([{"q": lists(np.array(STATES))}], {"quantities": WANTED[:1]})
     tables = []
     for size in (10**9, 1):
-        monkeypatch.setattr(batches, "PART", size)
+        monkeypatch.setattr(exchange, "PART", size)
         tables.append(pa.ipc.open_stream(post(ball, body).content).read_all())
     whole, cut = (table["warnings"].to_pylist() for table in tables)
     assert [text is None for text in whole] == [True, False, True, True]

@@ -14,7 +14,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service import spool
-from service.operations import batches
+from service.operations import exchange
 from service.settings import Limits
 from service.store import Store
 from substructures.formats.arrow import MEDIA_TYPE
@@ -72,7 +72,7 @@ def test_parts_make_the_same_answer(filled: TestClient, monkeypatch: pytest.Monk
     np.savez(packed, quantities=np.array(["forward_dynamics", "metric", "kinematics"]), **arrays)
     answers = []
     for size in (10**9, 2000):
-        monkeypatch.setattr(batches, "PART", size)
+        monkeypatch.setattr(exchange, "PART", size)
         answer = post(filled, packed.getvalue(), sent="application/x-npz", accept="application/x-npz")
         tables = post(filled, packed.getvalue(), sent="application/x-npz")
         table = pa.ipc.open_stream(tables.content).read_all()
@@ -90,7 +90,7 @@ def test_parts_make_the_same_answer(filled: TestClient, monkeypatch: pytest.Monk
 
 
 def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batches, "PART", 80)
+    monkeypatch.setattr(exchange, "PART", 80)
     q = np.zeros((40, 1)).tolist()
     for wrong, pointer in (
         ({"qd": q[:10]}, "/qd"),
@@ -110,7 +110,7 @@ def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monk
 
 def test_one_position_and_many_velocities(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of states is that of the longest list in every format, also where the last part has one state."""
-    monkeypatch.setattr(batches, "PART", 10 * 8 * 2)
+    monkeypatch.setattr(exchange, "PART", 10 * 8 * 2)
     qd, quantities = np.linspace(-1, 1, 41), ["metric", "kinetic_energy"]
     expected = filled.post(URL, json={"quantities": quantities, "q": [[0.3]] * 41, "qd": qd[:, None].tolist()}).json()
     found = filled.post(URL, json={"quantities": quantities, "q": [0.3], "qd": qd[:, None].tolist()}).json()

@@ -16,7 +16,7 @@ from sqlalchemy import select, update
 
 from service.cli.main import main
 from service.database.tables import trees
-from service.operations import batches, catalogue
+from service.operations import catalogue, exchange
 from service.store import Store
 from service.summaries import part_content
 from substructures import Definition, Part, derive
@@ -232,7 +232,7 @@ def test_warnings_of_all_batches_are_in_streams(filled: TestClient, monkeypatch:
     codes = ["gravity-not-given", "negative-mass", "impossible-inertia", "limits-left"]
     assert [each["code"] for each in whole] == codes
     for size in (10**9, 1):
-        monkeypatch.setattr(batches, "PART", size)
+        monkeypatch.setattr(exchange, "PART", size)
         tables = list(read_tables(BytesIO(post(filled, body).content)))
         told = [each for table in tables for each in table["warnings"]]
         assert told[0] == whole[0]  # said once

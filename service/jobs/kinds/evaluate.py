@@ -31,6 +31,7 @@ from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
+from substructures.compile.kernel import NO_PLACES, Places
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.program import Program
@@ -249,16 +250,18 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
     }
 
 
-def _evaluator(program: Program, values: Mapping[str, Any], names: list[str], states: int) -> dict[str, Array]:
+def _evaluator(
+    program: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
+) -> dict[str, Array]:
     """Which engine answers depends on the item alone, so that its numbers never depend on what came before."""
     if states < COMPILED:
-        return interpreted(program, values, names, states)
+        return interpreted(program, values, names, states, places)
     key = program.digest, tuple(names)
     kernel = _kernels.get(key)
     if kernel is None:
         kernel = compile_program(program, names)
         _kernels.put(key, kernel)
-    return kernel.evaluate(values, threads=1)
+    return kernel.evaluate(values, threads=1, places=places)
 
 
 EVALUATE = Kind(_spread, _resolve, _run)
