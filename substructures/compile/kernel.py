@@ -117,8 +117,9 @@ class Kernel(ABC):
         out = Evaluated()
         for n in self.names if names is None else names:
             shape = (len(places[n]),) if n in places else self.shape(n, is_packed(n, packed))
-            out[n] = np.zeros(batch + shape)
-        out.finite = self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads, places=places))
+            out[n] = np.empty(batch + shape)
+        request = KernelCall(merged(values, columns, batch), batch, out, packed, threads, clean=False, places=places)
+        out.finite = self._run(request)
         return out
 
     def evaluate_into(
