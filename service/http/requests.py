@@ -12,7 +12,9 @@ from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 
 from service import keys
+from service.answers import JSON
 from service.refusals import Refused
+from service.schemas import forms
 from service.spool import Spool
 from service.store import Store
 from service.viewer import Viewer
@@ -125,22 +127,29 @@ RawBody = Annotated[bytes, Depends(raw_body)]
 
 
 def media_type(request: Request) -> str:
-    """The media type of the request body, without parameters."""
-    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    """The media type of the request body, without parameters; that of a form that brings JSON is JSON's."""
+    sent = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    return JSON if sent == forms.MEDIA_TYPE and not _is_of_page(request) else sent
+
+
+def _is_of_page(request: Request) -> bool:
+    """Whether a browser sends it for a page: each says so with a form, and only browsers do."""
+    return any(name in request.headers for name in ("origin", "referer", "sec-fetch-site", "sec-fetch-mode"))
 
 
 def require_json(request: Request) -> None:
     """Refuse a body that is not declared as JSON; this also keeps HTML forms of other sites out."""
-    if media_type(request) != "application/json":
-        raise Refused(
-            415, "unsupported-media-type", "send Content-Type: application/json", headers={"Accept": "application/json"}
-        )
+    if media_type(request) != JSON:
+        received = request.headers.get("content-type")
+        what = "no Content-Type" if received is None else f"Content-Type '{received[:80]}'"
+        detail = f"send Content-Type: application/json; {what} was received"
+        raise Refused(415, "unsupported-media-type", detail, headers={"Accept": JSON})
 
 
 def json_body(request: Request, raw: RawBody) -> Any:
     """The request body as plain data, numbers exact. Runs in a worker thread."""
     require_json(request)
-    return read_json(raw)
+    return read_json(forms.unpacked(raw))
 
 
 def optional_json_body(request: Request, raw: RawBody) -> Any:

@@ -11,6 +11,7 @@ from service.answers import JSON, Answer, Stream, json_answer, streamed
 from service.negotiation import by_preference
 from service.operations import batches, evaluations
 from service.refusals import Refused
+from service.schemas import forms
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from service.spool import Spool
@@ -52,7 +53,7 @@ def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Evaluation
             raise Refused(415, "arrow-not-installed", _EXTRA)
         return batches.arrow_requests(file, limits)
     if sent == JSON:
-        return [EvaluationRequest.read(read_json(file.read()))]
+        return [EvaluationRequest.read(read_json(forms.unpacked(file.read())))]
     raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
 
 

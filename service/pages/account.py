@@ -15,7 +15,7 @@ from fastapi.routing import APIRoute
 from starlette.requests import cookie_parser
 
 from service import keys
-from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials, media_type
+from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials
 from service.pages.html import Html, facts, tag
 from service.pages.layout import HEADERS, document
 from service.refusals import Refused
@@ -104,7 +104,7 @@ def _require_own_page(request: Request) -> None:
 
 
 def _fields(request: Request, raw: bytes) -> dict[str, str]:
-    if media_type(request) != FORM:
+    if not request.headers.get("content-type", "").lower().startswith(FORM):
         raise Refused(415, "unsupported-media-type", f"send {FORM}", headers={"Accept": FORM})
     return {name: values[-1] for name, values in parse_qs(raw.decode(errors="replace")).items()}
 

@@ -87,6 +87,8 @@ class EvaluationRequest(Shape):
             request = cls.model_validate(data)
         except ValidationError as error:
             raise InvalidDocument(_faults(error, data)) from None
+        if isinstance(request.quantities, str):  # a list of one, as MATLAB writes it
+            request.quantities = [request.quantities]
         if not isinstance(request.quantities, list | tuple):
             raise InvalidDocument.at("/quantities", "missing", _NEEDED["quantities"])
         return request

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from decimal import Decimal
 from functools import cached_property
 from typing import Any, Self, TypeVar
 
@@ -15,6 +16,8 @@ from substructures.errors import Fault, InvalidDocument
 
 #: so many characters of a value are shown in a message
 SHOWN = 80
+#: lists of lists that a value may stand alone for
+NESTED = 3
 
 
 class DocumentPart(BaseModel):
@@ -58,14 +61,48 @@ def read_model(model: type[M], data: Any, *, stored: bool = False, context: Mapp
 
     ``stored``: the data were accepted before, perhaps by an older version (``stored`` of the validation context).
     ``context``: what else validators are told. A fault below of what a validator takes as a whole has ``below`` in its
-    context: the rest of the pointer.
+    context: the rest of the pointer. What stands alone in the place of a list is a list of one, as MATLAB writes those.
     """
     if not isinstance(data, Mapping):
         raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    told = {**(context or {}), **({"stored": True} if stored else {})} or None
     try:
-        return model.model_validate(data, context={**(context or {}), **({"stored": True} if stored else {})} or None)
+        return model.model_validate(data, context=told)
     except ValidationError as error:
-        raise InvalidDocument(_faults(error, data)) from None
+        first = error
+    found, faults = data, first
+    for _ in range(NESTED):
+        listed = _lists_of_one(faults, found)
+        if listed is found:
+            break
+        found = listed
+        try:
+            return model.model_validate(found, context=told)
+        except ValidationError as error:
+            faults = error
+    raise InvalidDocument(_faults(first, data))
+
+
+def _lists_of_one(error: ValidationError, data: Any) -> Any:
+    """The data with lists of one in the places where one is expected and a value stands alone."""
+    for each in error.errors(include_url=False):
+        if each["type"] in ("tuple_type", "list_type") and isinstance(
+            each["input"], str | int | Decimal | float | Mapping
+        ):
+            data = _listed(data, each["loc"])
+    return data
+
+
+def _listed(data: Any, loc: tuple[int | str, ...]) -> Any:
+    """A copy with a list of one at a pydantic location; steps that pydantic adds are passed over."""
+    if not loc:
+        return data if isinstance(data, list | tuple) else [data]
+    step, rest = loc[0], loc[1:]
+    if isinstance(data, Mapping) and step in data:
+        return {**data, step: _listed(data[step], rest)}
+    if isinstance(data, list | tuple) and isinstance(step, int):
+        return [*data[:step], _listed(data[step], rest), *data[step + 1 :]]
+    return _listed(data, rest)
 
 
 def _faults(error: ValidationError, data: Any) -> list[Fault]:

@@ -111,13 +111,16 @@ def _entries(given: Any) -> int:
 
 
 def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
-    """(N, n) array of a state, and whether it was (n,)."""
+    """(N, n) array of a state, and whether it was (n,); with n = 1 also of a number, or of (N,)."""
     if given is None:
         return None
     given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
         given = _by_name(model, given, name)
     values = numeric(given, f"/{name}")
+    if model.dof == 1 and (values.ndim == 0 or (values.ndim == 1 and len(values) != 1)):
+        # one number for one coordinate, or one for each state, as MATLAB writes lists of one
+        return values.reshape(-1, 1), values.ndim == 0
     if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
         expected = f"(N, {model.dof}) or ({model.dof},)"
         raise InvalidArgument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")

@@ -33,7 +33,7 @@ def test_a_direction_becomes_one_of_the_science() -> None:
     [
         ([], [("", "object-expected")]),
         ({"q": [0]}, [("/quantities", "missing")]),
-        ({"quantities": "metric", "q": [0]}, [("/quantities", "missing")]),
+        ({"quantities": 1, "q": [0]}, [("/quantities", "missing")]),
         ({"quantities": ["metric"], "speed": 1}, [("/speed", "unknown-field")]),
         ({"quantities": ["mass"], "a/b": 1}, [("/a~1b", "unknown-field"), ("/quantities/0", "unknown-quantity")]),
         ({"quantities": ["metric"], "along": {"p": [1]}}, [("/along/p", "unknown-field")]),

@@ -75,7 +75,7 @@ def test_spans(change: Plain, pointer: str, code: str) -> None:
 
 
 OF_LOOPS: list[tuple[Plain, str, str]] = [
-    ({"fixed": "x.crank"}, "/fixed", "tuple-type"),
+    ({"fixed": 5}, "/fixed", "tuple-type"),
     ({"inputs": {"tau.x.crank": {"times": [0, 0], "values": [1, 2]}}}, "/inputs/tau.x.crank", "not-increasing"),
     ({"inputs": {"tau.x.crank": {"times": [0, 1], "values": [1, 2, 3]}}}, "/inputs/tau.x.crank", "wrong-length"),
     ({"inputs": {"tau.x.crank": {"times": [0, 1]}}}, "/inputs/tau.x.crank/values", "missing"),
