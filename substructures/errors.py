@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from typing import Self
 
 
@@ -35,6 +36,17 @@ def listed(names: Iterable[str], most: int = 12) -> str:
     """Names for a message: all of a few, the first of many."""
     found = list(names)
     return ", ".join(found[:most]) + (f", ... ({len(found)} in all)" if len(found) > most else "")
+
+
+def meant(name: str, names: Iterable[str]) -> str:
+    """What may have been meant by a name that is not among those there are; empty where nothing is like it.
+
+    >>> meant("metrik", ["forces", "metric"])
+    "; did you mean 'metric'?"
+    """
+    known = {each.lower(): each for each in names}
+    found = get_close_matches(name[:80].lower(), known, n=1)
+    return f"; did you mean '{known[found[0]]}'?" if found else ""
 
 
 class SubstructuresError(Exception):

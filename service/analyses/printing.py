@@ -11,7 +11,7 @@ import orjson
 from service.analyses.binding import bound, bound_names
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
 from service.refusals import not_found
-from substructures.errors import InvalidInput, TooLarge
+from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
 from substructures.expr.program import Program
 from substructures.printers import entries
@@ -63,7 +63,8 @@ def check_quantity(model: Model, quantity: str) -> None:
         require_stored(model.program, [quantity])
     names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
-    raise not_found(f"there is no quantity '{quantity[:80]}'; there are {known}", "unknown-quantity")
+    like = meant(quantity, names)
+    raise not_found(f"there is no quantity '{quantity[:80]}'{like or f'; there are {known}'}", "unknown-quantity")
 
 
 def needs_parts(quantity: str) -> bool:

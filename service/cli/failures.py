@@ -22,6 +22,10 @@ def told_of(error: Exception) -> list[str] | None:
             return [f"{fault.pointer or '/'}: {fault.message}" for fault in error.faults]
         case DBAPIError():
             return [f"the database refused: {told(error)}"]
+        case httpx2.ConnectError():
+            url = error.request.url
+            address = f"{url.scheme}://{url.netloc.decode()}"
+            return [f"nothing answers at {address}; start it with 'substructures serve', or say --server ADDRESS"]
         case httpx2.HTTPError():
             return [f"no answer from the server: {error}"]
         case OSError():

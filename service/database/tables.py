@@ -217,7 +217,7 @@ sessions = Table(  # of pages, signed in to with a key
 audit = Table(  # who did what; triggers keep its rows as they are
     "audit",
     metadata,
-    _number("seq", primary_key=True),
+    Column("seq", Integer, primary_key=True),
     _text("time"),
     _text("key"),
     _text("owner"),

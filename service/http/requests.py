@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, closing
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
 from fastapi.concurrency import run_in_threadpool
+from fastapi.routing import APIRoute
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 
 from service import keys
 from service.answers import JSON
-from service.refusals import Refused
+from service.refusals import Refused, unprocessable
 from service.schemas import forms
 from service.spool import Spool
 from service.store import Store
 from service.viewer import Viewer
-from substructures.documents import read_json
+from substructures.documents import pointer_step, read_json
+from substructures.errors import meant
 from substructures.formats import arrays, arrow
 
 SUBMISSIONS = "/v1/jobs"  # longer bodies
@@ -46,9 +48,29 @@ def needs(scope: str) -> Any:
         """Note who asks, or refuse."""
         viewer = await authenticated(store_of(request), credentials(request.method, request.headers))
         viewer.require(scope)
+        check_query(request)
         request.state.viewer, request.state.principal = viewer, viewer.key
 
     return Depends(authorise)
+
+
+def check_query(request: Request) -> None:
+    """Raise Refused 422 for a query parameter that the endpoint does not have."""
+    route = request.scope.get("route")
+    if not request.url.query or not isinstance(route, APIRoute):
+        return
+    known = list(_query_names(route.dependant))
+    for name in request.query_params:
+        if name not in known:
+            there = f"; there are {', '.join(known)}" if known else "; there are none"
+            detail = f"unknown query parameter '{name[:80]}'{meant(name, known) or there}"
+            raise unprocessable("unknown-query", detail, "/query" + pointer_step(name[:80]), known=known)
+
+
+def _query_names(dependant: Any) -> Iterator[str]:
+    yield from (field.alias for field in dependant.query_params)
+    for each in dependant.dependencies:
+        yield from _query_names(each)
 
 
 def credentials(method: str, headers: Headers) -> keys.Credentials:

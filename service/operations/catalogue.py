@@ -105,7 +105,8 @@ def find(connection: Connection, viewer: Viewer, text: str) -> catalogue.Version
 def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str = "") -> catalogue.Version:
     version = catalogue.resolve(connection, viewer, ref)
     if version is None:
-        raise not_found(f"there is no substructure '{text}'", "unknown-substructure")
+        like = owners.candidates(connection, viewer, "substructure", text)
+        raise not_found(f"there is no substructure '{text}'{like}", "unknown-substructure")
     return version
 
 

@@ -11,7 +11,7 @@ from service.queries.owners import Kind, Ownership
 from service.refusals import Refused, not_found
 from service.schemas.entries import Entry
 from service.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
-from substructures.errors import Fault
+from substructures.errors import Fault, meant
 
 
 def wanted(connection: Connection, viewer: Viewer, kind: Kind, name: str, entry: Entry) -> Ownership:
@@ -55,11 +55,18 @@ def require(viewer: Viewer, owner: str, name: str, what: str) -> None:
         raise Refused(403, "not-owner", f"'{name}' belongs to '{owner}': only its owner or an admin {what}")
 
 
+def candidates(connection: Connection, viewer: Viewer, kind: Kind, text: str) -> str:
+    """What may have been meant by a reference to something that is not there, of what the viewer sees."""
+    name = text.partition("@")[0]
+    return meant(name, [each for each in owners.names_like(connection, viewer, kind, name) if each != name])
+
+
 def seen(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> Ownership:
     """Whose a name is. Raises Refused 404 for what the viewer does not see."""
     found = owners.ownership(connection, kind, name)
     if found is None or not viewer.sees(found.owner, found.visibility):
-        raise not_found(f"there is no {kind} '{name[:80]}'", f"unknown-{kind}")
+        like = candidates(connection, viewer, kind, name)
+        raise not_found(f"there is no {kind} '{name[:80]}'{like}", f"unknown-{kind}")
     return found
 
 

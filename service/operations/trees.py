@@ -176,7 +176,8 @@ def _part(store: Store, connection: Connection, viewer: Viewer, index: int, inst
     ref = parse_reference(instance.substructure or "")
     version = versions.resolve(connection, viewer, ref) if ref is not None else None
     if version is None:
-        message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
+        like = owners.candidates(connection, viewer, "substructure", instance.substructure or "")
+        message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'{like}"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
     return store.required_part(connection, version.digest)
 
@@ -250,5 +251,6 @@ def find(connection: Connection, viewer: Viewer, text: str) -> trees.Tree:
     ref = parse_reference(text)
     tree = None if ref is None else trees.resolve(connection, viewer, ref)
     if tree is None:
-        raise not_found(f"there is no tree '{text[:160]}'", "unknown-tree")
+        like = owners.candidates(connection, viewer, "tree", text)
+        raise not_found(f"there is no tree '{text[:160]}'{like}", "unknown-tree")
     return tree

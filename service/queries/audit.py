@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import orjson
-from sqlalchemy import Connection, func, insert, select
+from sqlalchemy import Connection, insert, select
 
 from service.database.tables import audit
 from service.queries.common import now
@@ -29,12 +29,8 @@ class AuditEntry:
 
 def note(connection: Connection, viewer: Viewer, action: str, subject: str, **detail: Any) -> None:
     """Note an act in the transaction that does it."""
-    following = select(func.coalesce(func.max(audit.c.seq), 0) + 1)
-    if connection.dialect.name == "postgresql":
-        connection.exec_driver_sql("SELECT pg_advisory_xact_lock(7305513)")  # one number after the other
     row = {"time": now(), "key": viewer.key, "owner": viewer.owner, "action": action, "subject": subject}
-    row["detail"] = orjson.dumps(detail).decode()
-    connection.execute(insert(audit).values(seq=following.scalar_subquery(), **row))
+    connection.execute(insert(audit).values(**row, detail=orjson.dumps(detail).decode()))
 
 
 def page(connection: Connection, wanted: Mapping[str, str], before: int | None, size: int) -> list[AuditEntry]:

@@ -13,6 +13,7 @@ from service.queries.common import insert_missing
 from service.viewer import PUBLIC, Viewer
 
 AT_A_TIME = 500
+CANDIDATES = 1000
 Kind = Literal["substructure", "tree"]
 _TABLES: dict[Kind, Table] = {"substructure": substructures, "tree": tree_names}
 _FIRST: dict[Kind, dict[str, Any]] = {"substructure": {"latest": None}, "tree": {"latest": 0}}
@@ -40,6 +41,15 @@ def ownership(connection: Connection, kind: Kind, name: str) -> Ownership | None
     """Whose a name is; None for one that is free."""
     row = connection.execute(_OF[kind], {"name": name}).first()
     return None if row is None else Ownership(*row)
+
+
+def names_like(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> list[str]:
+    """Names that a viewer sees and that begin like one that is not there, or, of few, all."""
+    table = _TABLES[kind]
+    query = select(table.c.name).where(visible(table)).order_by(table.c.name).limit(CANDIDATES)
+    begins = table.c.name.startswith(name[:1].lower(), autoescape=True)
+    found = list(connection.execute(query.where(begins), seen_by(viewer)).scalars())
+    return found or list(connection.execute(query, seen_by(viewer)).scalars())
 
 
 def claim(connection: Connection, kind: Kind, name: str, wanted: Ownership) -> Ownership:

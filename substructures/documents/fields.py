@@ -12,16 +12,32 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from substructures.documents.schema import DocumentPart
+from substructures.documents.schema import PATTERNS, DocumentPart
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 
 NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
 
 
+def _suggested(text: str, wrong: str, filling: str) -> str:
+    """The text as a name, where that can be had by small changes."""
+    name = re.sub(wrong, filling, text.strip()).strip(filling)[:64]
+    return f"; for example '{name}'" if name and name[0].isascii() and name[0].isalnum() else ""
+
+
+PATTERNS[NAME] = lambda text: (
+    "a name is a letter and up to 63 letters, digits and '_'"
+    + _suggested(re.sub(r"^[^A-Za-z]+", "", text), r"[^A-Za-z0-9_]+", "_")
+)
+PATTERNS[LIBRARY_NAME] = lambda text: (
+    "a name here is up to 64 of a to z, 0 to 9 and '-', the first no '-'"
+    + _suggested(text.lower(), r"[^a-z0-9-]+", "-")
+)
+
 #: a number or a product or quotient of them, pi among them; how a unit begins
 _CONSTANT = re.compile(r"[-+]?(?:[\d.]+(?:[eE][-+]?\d+)?|pi)(?:[*/](?:[\d.]+(?:[eE][-+]?\d+)?|pi))*")
 _UNIT = re.compile(r"[^\W\d_]|[°%]|1\s*/")
+_WITH_UNIT = re.compile(r"([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*([^\W\d_][^\s]*(?:\s[^\s]+)?|[°%])")
 _EITHER = [{"type": "number"}, {"type": "string", "maxLength": 10000}]
 
 
@@ -55,6 +71,20 @@ def quantity_of(text: str) -> Quantity | str:
     value, _, unit = text.strip().partition(" ")
     unit = unit.strip()
     return Quantity(value=value, unit=unit) if _CONSTANT.fullmatch(value) and _UNIT.match(unit) else text
+
+
+def unit_advice(text: str) -> str:
+    """How a number with a unit is written, where an expression is none but for that; otherwise nothing.
+
+    >>> unit_advice("500g")
+    '; a number with a unit is written {"value": 500, "unit": "g"}'
+    """
+    match = _WITH_UNIT.fullmatch(text.strip())
+    try:
+        read_unit(match[2] if match else "")
+    except UnknownUnitError:
+        return ""
+    return f'; a number with a unit is written {{"value": {match[1]}, "unit": "{match[2]}"}}' if match else ""
 
 
 def unit_of(text: str) -> Unit:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from substructures.documents.text import escape
 from substructures.documents.to_json import write_json
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, listed, meant
 
 #: so many characters of a value are shown in a message
 SHOWN = 80
@@ -80,7 +80,7 @@ def read_model(model: type[M], data: Any, *, stored: bool = False, context: Mapp
             return model.model_validate(found, context=told)
         except ValidationError as error:
             faults = error
-    raise InvalidDocument(_faults(first, data))
+    raise InvalidDocument(_faults(first, data, model))
 
 
 def _lists_of_one(error: ValidationError, data: Any) -> Any:
@@ -105,12 +105,12 @@ def _listed(data: Any, loc: tuple[int | str, ...]) -> Any:
     return _listed(data, rest)
 
 
-def _faults(error: ValidationError, data: Any) -> list[Fault]:
+def _faults(error: ValidationError, data: Any, model: type[BaseModel]) -> list[Fault]:
     return [
         Fault(
             _pointer(e["loc"], e["type"] == "missing", data) + _tag(e["type"]) + e.get("ctx", {}).get("below", ""),
             e["type"].replace("_", "-"),
-            message_of(e),
+            message_of(e, model),
         )
         for e in error.errors(include_url=False)
     ]
@@ -121,16 +121,46 @@ def _tag(kind: str) -> str:
     return "/type" if kind.startswith("union_tag") else ""
 
 
-def message_of(error: Mapping[str, Any]) -> str:
-    """What pydantic's error says, with the name of what is missing or unknown, and otherwise with what was found."""
-    name = error["loc"][-1] if error["loc"] else ""
-    if error["type"] == "missing":
+def message_of(error: Mapping[str, Any], model: type[BaseModel] | None = None) -> str:
+    """What pydantic's error says, with the name of what is missing or unknown, and otherwise with what was found.
+
+    ``model``: whose fields may have been meant by one that is unknown.
+    """
+    name, kind, given = error["loc"][-1] if error["loc"] else "", error["type"], error["input"]
+    if kind == "missing":
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
-    if error["type"] == "extra_forbidden":
-        return f"unknown field '{str(name)[:80]}'"
+    if kind == "extra_forbidden":
+        return f"unknown field '{str(name)[:80]}'" + meant(str(name), () if model is None else _field_names(model))
     if "below" in error.get("ctx", ()):
         return str(error["msg"])
-    return str(error["msg"]) + _found(error["input"])
+    if kind == "model_type" and model is not None:
+        fields = model.model_json_schema().get("$defs", {}).get(error["ctx"]["class_name"], {}).get("properties", ())
+        return f"an object is needed, with {listed(fields)}{_found(given)}"
+    if kind in _EXPECTED:
+        return f"{_EXPECTED[kind]}{_found(given)}"
+    if kind == "literal_error":
+        expected = str(error["ctx"]["expected"])
+        names = expected.replace(" or ", ", ").replace("'", "").split(", ")
+        return f"expected {expected}{_found(given)}{meant(str(given), names)}"
+    if kind == "string_pattern_mismatch" and error["ctx"]["pattern"] in PATTERNS:
+        return f"{PATTERNS[error['ctx']['pattern']](str(given))}{_found(given)}"
+    return str(error["msg"]) + _found(given)
+
+
+_EXPECTED = {
+    **dict.fromkeys(("tuple_type", "list_type"), "a list is needed, as in [1, 2, 3]"),
+    **dict.fromkeys(("model_type", "dict_type", "mapping_type"), "an object is needed"),
+}
+#: by pattern, what is said about a text that does not match it
+PATTERNS: dict[str, Callable[[str], str]] = {}
+
+
+@cache
+def _field_names(model: type[BaseModel]) -> tuple[str, ...]:
+    """The names of all fields of a document, wherever they stand."""
+    schema = model.model_json_schema()
+    parts = [schema, *schema.get("$defs", {}).values()]
+    return tuple(dict.fromkeys(name for part in parts for name in part.get("properties", ())))
 
 
 def _found(given: Any) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
 
-from substructures.documents.fields import in_si
+from substructures.documents.fields import in_si, unit_advice
 from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
@@ -70,7 +70,7 @@ class Scope:
             return self.graph.number(value)
         except ExpressionError as error:
             code = "unknown-name" if error.name is not None else "bad-expression"
-            self.fault(pointer, code, str(error))
+            self.fault(pointer, code, str(error) + unit_advice(str(value)))
         except (ValueError, ArithmeticError) as error:
             self.fault(pointer, "bad-number", str(error))
         except TooLarge as error:

@@ -121,4 +121,8 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
             if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
                 _check_numbers(x, f"{pointer}/{i}", depth + 1)
     elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
-        raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {repr(given)[:40]}")
+        raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {_shown(given)}")
+
+
+def _shown(given: Any) -> str:
+    return "null, as MATLAB writes NaN" if given is None else repr(given)[:40]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidDocument, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.mechanics.kinematics import INTERFACE
@@ -90,7 +90,7 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
             scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
         index[instance.name] = i
     waiting: dict[int, list[int]] = {}
-    ready = []
+    ready, names = [], [each.name for each in spec.instances]
     for i, instance in enumerate(spec.instances):
         host = instance.at.partition(".")[0]
         if instance.at == "world":
@@ -98,7 +98,7 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
         elif host in index:
             waiting.setdefault(index[host], []).append(i)
         else:
-            scope.fault(f"/instances/{i}/at", "unknown-instance", f"unknown instance '{host}'")
+            scope.fault(f"/instances/{i}/at", "unknown-instance", f"unknown instance '{host}'{meant(host, names)}")
     order: list[int] = []
     while ready:
         i = min(ready)
@@ -159,9 +159,9 @@ class _Bindings:
                 if name in parts[instance.name].parameters:
                     self.given[f"{instance.name}.{name}"] = (value, pointer)
                 else:
-                    scope.fault(
-                        pointer, "unknown-parameter", f"'{parts[instance.name].name}' has no parameter '{name}'"
-                    )
+                    part = parts[instance.name]
+                    message = f"'{part.name}' has no parameter '{name}'{meant(name, part.parameters)}"
+                    scope.fault(pointer, "unknown-parameter", message)
 
     def resolve_all(self) -> None:
         """Read all bindings."""

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart, read_model
-from substructures.documents.fields import LibraryName, Name, Number, NumberVector
+from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
+from substructures.documents.schema import PATTERNS
 from substructures.part.definition import Definition, Parameter, Placement
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
 MAX_INSTANCES = 500
+
+PATTERNS[AT] = lambda text: f"a place is 'instance.port', 'instance.body' or 'world'{_place(text)}"
+
+
+def _place(text: str) -> str:
+    return f"; for example 'arm.{text}', where 'arm' is the instance that has it" if re.fullmatch(NAME, text) else ""
 
 
 class Instance(DocumentPart):

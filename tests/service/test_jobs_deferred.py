@@ -142,7 +142,10 @@ def test_scopes(settings: Settings) -> None:
     with open_store(settings) as store:
         with store.database.write() as connection:
             scopes = (["admin"], ["write"], ["jobs"], ["read"], ["jobs", "read"])
-            keys = {" ".join(s): {"Authorization": f"Bearer {create(connection, '', s, None)}"} for s in scopes}
+            owned = {
+                " ".join(s): create(connection, "", s, None, "another" if s == ["read"] else "one") for s in scopes
+            }
+            keys = {scope: {"Authorization": f"Bearer {key}"} for scope, key in owned.items()}
         client = make_client(store)
         client.post("/v1/substructures", json=PENDULUM, headers=keys["admin"])
         assemble = {
@@ -159,7 +162,7 @@ def test_scopes(settings: Settings) -> None:
         assert post("/v1/substructures", PENDULUM, "write", Prefer="respond-async") == 403
         job = client.post("/v1/jobs", json=verify, headers=keys["jobs read"]).json()["id"]
         assert client.get(f"/v1/jobs/{job}", headers=keys["jobs"]).status_code == 403
-        assert client.get(f"/v1/jobs/{job}", headers=keys["read"]).status_code == 404  # another's
+        assert client.get(f"/v1/jobs/{job}", headers=keys["read"]).status_code == 404  # of another owner
         assert client.get(f"/v1/jobs/{job}", headers=keys["jobs read"]).status_code == 200
         assert post(f"/v1/jobs/{job}/cancel", {}, "jobs") == 404
         assert post(f"/v1/jobs/{job}/cancel", {}, "jobs read") == 200

@@ -24,6 +24,7 @@ from service.operations import trees
 from service.queries.common import insert_missing, is_conflict, is_outage
 from service.settings import Settings
 from service.store import Store
+from service.viewer import Viewer
 
 from .conftest import PENDULUM, TREE, make_client
 from .databases import fresh
@@ -89,14 +90,14 @@ def test_deadlocks_are_tried_again(address: str, monkeypatch: pytest.MonkeyPatch
         client.post("/v1/substructures", json=PENDULUM)
         commit, meet, seen = trees.commit, threading.Barrier(2), list[str]()
 
-        def crossed(connection: connections.Connection, revision: trees.Revision) -> object:
+        def crossed(connection: connections.Connection, viewer: Viewer, revision: trees.Revision) -> object:
             seen.append(revision.spec.name)
             first, second = ("x", "y") if revision.spec.name == "one" else ("y", "x")
             put(connection, first)
             if len(seen) <= 2:
                 meet.wait(10)
             put(connection, second)
-            return commit(connection, revision)
+            return commit(connection, viewer, revision)
 
         monkeypatch.setattr(trees, "commit", crossed)
         answers: dict[str, int] = {}

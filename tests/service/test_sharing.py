@@ -11,9 +11,11 @@ from fastapi.testclient import TestClient
 
 from service.operations import catalogue
 from service.runtime import DERIVING
+from service.schemas.entries import PLAIN
 from service.settings import Limits
 from service.store import Store
 from service.threads import SharedThreads
+from service.viewer import ANYBODY
 from substructures import Definition, derive
 
 from .conftest import PENDULUM
@@ -105,4 +107,4 @@ def test_the_size_is_known_before(store: Store, dof: int) -> None:
     told: list[int] = []
     part = derive(Definition.read(chain(dof)), admit=told.append)
     assert told[0] == pytest.approx(len(part.program), rel=0.5)
-    assert catalogue.prepare(store, part.definition).content is not None
+    assert catalogue.prepare(store, ANYBODY, part.definition, PLAIN).content is not None

@@ -68,7 +68,7 @@ def test_a_store_that_is_gone_is_noticed(
 def test_a_store_that_goes_while_it_is_written(tmp_path: Path) -> None:
     database = Database(f"sqlite:///{tmp_path}/x.db")
     with pytest.raises(OperationalError, match="deleted or replaced"), database.write() as connection:  # noqa: PT012
-        connection.exec_driver_sql("INSERT INTO substructures VALUES ('a', NULL)")
+        connection.exec_driver_sql("INSERT INTO substructures (name) VALUES ('a')")
         (tmp_path / "x.db").rename(tmp_path / "y.db")
         (tmp_path / "x.db-wal").rename(tmp_path / "y.db-wal")
     database.close()

@@ -19,6 +19,7 @@ from service.database.tables import trees
 from service.operations import catalogue, exchange
 from service.store import Store
 from service.summaries import part_content
+from service.viewer import ANYBODY
 from substructures import Definition, Part, derive
 from substructures.formats.arrays import as_answer, read_npz
 from substructures.formats.arrow import read_tables
@@ -250,7 +251,7 @@ def test_what_was_stored_when_units_were_texts_keeps_its_meaning(client: TestCli
     certificate = {name: x for name, x in derived.certificate.items() if name != "converted"}
     old = Part(given, derived.program, certificate)
     with store.database.write() as connection:
-        catalogue.submit(connection, catalogue.PartSubmission("other", given.digest, part_content(old)))
+        catalogue.submit(connection, ANYBODY, catalogue.PartSubmission("other", given.digest, part_content(old)))
     found = client.get("/v1/substructures/other").json()
     assert _codes(found) == [("/parameters/l/unit", "unit-not-counted")]
     tree = {"name": "old", "gravity": [0, 0, -10], "instances": [{"name": "a", "substructure": "other"}]}

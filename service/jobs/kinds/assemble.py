@@ -14,7 +14,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument, InvalidInput
+from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
@@ -70,11 +70,11 @@ def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Libr
         if definition is not None:
             for name in instance.parameters:
                 if name not in definition.parameters:
-                    message = f"'{definition.name}' has no parameter '{name}'"
+                    message = f"'{definition.name}' has no parameter '{name}'{meant(name, definition.parameters)}"
                     yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
         host, _, frame = instance.at.partition(".")
         if instance.at != WORLD and host not in first:
-            yield Fault(f"/instances/{k}/at", "unknown-instance", f"unknown instance '{host}'")
+            yield Fault(f"/instances/{k}/at", "unknown-instance", f"unknown instance '{host}'{meant(host, first)}")
         carrier = _definition(first[host], versions, library) if host in first else None
         if carrier is not None:
             frames = ["base", *(body.name for body in carrier.bodies), *(port.name for port in carrier.ports)]

@@ -1,0 +1,115 @@
+"""What is said to who made a mistake: the rule in words, what was found, and what to do instead."""
+
+from __future__ import annotations
+
+import copy
+import socket
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.cli.main import main
+from substructures.errors import meant
+
+from .conftest import HAND, PENDULUM, TREE
+
+JOINT = {"type": "revolute", "coordinate": "q"}
+EVALUATIONS = "/v1/trees/cell/evaluations"
+
+
+def said(answer: Any) -> str:
+    assert 400 <= answer.status_code < 500, answer.text
+    told = answer.json()
+    return "; ".join([told["detail"], *(f"{each['pointer']} {each['message']}" for each in told["errors"])])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"name": "My Pendulum"}, ("/name", "a to z", "'my-pendulum'")),
+        ({"name": "---"}, ("/name", "a to z")),
+        ({"inertia": 5}, ("/bodies/0/inertia", "an object is needed, with", "xx", "found 5")),
+        ({"inertia": [1, 2]}, ("an object is needed",)),
+        ({"body": "rod 1"}, ("/bodies/0/name", "letters, digits and '_'", "'rod_1'")),
+        ({"mass": "500 g"}, ("/bodies/0/mass", '{"value": 500, "unit": "g"}')),
+        ({"mass": "500g"}, ('{"value": 500, "unit": "g"}',)),
+        ({"mass": "2 furlongs per"}, ("expected an operator",)),
+        ({"joint": {**JOINT, "theta": "90 deg"}}, ("/bodies/0/joint/theta", '{"value": 90, "unit": "deg"}')),
+        ({"joint": {**JOINT, "type": "revolut"}}, ("did you mean 'revolute'?",)),
+        ({"boddies": []}, ("unknown field 'boddies'; did you mean 'bodies'?",)),
+        ({"joint": {**JOINT, "stifness": 1}}, ("did you mean 'stiffness'?",)),
+    ],
+)
+def test_definitions(client: TestClient, change: dict[str, Any], words: tuple[str, ...]) -> None:
+    part = copy.deepcopy(PENDULUM)
+    for name, value in change.items():
+        if name == "body":
+            part["bodies"][0]["name"] = value
+        elif name in ("inertia", "mass", "joint"):
+            part["bodies"][0][name] = value
+        else:
+            part[name] = value
+    told = said(client.post("/v1/substructures", json=part))
+    for word in words:
+        assert word in told, told
+    assert "match pattern" not in told
+    assert "dictionary" not in told
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"gravity": -9.81}, ("/gravity", "a list is needed", "found -9.81")),
+        ({"gravity": {"x": 0}}, ("a list is needed",)),
+        ({"at": "tip"}, ("/instances/1/at", "'instance.port'", "'arm.tip'")),
+        ({"at": "arm.tp"}, ("it has base, rod, tip",)),
+        ({"at": "amr.tip"}, ("unknown instance 'amr'; did you mean 'arm'?",)),
+        ({"substructure": "pendulm"}, ("/instances/1/substructure", "did you mean 'pendulum'?")),
+        ({"parameters": {"mm": 1}}, ("/instances/1/parameters/mm", "did you mean 'm'?")),
+    ],
+)
+def test_trees(filled: TestClient, change: dict[str, Any], words: tuple[str, ...]) -> None:
+    tree = {**TREE, "name": "another", "instances": [*TREE["instances"], copy.deepcopy(HAND)]}
+    target = tree if "gravity" in change else tree["instances"][1]
+    target.update(change)
+    told = said(filled.post("/v1/trees", json=tree))
+    for word in words:
+        assert word in told, told
+    assert "tuple" not in told
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("/v1/substructures/pendulm", "did you mean 'pendulum'?"),
+        ("/v1/trees/cel", "did you mean 'cell'?"),
+        ("/v1/trees/cell/metrik", "did you mean 'metric'?"),
+        ("/v1/trees/cell/metric?fromat=text", "unknown query parameter 'fromat'; did you mean 'format'?"),
+        ("/v1/trees?dofs=2", "unknown query parameter 'dofs'; there are q, uses, owner, page_size, page_token"),
+        ("/v1/limits?x=1", "there are none"),
+    ],
+)
+def test_names(filled: TestClient, path: str, words: str) -> None:
+    assert words in said(filled.get(path))
+
+
+def test_numbers_that_are_none(filled: TestClient) -> None:
+    assert "found null, as MATLAB writes NaN" in said(
+        filled.post(EVALUATIONS, json={"quantities": ["metric"], "q": [None]})
+    )
+
+
+def test_a_server_that_is_not_there(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"http://127.0.0.1:{listener.getsockname()[1]}"
+    (tmp_path / "part.yaml").write_text("name: x")
+    assert main(["submit", str(tmp_path / "part.yaml"), "--server", address]) == 1
+    told = capsys.readouterr().err
+    assert address in told
+    assert "substructures serve" in told
+
+
+def test_what_was_meant() -> None:
+    assert meant("Metric", ["metric", "forces"]) == "; did you mean 'metric'?"
+    assert meant("x" * 10_000, ["metric"]) == meant("nothing", []) == ""
