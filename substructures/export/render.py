@@ -10,9 +10,18 @@ from substructures.export.exported import Exported, Function, check_name
 from substructures.export.interface import Interface
 from substructures.export.languages.c import C
 from substructures.export.languages.code import Code
+from substructures.export.languages.cpp import Cpp
+from substructures.export.languages.fortran import Fortran
+from substructures.export.languages.fricas import Fricas
 from substructures.export.languages.julia import Julia
+from substructures.export.languages.maple import Maple
+from substructures.export.languages.mathematica import Mathematica
 from substructures.export.languages.matlab import Matlab
+from substructures.export.languages.maxima import Maxima
+from substructures.export.languages.modelica import Modelica
 from substructures.export.languages.python import Python
+from substructures.export.languages.reduce import Reduce
+from substructures.export.languages.rust import Rust
 from substructures.export.languages.sympy import SymPy
 from substructures.export.software import SOFTWARE
 from substructures.expr.operations import MAX_ELEMENTS
@@ -27,7 +36,22 @@ from substructures.quantities.formulas import DERIVED
 
 _LISTINGS = {"expanded": expanded, "textbook": textbook}
 #: by name in the contract
-LANGUAGES: Mapping[str, type[Code]] = {"sympy": SymPy, "python": Python, "c": C, "matlab": Matlab, "julia": Julia}
+LANGUAGES: Mapping[str, type[Code]] = {
+    "sympy": SymPy,
+    "python": Python,
+    "c": C,
+    "cpp": Cpp,
+    "fortran": Fortran,
+    "rust": Rust,
+    "matlab": Matlab,
+    "julia": Julia,
+    "maxima": Maxima,
+    "reduce": Reduce,
+    "maple": Maple,
+    "fricas": Fricas,
+    "mathematica": Mathematica,
+    "modelica": Modelica,
+}
 #: media type of every format
 FORMATS: Mapping[str, str] = {**WRITTEN, **{name: language.media for name, language in LANGUAGES.items()}}
 
@@ -80,6 +104,6 @@ def definitions(exported: Exported, language: type[Code], limit: int) -> list[li
         for output in function.program.outputs.values():
             if prod(output.shape) > MAX_ELEMENTS:
                 raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
-        code = language(function, exported.called(function))
+        code = language(function, exported)
         found.append(code.define(listing(function.program, code, limit)))
     return found

@@ -13,6 +13,7 @@ from substructures.export.languages import c
 from substructures.export.languages.c import C
 from substructures.export.languages.code import Code
 from substructures.export.languages.cuda import Cuda
+from substructures.export.reference import reference
 from substructures.export.render import LANGUAGES, definitions, text_of
 from substructures.export.software import SOFTWARE
 from substructures.export.webassembly import glue
@@ -45,8 +46,10 @@ def _interface(exported: Exported, _: int) -> Files:
 
 def _one_file(language: type[Code]) -> Target:
     def make(exported: Exported, limit: int) -> Files:
-        """All functions in one file."""
-        return {f"{exported.name}{language.suffix}": text_of(exported, language, limit).encode()}
+        """All functions in one file, and the self-test."""
+        made = {f"{exported.name}{language.suffix}": text_of(exported, language, limit)}
+        made |= language.selftest(exported, reference(exported))
+        return {name: text.encode() for name, text in made.items()}
 
     return Target(make, language.executed)
 
@@ -54,11 +57,12 @@ def _one_file(language: type[Code]) -> Target:
 def _function_files(exported: Exported, limit: int) -> Files:
     """MATLAB: a file for each function."""
     matlab = LANGUAGES["matlab"]
-    found = {}
+    found: dict[str, str] = {}
     for function, lines in zip(exported.functions, definitions(exported, matlab, limit), strict=True):
         alone = Exported(exported.name, exported.interface, (function,), exported.form)
-        found[f"{exported.called(function)}.m"] = matlab.file(alone, [lines], SOFTWARE).encode()
-    return found
+        found[f"{exported.called(function)}.m"] = matlab.file(alone, [lines], SOFTWARE)
+    found |= matlab.selftest(exported, reference(exported))
+    return {name: text.encode() for name, text in found.items()}
 
 
 def _javascript(exported: Exported, _: int) -> Files:
@@ -78,7 +82,9 @@ def _c(exported: Exported, limit: int) -> Files:
     header += [*c.declarations(exported), "", "#ifdef __cplusplus", "}", "#endif", "#endif", ""]
     lines = c.source(exported, definitions(exported, C, limit))
     text = [about[0], "", f'#include "{exported.name}.h"', "", *lines, ""]
-    return {f"{exported.name}.h": "\n".join(header).encode(), f"{exported.name}.c": "\n".join(text).encode()}
+    found = {f"{exported.name}.h": "\n".join(header), f"{exported.name}.c": "\n".join(text)}
+    found |= C.selftest(exported, reference(exported))
+    return {name: each.encode() for name, each in found.items()}
 
 
 TARGETS: Mapping[str, Target] = {
@@ -87,5 +93,5 @@ TARGETS: Mapping[str, Target] = {
     "interface": Target(_interface, "read by callers in C and Octave"),
     "c": Target(_c, C.executed),
     "matlab": Target(_function_files, LANGUAGES["matlab"].executed),
-    **{name: _one_file(LANGUAGES[name]) for name in ("python", "julia", "sympy")},
+    **{name: _one_file(language) for name, language in LANGUAGES.items() if name not in ("c", "matlab")},
 }

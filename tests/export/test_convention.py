@@ -6,23 +6,20 @@ import ctypes
 import json
 import subprocess
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from exported_models import LIMIT, exported_of, tree_of, write
 from run_code import STRICT, agree, by_output, call_c, load_python, octave, octave_call, shared, state, tool
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive, evaluate
+from substructures import Definition, Model, catalogue, derive, evaluate
 from substructures.errors import InvalidArgument
-from substructures.export import Exported, exported_model, files, interface_of_model, interface_of_part, render
+from substructures.export import exported_model, files, interface_of_model, interface_of_part, render
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.part.outputs import with_own_inertia
 from substructures.quantities.evaluation import Sources
 
-LIMIT = 1_000_000
-QUANTITIES = ("metric", "christoffel", "gravity", "kinematics", "potential_energy", "coriolis", "bias", "forces")
-QUANTITIES += ("inverse_dynamics", "forward_dynamics", "kinetic_energy", "momentum", "total_momentum")
 #: the contract, section 8
 CONTRACT = {
     **dict.fromkeys(("metric", "christoffel", "gravity", "kinematics", "momentum"), "q p"),
@@ -34,27 +31,9 @@ CONTRACT = {
 }
 
 
-def tree_of(*parts: str) -> Model:
-    instances = [{"name": f"i{k}", "substructure": name} for k, name in enumerate(parts)]
-    spec = TreeSpec.read({"name": "demo", "gravity": [0, 0, "-9.81"], "instances": instances})
-    return couple(spec, {f"i{k}": derive(Definition.read(catalogue.load(name))) for k, name in enumerate(parts)})
-
-
-def exported_of(model: Model, name: str = "demo", **options: Any) -> Exported:
-    interface = interface_of_model(model, "demo@1", "sha256:1")
-    return exported_model(Sources(model), interface, QUANTITIES, name, **options)
-
-
 def with_defaults(program: Program, model: Model) -> Program:
     given = {n: p["value"] for n, p in model.parameters.items()}
     return bind(program, {n: x for n, x in given.items() if n in program.needs(program.outputs)})
-
-
-def write(exported: Exported, target: str, folder: Path) -> list[Path]:
-    made = files(exported, target, LIMIT)
-    for name, data in made.items():
-        (folder / name).write_bytes(data)
-    return [folder / name for name in made]
 
 
 @pytest.fixture(scope="module")

@@ -54,7 +54,7 @@ def test_names_do_not_leave_their_line(target: str) -> None:
 
 @pytest.mark.parametrize("target", ["python", "sympy"])
 def test_python_has_the_same_structure_whatever_the_names(target: str) -> None:
-    (text,) = files(HOSTILE, target, 10**6).values()
+    text = files(HOSTILE, target, 10**6)["model.py"]
     tree = ast.parse(text)
     called = {ast.unparse(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
     assert not {c for c in called if re.search("system|import|eval|exec|open|boom", c)}

@@ -6,7 +6,7 @@ that they need is stated.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import isnan, prod
 from typing import ClassVar
 
@@ -14,6 +14,7 @@ from substructures.export.exported import Exported, Function, identifier_of
 from substructures.export.interface import ORDER
 from substructures.export.languages.code import Code, head, indented
 from substructures.export.languages.pieces import Pieces, split
+from substructures.export.reference import Reference
 from substructures.expr.program import Output
 from substructures.printers.language import Listing, Piece
 
@@ -48,7 +49,7 @@ class C(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """Declarations and definitions in one file."""
-        lines = [*cls.commented(head(exported, cls.first, software)), "", *declarations(exported), ""]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "", *declarations(exported), ""]
         return "\n".join([*lines, *source(exported, functions)]) + "\n"
 
     def define(self, listing: Listing) -> list[str]:
@@ -67,6 +68,11 @@ class C(Code):
         if len(pieces.bodies) == 1:
             return [*opening, *indented(self._statements(pieces, 0)), "}"]
         return [*self._pieces(pieces), *opening, *indented(self._calls(pieces)), "}"]
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
+        """A program that ends with 1 where a value is not the reference's."""
+        return {f"{exported.name}_selftest.c": "\n".join(selftest(exported, list(reference)))}
 
     def _statements(self, pieces: Pieces, k: int) -> list[str]:
         body = pieces.bodies[k]
@@ -122,7 +128,7 @@ def declarations(exported: Exported) -> list[str]:
     lines = ["enum {", *(f"    {constant}," for constant in constants[:-1]), f"    {constants[-1]}", "};", ""]
     lines += ["// the default values of the parameters, NaN where there are none", f"void {name}_defaults(double *p);"]
     for each in exported.functions:
-        code = C(each, exported.called(each))
+        code = C(each, exported)
         lines.append(f"// {each.program.count()['total']} operations")
         lines.append(f"{signature(each, code.called, code.variables)};")
     lines += [
@@ -182,6 +188,60 @@ def _call(exported: Exported) -> list[str]:
         "    }",
         "}",
     ]
+
+
+def selftest(exported: Exported, reference: Sequence[Reference]) -> list[str]:
+    """A program that ends with 1 where a value is not the reference's."""
+    lines = [
+        f'#include "{exported.name}.h"',
+        "",
+        "#include <math.h>",
+        "#include <stddef.h>",
+        "#include <stdio.h>",
+        "",
+        *_CHECK,
+    ]
+    for each in reference:
+        lines += ["", f"static int test_{each.number}(void)", "{", "    int wrong = 0;"]
+        names = []
+        for symbol, values in each.arguments.items():
+            plain = ", ".join(map(repr, values)) or "0.0"
+            one = (
+                f"const double t = {values[0]!r};"
+                if symbol == "t"
+                else f"static const double {symbol}[] = {{{plain}}};"
+            )
+            lines.append(f"    {one}")
+            names.append(symbol)
+        for k, shape in enumerate(each.shapes):
+            lines.append(f"    static double y{k}[{max(1, prod(shape))}];")
+            names.append(f"y{k}")
+        lines.append(f"    {each.called}({', '.join(names)});")
+        for check in each.checks:
+            y, size = f"y{check.output}", prod(each.shapes[check.output])
+            found = f"sum({y}, {size})" if check.is_sum else f"{y}[{flat(check.index, each.shapes[check.output])}]"
+            lines.append(f'    wrong |= differs({found}, {check.value!r}, {check.limit!r}, "{each.called}");')
+        lines += ["    return wrong;", "}"]
+    lines += ["", "int main(void)", "{", "    int wrong = 0;"]
+    lines += [f"    wrong |= test_{each.number}();" for each in reference]
+    return [*lines, '    if (!wrong) puts("ok");', "    return wrong;", "}", ""]
+
+
+_CHECK = (
+    "static int differs(double found, double expected, double limit, const char *what)",
+    "{",
+    "    if (fabs(found - expected) <= limit) return 0;",
+    '    printf("%s: %.17g for %.17g\\n", what, found, expected);',
+    "    return 1;",
+    "}",
+    "",
+    "static double sum(const double *values, size_t count)",
+    "{",
+    "    double total = 0.0;",
+    "    for (size_t i = 0; i < count; ++i) total += values[i];",
+    "    return total;",
+    "}",
+)
 
 
 def head_of(exported: Exported, software: str) -> list[str]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from math import isnan
 from typing import ClassVar
 
 from substructures.export.exported import Exported, Function, identifier_of
 from substructures.export.interface import MEANINGS, Vector
+from substructures.export.reference import Reference
 from substructures.expr.interpret import constant
 from substructures.expr.program import Output
 from substructures.printers.language import NEGATION, Language, Listing, Piece
@@ -32,6 +33,7 @@ _WORDS = (
 _RESERVED = frozenset(word for line in _WORDS for word in line.split())
 #: conditions under which functions are real, in terms of x
 REAL = {"sqrt": "x >= 0", "log": "x >= 0", "asin": "abs(x) <= 1", "acos": "abs(x) <= 1"}
+NOT_EXECUTED = "Not executed: the tests of the generator have no interpreter or compiler of this language."
 YOURS = "This file is the output of a program and belongs to whoever had it made; it may be used for anything."
 
 
@@ -47,9 +49,9 @@ class Code(Language):
     executed: ClassVar[str] = ""
     brackets: ClassVar[tuple[str, str]] = ("[", "]")
 
-    def __init__(self, function: Function, called: str) -> None:
+    def __init__(self, function: Function, exported: Exported) -> None:
         super().__init__(function.program)
-        self.function, self.called = function, called
+        self.function, self.exported, self.called = function, exported, exported.called(function)
         self.variables = _variables(list(function.program.outputs))
 
     @abstractmethod
@@ -59,7 +61,7 @@ class Code(Language):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A file with functions; the head says what it was made from."""
-        lines = [*cls.commented(head(exported, cls.first, software)), ""]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), ""]
         for each in functions:
             lines += [*each, ""]
         return "\n".join(lines)
@@ -68,6 +70,11 @@ class Code(Language):
     def commented(cls, lines: Iterable[str]) -> list[str]:
         """Lines as comments."""
         return [f"{cls.mark} {line}".rstrip() for line in lines]
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003
+        """Files of a program that compares with reference values, prints ``ok`` or what differs; none by default."""
+        return {}
 
     def render(self, listing: Listing, name: str) -> str:  # noqa: ARG002 -- the function has its name already
         """The function alone."""
@@ -128,14 +135,17 @@ def _variables(outputs: list[str]) -> dict[str, str]:
     return found
 
 
-def head(exported: Exported, first: int, software: str) -> list[str]:
+def head(exported: Exported, first: int, software: str, executed: str = "here") -> list[str]:
     """What a file says of itself: what it was made from, functions, and what stands where in their arguments."""
     interface = exported.interface
     lines = [f"{exported.name}: functions of a mechanism, made from formulas by {comment(software)}."]
     if interface.reference or interface.digest:
         reference = interface.reference.replace("@", " version ")
         lines.append(f"Made from {', '.join(comment(text) for text in (reference, interface.digest) if text)}.")
-    lines += [YOURS, "Functions:"]
+    lines.append(YOURS)
+    if not executed:
+        lines.append(NOT_EXECUTED)
+    lines.append("Functions:")
     for each in exported.functions:
         arguments = ", ".join(each.arguments)
         lines.append(f"  {exported.called(each)}({arguments}): {each.program.count()['total']} operations")
@@ -166,6 +176,22 @@ def _elements(vector: Vector, first: int, of: str = "") -> Iterator[str]:
         if vector.defaults:
             value = ", no default" if isnan(vector.defaults[i]) else f", default {vector.defaults[i]!r}"
         yield f"    {i + first}  {comment(name)} [{comment(unit)}]{value}"
+
+
+def nested(array: Output, texts: Sequence[str], ends: tuple[str, str], zero: str) -> str:
+    """All elements as nested lists."""
+    rows: dict[tuple[int, ...], str] = {}
+    formulas = dict(zip(array.entries, texts, strict=True))
+    for index, entry, sign in array.expanded():
+        rows[index] = formulas[entry] if sign > 0 else f"-({formulas[entry]})"
+
+    def level(index: tuple[int, ...]) -> str:
+        if len(index) == len(array.shape):
+            return rows.get(index, zero)
+        inner = (level((*index, i)) for i in range(array.shape[len(index)]))
+        return f"{ends[0]}{', '.join(inner)}{ends[1]}"
+
+    return level(())
 
 
 def indented(lines: Iterable[str], by: str = "    ") -> list[str]:

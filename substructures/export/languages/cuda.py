@@ -16,6 +16,7 @@ from substructures.export.exported import Exported
 from substructures.export.languages.c import C, argument, flat
 from substructures.export.languages.code import head, indented
 from substructures.export.languages.pieces import LENGTH, Pieces, split
+from substructures.export.reference import Reference
 from substructures.expr.operations import Output
 from substructures.printers.language import Listing
 
@@ -76,7 +77,7 @@ class Cuda(C):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """One file."""
-        told = [*head(exported, cls.first, software), *_USE]
+        told = [*head(exported, cls.first, software, cls.executed), *_USE]
         lines = [*cls.commented(told), *_OPENING.splitlines(), ""]
         values = enumerate(exported.interface.vectors["p"].defaults)
         defaults = [f"p[{i}] = {'(0.0 / 0.0)' if isnan(x) else repr(x)};" for i, x in values]
@@ -85,6 +86,11 @@ class Cuda(C):
         text = "\n".join(line for each in functions for line in (*each, ""))
         lines += [*_SIGN.splitlines(), ""] if "substructures_sign(" in text else []
         return "\n".join([*lines, text])
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003
+        """None: it would need a device."""
+        return {}
 
     def define(self, listing: Listing) -> list[str]:
         """The tiles, the function of one state, and that of many."""

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isnan
 from typing import ClassVar
 
+from substructures.export.exported import Exported
 from substructures.export.languages.code import Code, indented
+from substructures.export.reference import Reference
 from substructures.printers.language import Listing
+
+_CHECK = (
+    "function check(found, expected, limit, what)",
+    '    abs(found - expected) <= limit || error("$what: $found for $expected")',
+    "end",
+)
 
 
 class Julia(Code):
@@ -18,6 +26,22 @@ class Julia(Code):
     first = 1
     infinity = "Inf"
     functions: ClassVar[Mapping[str, str]] = {"atan2": "atan"}
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
+        """A script that raises an error where a value is not the reference's."""
+        lines = [f'include("{exported.name}.jl")', "", *_CHECK]
+        for each in reference:
+            given = [
+                repr(v[0]) if s == "t" else f"Float64[{', '.join(map(repr, v))}]" for s, v in each.arguments.items()
+            ]
+            lines += ["", f"y = {each.called}({', '.join(given)})"]
+            for check in each.checks:
+                y = f"y[{check.output + 1}]" if len(each.shapes) > 1 else "y"
+                index = ", ".join(str(i + 1) for i in check.index)
+                found = f"sum({y})" if check.is_sum else f"{y}[{index}]" if index else y
+                lines.append(f'check({found}, {check.value!r}, {check.limit!r}, "{each.called}")')
+        return {f"{exported.name}_selftest.jl": "\n".join([*lines, "", 'println("ok")', ""])}
 
     def define(self, listing: Listing) -> list[str]:
         """A function with its checks."""

@@ -10,8 +10,21 @@ from math import isnan
 
 from substructures.export.exported import Exported
 from substructures.export.languages.code import REAL, Code, head, indented
+from substructures.export.reference import Reference
 from substructures.expr.program import Output
 from substructures.printers.language import Listing, Piece
+
+_CHECK = (
+    "    disp('ok');",
+    "end",
+    "",
+    "function check(found, expected, limit, what)",
+    "    if ~(abs(found - expected) <= limit)",
+    "        error('selftest:wrong', '%s: %.17g for %.17g', what, found, expected);",
+    "    end",
+    "end",
+    "",
+)
 
 
 class Matlab(Code):
@@ -33,7 +46,7 @@ class Matlab(Code):
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A function file: its help is the head."""
         first, *others = functions
-        lines = [first[0], *cls.commented(head(exported, cls.first, software)), *first[1:]]
+        lines = [first[0], *cls.commented(head(exported, cls.first, software, cls.executed)), *first[1:]]
         for each in others:
             lines += ["", *each]
         return "\n".join(lines) + "\n"
@@ -47,6 +60,23 @@ class Matlab(Code):
             body += self._fill(self.variables[output], array, listing, output)
         signature = f"function [{results}] = {self.called}({', '.join(self.function.arguments)})"
         return [signature, *indented(body), "end", *self._real_branches()]
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
+        """A function that raises an error where a value is not the reference's."""
+        lines = [f"function {exported.name}_selftest()"]
+        for each in reference:
+            given = [
+                repr(values[0]) if s == "t" else f"[{'; '.join(map(repr, values))}]"
+                for s, values in each.arguments.items()
+            ]
+            results = [f"y{k}" for k in range(len(each.shapes))]
+            lines.append(f"    [{', '.join(results)}] = {each.called}({', '.join(given)});")
+            for check in each.checks:
+                y, index = f"y{check.output}", ", ".join(str(i + 1) for i in check.index)
+                found = f"sum({y}(:))" if check.is_sum else f"{y}({index})" if index else y
+                lines.append(f"    check({found}, {check.value!r}, {check.limit!r}, '{each.called}');")
+        return {f"{exported.name}_selftest.m": "\n".join([*lines, *_CHECK])}
 
     def _checks(self) -> list[str]:
         """The defaults of p, which is the last argument, and the lengths of all."""

@@ -7,6 +7,7 @@ from math import isnan
 
 from substructures.export.exported import Exported
 from substructures.export.languages.code import Code, head, indented
+from substructures.export.reference import Reference
 from substructures.printers.language import Listing, Piece
 
 _READ = """
@@ -16,6 +17,17 @@ def _columns(name, value, length):
         raise ValueError(f"{name} has the shape {value.shape}, (..., {length}) is needed")
     return np.moveaxis(value, -1, 0)
 """
+
+_CHECK = (
+    "",
+    "",
+    "def differs(found, expected, limit, what):",
+    "    if abs(found - expected) <= limit:",
+    "        return False",
+    '    print(what, found, "for", expected)',
+    "    return True",
+    "",
+)
 
 
 class Python(Code):
@@ -39,7 +51,7 @@ class Python(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A module; ``P`` are the defaults of the parameters."""
-        lines = ['"""', *head(exported, cls.first, software), '"""', "", "import numpy as np", ""]
+        lines = ['"""', *head(exported, cls.first, software, cls.executed), '"""', "", "import numpy as np", ""]
         for symbol in exported.symbols:
             vector = exported.interface.vectors[symbol]
             if symbol != "t":
@@ -68,6 +80,20 @@ class Python(Code):
         pairs = ", ".join(f"{n!a}: {v}" for n, v in variables)
         body.append(f"return {variables[0][1]}" if len(variables) == 1 else f"return {{{pairs}}}")
         return [f"def {self.called}({', '.join(arguments)}):", *indented(body)]
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
+        """A script that exits with 1 where a value is not the reference's."""
+        lines = ["import sys", "", "import numpy as np", "", f"import {exported.name}", "", "wrong = False", *_CHECK]
+        for each in reference:
+            given = [repr(values[0] if s == "t" else list(values)) for s, values in each.arguments.items()]
+            lines += ["", f"y = {exported.name}.{each.called}({', '.join(given)})"]
+            names = list(exported.functions[each.number].program.outputs)
+            for check in each.checks:
+                y = f"y[{names[check.output]!a}]" if len(names) > 1 else "y"
+                found = f"np.sum({y})" if check.is_sum else f"{y}[{check.index!r}]"
+                lines.append(f"wrong |= differs({found}, {check.value!r}, {check.limit!r}, {each.called!r})")
+        return {f"{exported.name}_selftest.py": "\n".join([*lines, "", 'sys.exit(1 if wrong else print("ok"))', ""])}
 
     def _fill(self, output: str, listing: Listing) -> list[str]:
         array, v = self.program.outputs[output], self.variables[output]

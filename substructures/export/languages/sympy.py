@@ -53,7 +53,7 @@ class SymPy(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A module: lists of symbols by vector, then the functions."""
-        lines = ['"""', *head(exported, cls.first, software), '"""', ""]
+        lines = ['"""', *head(exported, cls.first, software, cls.executed), '"""', ""]
         lines += [f"from sympy import {_CLASSES}, {_FUNCTIONS}", ""]
         for f in REAL:
             lines += [f"def real_{f}(x):", f"    return Piecewise(({f}(x), {REAL[f]}), (nan, True))", ""]

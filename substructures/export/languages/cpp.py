@@ -1,0 +1,131 @@
+"""C++17, a header: ``auto metric = name_metric(q, p)``, over ``double`` or any scalar with these functions.
+
+Lengths are part of the types; ``p`` has its defaults. Arrays are ``std::array``, row-major.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import isnan, prod
+from typing import ClassVar
+
+from substructures.export.exported import Exported
+from substructures.export.languages.c import C, flat
+from substructures.export.languages.code import head, indented
+from substructures.export.reference import Reference
+from substructures.printers.language import Listing, Piece
+
+_USING = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "sqrt", "abs", "pow")
+
+
+class Cpp(C):
+    """Function templates without dependencies."""
+
+    media = "text/x-c++; charset=utf-8"
+    suffix = ".hpp"
+    executed = "g++"
+    functions: ClassVar[Mapping[str, str]] = {"sign": "sign_of"}
+
+    def power(self, a: Piece, n: int) -> Piece:
+        """An integer power."""
+        return Piece(f"pow({a.text}, {n})")
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function of the scalars."""
+        if all(a.text[0].isdigit() for a in args):
+            args = [Piece(f"T({a.text})") for a in args]
+        return super().call(op, args)
+
+    @classmethod
+    def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
+        """A header."""
+        name, p = exported.name, exported.interface.vectors["p"]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "#pragma once", ""]
+        lines += ["#include <array>", "#include <cmath>", "#include <cstddef>", "#include <limits>", ""]
+        values = ("std::numeric_limits<double>::quiet_NaN()" if isnan(x) else repr(x) for x in p.defaults)
+        lines += ["// the default values of the parameters", "template <class T = double>"]
+        lines += [
+            f"std::array<T, {len(p)}> {name}_defaults() {{",
+            f"    return {{{', '.join(f'T({x})' for x in values)}}};",
+        ]
+        lines += ["}", ""]
+        body = [line for each in functions for line in (*each, "")]
+        sign = "    return v > T(0) ? T(1) : v < T(0) ? T(-1) : v;"
+        if any("sign_of(" in line for line in body):
+            body = [line.replace("sign_of(", f"{name}_sign_of(") for line in body]
+            lines += ["template <class T>", f"T {name}_sign_of(const T& v) {{", sign, "}", ""]
+        return "\n".join([*lines, *body])
+
+    def define(self, listing: Listing) -> list[str]:
+        """A function template, with a structure for several outputs."""
+        arrays = [(self.variables[n], o) for n, o in self.program.outputs.items()]
+        types = [f"std::array<T, {prod(o.shape)}>" if o.shape else "T" for _, o in arrays]
+        lines, result, many = [], types[0], len(arrays) > 1
+        if many:
+            members = [f"{type_} {v};" for type_, (v, _) in zip(types, arrays, strict=True)]
+            lines = ["template <class T>", f"struct {self.called}_result {{", *indented(members), "};"]
+            result = f"{self.called}_result<T>"
+        arguments = [
+            f"const T& {v.symbol}" if v.symbol == "t" else f"const std::array<T, {len(v)}>& {v.symbol}"
+            for v in self.vectors()
+        ]
+        if self.function.arguments[-1] == "p":
+            arguments[-1] += f" = {self.exported.name}_defaults<T>()"
+        body = [f"using std::{f};" for f in _USING] + [f"(void){v};" for v in self.function.arguments]
+        body.append(f"{result} result{{}};")
+        body += [f"[[maybe_unused]] auto& {v} = result{f'.{v}' if many else ''};" for v, _ in arrays]
+        body += [f"const T t{n} = {text};" for n, text in listing.temporaries]
+        for output in self.program.outputs:
+            body += [f"{element} = {text};" for element, text in self.pairs(output, listing)]
+        opening = f"{result} {self.called}({', '.join(arguments)})"
+        return [*lines, "template <class T = double>", opening, "{", *indented([*body, "return result;"]), "}"]
+
+    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:
+        """An element of a flat array, or the number itself."""
+        return super().place(variable, array, index) if index else variable  # type: ignore[arg-type]
+
+    @classmethod
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
+        """A program that ends with 1 where a value is not the reference's."""
+        lines = [
+            f'#include "{exported.name}.hpp"',
+            "",
+            "#include <cstdio>",
+            "",
+            *_CHECK,
+            "int main() {",
+            "    bool wrong = false;",
+        ]
+        for each in reference:
+            body = []
+            for symbol, values in each.arguments.items():
+                list_ = f"std::array<double, {len(values)}> {symbol}{{{', '.join(map(repr, values))}}}"
+                body.append(f"const double t = {values[0]!r};" if symbol == "t" else f"const {list_};")
+            body.append(f"const auto y = {each.called}({', '.join(each.arguments)});")
+            function = exported.functions[each.number]
+            variables = list(cls(function, exported).variables.values())
+            for check in each.checks:
+                shape = each.shapes[check.output]
+                y = f"y.{variables[check.output]}" if len(variables) > 1 else "y"
+                found = f"sum({y})" if check.is_sum else f"{y}[{flat(check.index, shape)}]" if shape else y
+                body.append(f'wrong |= differs({found}, {check.value!r}, {check.limit!r}, "{each.called}");')
+            lines += ["    {", *indented(body, " " * 8), "    }"]
+        lines += ['    if (!wrong) std::puts("ok");', "    return wrong;", "}", ""]
+        return {f"{exported.name}_selftest.cpp": "\n".join(lines)}
+
+
+_CHECK = (
+    "static bool differs(double found, double expected, double limit, const char* what) {",
+    "    if (std::abs(found - expected) <= limit) return false;",
+    '    std::printf("%s: %.17g for %.17g\\n", what, found, expected);',
+    "    return true;",
+    "}",
+    "",
+    "template <class A>",
+    "double sum(const A& values) {",
+    "    double total = 0;",
+    "    for (double x : values) total += x;",
+    "    return total;",
+    "}",
+    "",
+)

@@ -1,0 +1,32 @@
+"""Shipped parts coupled to a tree, exported with all quantities."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.export import Exported, exported_model, files, interface_of_model
+from substructures.quantities.evaluation import Sources
+
+LIMIT = 1_000_000
+QUANTITIES = ("metric", "christoffel", "gravity", "kinematics", "potential_energy", "coriolis", "bias", "forces")
+QUANTITIES += ("inverse_dynamics", "forward_dynamics", "kinetic_energy", "momentum", "total_momentum")
+
+
+def tree_of(*parts: str) -> Model:
+    instances = [{"name": f"i{k}", "substructure": name} for k, name in enumerate(parts)]
+    spec = TreeSpec.read({"name": "demo", "gravity": [0, 0, "-9.81"], "instances": instances})
+    return couple(spec, {f"i{k}": derive(Definition.read(catalogue.load(name))) for k, name in enumerate(parts)})
+
+
+def exported_of(model: Model, name: str = "demo", **options: Any) -> Exported:
+    interface = interface_of_model(model, "demo@1", "sha256:1")
+    return exported_model(Sources(model), interface, QUANTITIES, name, **options)
+
+
+def write(exported: Exported, target: str, folder: Path) -> list[Path]:
+    made = files(exported, target, LIMIT)
+    for name, data in made.items():
+        (folder / name).write_bytes(data)
+    return [folder / name for name in made]
