@@ -39,6 +39,7 @@ COMMANDS = (
     Command("verify", "verify", "verify every part and tree of a store against its documents"),
     Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals"),
     Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion"),
+    Command("export", "export", "functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, ..."),
     Command("openapi", "openapi", "print the OpenAPI document"),
     Command("key", "keys", "manage API keys"),
 )

@@ -6,6 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
+from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
@@ -18,6 +19,7 @@ from service.operations.sources import engine_of, sources_of
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
+from service.routes.exports import EXPORTED, ExportOf, package_answer
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
@@ -86,6 +88,35 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
         return committed(store, act.viewer, submission)
 
     return act.compute(work, later)
+
+
+@router.get("/export", dependencies=READ, responses=EXPORTED)
+async def export(ref: str, request: Request, store: StoreOf, wanted: ExportOf) -> Response:
+    """Functions of the tree for a target: C, MATLAB, Fortran, computer algebra, ..., on one calling convention.
+
+    What takes longer than a request may is an item of a job of kind `export` with a `target`.
+    """
+    item = f'{{"tree": "{ref[:80]}", "target": "{wanted.target[:40]}", ...}}'
+    return await in_time(
+        request, lambda: _export(ref, request, store, wanted), f"submit a job of kind 'export' with the item {item}"
+    )
+
+
+def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> Response:
+    """The files in a thread."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, ref)
+        model = store.model(connection, tree)
+    reference = f"{tree.name}@{tree.revision}"
+
+    def make() -> Answer:
+        """Bind, print, and pack."""
+        limit = store.settings.limits.program_nodes
+        return package_answer(
+            lambda: tree_package(sources_of(store, tree, model), tree.name, reference, tree.digest, wanted, limit)
+        )
+
+    return conditional(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref), make)
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

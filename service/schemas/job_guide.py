@@ -25,7 +25,8 @@ or `.../optimal-controls`.
 numbers, such as `linearisations`, `root-loci`; a request is the body of that endpoint.
 - `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
-`request`, the body of its endpoint (`VelocityConstraints`)."""
+`request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
+`together`], as of `GET /v1/trees/{ref}/export`."""
 
 CHOICES = """Lists of values by place in the template; every combination makes an item, the last choice varies \
 fastest. A place is a JSON pointer (RFC 6901) into the template (`/request/parameters/rod.m1`, `/request/q/0`), all \
@@ -72,5 +73,6 @@ EXAMPLES: tuple[dict[str, Any], ...] = (
     {"kind": "simulate", "items": [{"tree": "swing", "requests": [_SWING, {**_SWING, "q": [0, 1.2]}]}]},
     {"kind": "analyse", "items": [{"tree": "swing", "analysis": "linearisations", "request": {"q": [0, 0]}}]},
     {"kind": "export", "items": [{"tree": "swing", "quantity": "metric", "format": "latex", "form": "expanded"}]},
+    {"kind": "export", "items": [{"tree": "swing", "target": "c", "quantities": ["metric", "forces"]}]},
     {"kind": "verify", "items": [{"substructure": "*"}]},
 )

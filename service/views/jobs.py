@@ -15,6 +15,7 @@ from service.queries.results import File
 
 BINARY = "application/octet-stream"
 MEDIA_TYPES = {"certificate": "application/json", "result": "application/x-npz", "text": "text/plain; charset=utf-8"}
+MEDIA_TYPES |= {"archive": "application/zip"}
 
 
 def job_path(identifier: str) -> str:

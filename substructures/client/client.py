@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -52,6 +52,26 @@ class Client(JobCaller):
         """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..."""
         wanted = {"format": format, "form": form, "bind": bind, **options}
         return self.request("GET", f"/v1/trees/{step(tree)}/{step(quantity)}", params=wanted).text
+
+    def export(
+        self,
+        kind: str,
+        ref: str,
+        target: str,
+        quantities: Sequence[str] = (),
+        name: str = "",
+        bind: str = "",
+        together: bool = False,
+    ) -> Any:
+        """The answer with the files of a target: of ``kind`` trees or substructures."""
+        wanted = {
+            "target": target,
+            "quantities": ",".join(quantities),
+            "name": name,
+            "bind": bind,
+            "together": together,
+        }
+        return self.request("GET", f"/v1/{step(kind)}/{step(ref)}/export", params=wanted)
 
     def evaluate(self, tree: str, **request: Any) -> dict[str, Any]:
         """Numbers: ``quantities``, ``q``, ``qd``, ``parameters``, ... (the HTTP contract, section 4).

@@ -8,7 +8,7 @@ comments, escaped, and in the names of indices where they are identifiers.
 from __future__ import annotations
 
 from substructures.export.archive import archive
-from substructures.export.exported import Exported, Function, exported_model
+from substructures.export.exported import Exported, Function, exported_model, exported_part
 from substructures.export.interface import Interface, Vector
 from substructures.export.render import FORMATS, first_index, render
 from substructures.export.sources import interface_of_model, interface_of_part
@@ -24,6 +24,7 @@ __all__ = [
     "Vector",
     "archive",
     "exported_model",
+    "exported_part",
     "files",
     "first_index",
     "interface_of_model",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,6 +13,8 @@ from substructures.export.interface import ORDER, Interface, Vector, signature
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
+from substructures.part.outputs import with_own_inertia
+from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.formulas import DERIVED
@@ -23,6 +25,8 @@ from substructures.tree.model_outputs import KINEMATICS
 #: outputs that a quantity consists of where these have other names
 GROUPS = {"kinematics": KINEMATICS, "momentum": ("linear_momentum", "angular_momentum")}
 ALL = "all"
+#: puts numbers into a program
+Bind = Callable[[Program], Program]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
 _WORDS = (
     "abs abstract add algorithm alias all allocatable allocate and any array as assert assign async await auto",
@@ -159,11 +163,35 @@ def exported_model(
     """
     check_name(name)
     programs = {q: quantity_program(sources, q) for q in dict.fromkeys(quantities)}
-    if bind is not None:
-        programs = {q: bind(each) for q, each in programs.items()}
+    return _exported(programs, interface, name, bind, together)
+
+
+def exported_part(
+    part: Part,
+    interface: Interface,
+    quantities: Sequence[str],
+    name: str,
+    bind: Bind | None = None,
+    together: bool = False,
+) -> Exported:
+    """Quantities of a part as it stands alone, nothing mounted on it. Arguments and errors as of exported_model."""
+    check_name(name)
+    known = [output for output in part.program.outputs if output not in INTERNAL]
+    for quantity in quantities:
+        if quantity not in known:
+            message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known)}"
+            raise InvalidArgument.at("/quantities", "unknown-quantity", message)
+    programs = {q: with_own_inertia(part, part.program.select([q])) for q in dict.fromkeys(quantities)}
+    return _exported(programs, interface, name, bind, together)
+
+
+def _exported(
+    programs: Mapping[str, Program], interface: Interface, name: str, bind: Bind | None, together: bool
+) -> Exported:
+    made = {q: each if bind is None else bind(each) for q, each in programs.items()}
     if together:
-        programs[ALL] = joined(list(programs.values()))
-    functions = tuple(Function(q, each, interface) for q, each in programs.items())
+        made[ALL] = joined(list(made.values()))
+    functions = tuple(Function(q, each, interface) for q, each in made.items())
     for each in functions:
         each.require_signature()
     return Exported(name, interface, functions)

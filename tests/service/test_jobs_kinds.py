@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from service.database.packed import unpack
@@ -9,6 +11,7 @@ from service.jobs.kinds import KINDS, expand, run
 from service.settings import Limits
 from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
+from substructures.errors import InvalidDocument
 from substructures.part.part import derive
 from substructures.printers import render
 from substructures.tree.document import TreeSpec
@@ -116,6 +119,30 @@ def test_export_prints_what_the_service_prints(library: MemoryLibrary) -> None:
     model = Model.load(read_json(tree.summary.encode()), library.blobs[tree.program])
     assert first.files["text"].decode() == render(model.program.select(["metric"]), "latex")
     assert "= 11/5\n" in second.files["text"].decode()  # m l^2 + m l^2 / 10
+
+
+def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
+    item = {"tree": "cell", "target": "maxima", "quantities": ["metric"]}
+    first, second = outcomes(library, "export", {"items": [item, {**item, "target": "c", "name": "arm"}]})
+    assert "cell_metric(q, p) := block(" in first.files["text"].decode()
+    assert second.files["archive"].startswith(b"PK")
+    assert second.summary["media_type"] == "application/zip"
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        ({"target": "exe"}, "/target"),
+        ({"quantities": "metric"}, "/quantities"),
+        ({"together": 1}, "/together"),
+        ({"bind": 1}, "/bind"),
+        ({"name": []}, "/name"),
+    ],
+)
+def test_export_refuses_bad_targets(library: MemoryLibrary, given: Any, pointer: str) -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        library.items("export", {"items": [{"tree": "cell", "target": "c", **given}]})
+    assert caught.value.faults[0].pointer.endswith(pointer)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
-"""export: an item is ``{"tree", "quantity", "format", "form", "bind", "options"}``; its outcome is the text.
+"""export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name"}``; its outcome is the text. Or
+``{"tree", "target", "quantities", "name", "bind", "together"}``: the file or zip of ``GET /v1/trees/{tree}/export``.
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind`` and ``options`` (lists of
 texts by name, for quantities such as ``state_space``) may be left out. For ``velocity-equations`` there is also
@@ -13,6 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
+from service.analyses.exporting import ZIP, read_item, tree_package
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.printing import (
     NAME,
@@ -37,7 +39,7 @@ from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
-from substructures.export import FORMATS, Interface, interface_of_model
+from substructures.export import FORMATS, TARGETS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
@@ -48,6 +50,8 @@ from substructures.quantities.regressor import OUTPUTS
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
+    if "target" in item:
+        return [{**_spread_target(item), "nodes": limits.job_nodes}]
     body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
     check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options", "name"))
     given = {"form": FORMS[0], "bind": "", "options": {}, "name": NAME, **item}
@@ -70,6 +74,27 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
         with inside("/request"):
             check(given["request"])
     return [{**given, "nodes": limits.job_nodes}]
+
+
+def _spread_target(item: ItemDocument) -> ItemDocument:
+    check_fields(item, ("tree", "target"), ("quantities", "name", "bind", "together"))
+    given = {"quantities": [], "name": "", "bind": "", "together": False, **item}
+    faults = [
+        Fault(f"/{name}", "string-expected", "a text is needed")
+        for name in ("name", "bind")
+        if not isinstance(given[name], str)
+    ]
+    if given["target"] not in tuple(TARGETS):
+        message = f"unknown target '{str(given['target'])[:40]}'; there are {', '.join(TARGETS)}"
+        faults.append(Fault("/target", "unknown-target", message))
+    names = given["quantities"]
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        faults.append(Fault("/quantities", "list-expected", "a list of texts is needed"))
+    if not isinstance(given["together"], bool):
+        faults.append(Fault("/together", "boolean-expected", "true or false is needed"))
+    if faults:
+        raise InvalidDocument(faults)
+    return given
 
 
 def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
@@ -125,6 +150,9 @@ def _is_options(given: object) -> bool:
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     summary = summary_of(known_tree(item, library).summary)
+    if "target" in item:
+        item = {**item, "called": item["tree"].partition("@")[0]}
+        return pinned(item, library, item["nodes"], any(map(needs_parts, item["quantities"])))
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
         raise InvalidDocument(faults)
@@ -132,7 +160,9 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
-    """File ``text``. Raises Refused, TooLarge."""
+    """File ``text``, or ``archive`` of a target with several. Raises Refused, TooLarge."""
+    if "target" in item:
+        return _exported(item, blobs)
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
     style = Style(item["format"], item["form"], item["bind"], item["name"])
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
@@ -144,6 +174,15 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
         raise Refused(error.status, error.code, error.detail, _moved(error.faults), **error.members) from None
     summary = {"tree": item["tree"], "quantity": quantity, "media_type": FORMATS[style.format], "bytes": len(text)}
     return Outcome(summary, {"text": text})
+
+
+def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
+    source = source_of(item, blobs, {"program_nodes": item["nodes"]})
+    sources, request = Sources(source.model, regressor=source.regressor), read_item(item)
+    made = tree_package(sources, item["called"], item["tree"], source.digest, request, item["nodes"])
+    summary = {"tree": item["tree"], "target": item["target"], "name": made.name, "media_type": made.media}
+    kind = "archive" if made.media == ZIP else "text"
+    return Outcome({**summary, "bytes": len(made.data)}, {kind: made.data})
 
 
 def _moved(faults: Iterable[Fault]) -> list[Fault]:

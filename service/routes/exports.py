@@ -1,0 +1,76 @@
+"""How exports are asked for, and ``/v1/substructures/{ref}/export``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+
+from service.analyses.exporting import ZIP, ExportRequest, Package, part_package
+from service.answers import Answer, etag
+from service.http.acting import in_time
+from service.http.requests import StoreOf, needs
+from service.http.responses import conditional
+from service.operations import catalogue
+from service.references import is_pinned
+from service.routes.bodies import binary
+from service.store import Store
+from substructures.errors import InvalidInput
+from substructures.export import TARGETS
+
+router = APIRouter(prefix="/v1/substructures/{ref}", tags=["formulas"])
+READ = [needs("read")]
+EXPORTED: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "The file, or a zip of several",
+        "content": {ZIP: binary(), "text/plain": {"schema": {"type": "string"}}},
+    }
+}
+
+
+async def export_of(
+    target: Annotated[str, Query(max_length=40, json_schema_extra={"enum": list(TARGETS)})],
+    quantities: Annotated[
+        str, Query(max_length=5_000, description="names, ...; default metric, christoffel, forces")
+    ] = "",
+    name: Annotated[str, Query(max_length=80, description="prefix of functions; default the name of the tree")] = "",
+    bind: Annotated[str, Query(max_length=50_000, description="name:value,... or defaults")] = "",
+    together: Annotated[bool, Query(description="also a function with all quantities, NAME_all")] = False,
+) -> ExportRequest:
+    """The export that a request asks for."""
+    names = tuple(text.strip() for text in quantities.split(",") if text.strip())
+    return ExportRequest(target, names, name, bind, together)
+
+
+ExportOf = Annotated[ExportRequest, Depends(export_of)]
+
+
+@router.get("/export", dependencies=READ, responses=EXPORTED)
+async def export(ref: str, request: Request, store: StoreOf, wanted: ExportOf) -> Response:
+    """Functions of the part as it stands alone for a target, on one calling convention."""
+    return await in_time(request, lambda: _export(ref, request, store, wanted), "name fewer quantities")
+
+
+def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> Response:
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ref)
+        part = store.required_part(connection, version.digest)
+    reference = f"{version.name}@{version.version}"
+
+    def make() -> Answer:
+        """Bind, print, and pack."""
+        limit = store.settings.limits.program_nodes
+        return package_answer(lambda: part_package(part, reference, version.digest, wanted, limit))
+
+    return conditional(request, etag(version.digest, reference, *wanted.identity), is_pinned(ref), make)
+
+
+def package_answer(make: Callable[[], Package]) -> Answer:
+    """A file to be saved under its name. Raises InvalidInput with pointers into the query."""
+    try:
+        package = make()
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: pointer if pointer.startswith("/query") else f"/query{pointer}") from None
+    disposition = f'attachment; filename="{package.name}"'
+    return Answer(200, package.data, {"Content-Type": package.media, "Content-Disposition": disposition})
