@@ -10,7 +10,7 @@ import pytest
 from exported_models import LIMIT, exported_of, tree_of, write
 from run_code import STRICT, agree, call_c, shared, state, tool
 
-from substructures.export.languages import pieces
+from substructures.export.languages import c, pieces
 from substructures.export.languages.pieces import split, uses
 
 
@@ -47,6 +47,7 @@ def test_uses() -> None:
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_a_split_function_is_right(compiler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces.split, "__defaults__", (20,))
+    monkeypatch.setattr(c, "TABLES", 1)
     exported = exported_of(tree_of("puma560"), together=True)
     sources = [p for p in write(exported, "c", tmp_path) if p.name == "demo.c"]
     text = sources[0].read_text()

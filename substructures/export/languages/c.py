@@ -6,6 +6,7 @@ that they need is stated.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import isnan, prod
 from typing import ClassVar
@@ -18,6 +19,8 @@ from substructures.export.reference import Reference
 from substructures.expr.program import Output
 from substructures.printers.language import Listing, Piece
 
+#: elements of arrays whose dependent ones are copied by loops
+TABLES = 200
 #: what the source needs before its functions; unused ones are left out
 _HELPERS = {
     "sign_of": ("static double sign_of(double v)", "{", "    return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : v;", "}", ""),
@@ -56,18 +59,21 @@ class C(Code):
         """A function, of several pieces where it is long."""
         unused = [f"(void){v};" for v in self.function.arguments]
         zeros: list[str] = []
+        copies: list[str] = []
         assigned: list[tuple[str, str]] = []
         for output, array in self.program.outputs.items():
             pairs = self.pairs(output, listing)
             v, size = self.variables[output], prod(array.shape)
             if len(pairs) < size:
                 zeros.append(f"for (size_t i = 0; i < {size}; ++i) {v}[i] = 0.0;")
-            assigned += pairs
+            own, copied = _apart(v, pairs)
+            assigned += own
+            copies += copied
         pieces = split(listing.temporaries, assigned)
         opening = [signature(self.function, self.called, self.variables), "{", *indented(unused + zeros)]
         if len(pieces.bodies) == 1:
-            return [*opening, *indented(self._statements(pieces, 0)), "}"]
-        return [*self._pieces(pieces), *opening, *indented(self._calls(pieces)), "}"]
+            return [*opening, *indented([*self._statements(pieces, 0), *copies]), "}"]
+        return [*self._pieces(pieces), *opening, *indented([*self._calls(pieces), *copies]), "}"]
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
@@ -102,6 +108,24 @@ def flat(index: tuple[int, ...], shape: tuple[int, ...]) -> int:
     for i, size in zip(index, shape, strict=True):
         result = result * size + i
     return result
+
+
+def _apart(v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], list[str]]:
+    """Elements to be computed, and loops over tables that copy the others of a large array from these."""
+    if len(pairs) < TABLES:
+        return pairs, []
+    copy = re.compile(rf"(-?){v}\[(\d+)\]")
+    matches = [(element, copy.fullmatch(text)) for element, text in pairs]
+    own = [pair for pair, (_, match) in zip(pairs, matches, strict=True) if match is None]
+    lines: list[str] = []
+    for sign in ("", "-"):
+        some = [(element[len(v) + 1 : -1], m[2]) for element, m in matches if m is not None and m[1] == sign]
+        if some:
+            table = ", ".join(f"{{{to}, {source}}}" for to, source in some)
+            lines += ["{", f"    static const unsigned int copies[][2] = {{{table}}};"]
+            lines += [f"    for (size_t i = 0; i < {len(some)}; ++i)"]
+            lines += [f"        {v}[copies[i][0]] = {sign}{v}[copies[i][1]];", "}"]
+    return own, lines
 
 
 def argument(symbol: str) -> str:
