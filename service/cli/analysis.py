@@ -16,23 +16,19 @@ from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
 from service.cli.options import Add, add_server, read_document, tell_warnings
+from service.cli.tree_files import SUFFIXES, parts_beside
 from service.operations import models
 from service.operations.analyses import printed
 from service.operations.models import Style
 from service.settings import Limits
-from substructures import catalogue
 from substructures.client import Client
-from substructures.errors import InvalidDocument
 from substructures.export import FORMATS, interface_of_model
-from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
-from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple
 
-SUFFIXES = (".yaml", ".yml", ".json")
 #: what is said of results that are not known to be right
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
 
@@ -179,24 +175,11 @@ def local_source(path: Path) -> Source:
     document, or entries of the shipped catalogue. Raises InvalidDocument.
     """
     spec, limits = TreeSpec.read(read_document(path)), Limits()
-    parts = {i.name: _part(k, i, path.parent) for k, i in enumerate(spec.instances)}
+    parts = parts_beside(spec, path.parent)
     model = couple(spec, parts, limits.program_nodes)
     # the others come with the result
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
     return Source(model, spec.digest, lambda: regressor(spec, parts, limits.program_nodes), limits)
-
-
-def _part(index: int, instance: Instance, folder: Path) -> Part:
-    if instance.definition is not None:
-        return derive(instance.definition)
-    name = (instance.substructure or "").partition("@")[0]
-    files = [file for suffix in SUFFIXES if (file := folder / f"{name}{suffix}").is_file()]
-    if files:
-        return derive(Definition.read(read_document(files[0])))
-    if name not in catalogue.names():
-        message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
-        raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)
-    return derive(Definition.read(catalogue.load(name)))
 
 
 ADD: Add = {"simulate": _add_simulate, "analyse": _add_analyse}

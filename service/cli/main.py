@@ -33,6 +33,7 @@ COMMANDS = (
     Command("derive", "parts", "derive and verify a definition here, without a server"),
     Command("submit", "parts", "submit a definition to a server"),
     Command("import", "robots", "read a robot file as a definition, with a report of what became of everything in it"),
+    Command("same", "robots", "tell whether two models are the same, and which body and parameter differ"),
     Command("jobs", "jobs", "submit, watch and read batch jobs"),
     Command("backup", "backup", "copy the SQLite store to a file, also while a server runs"),
     Command("restore", "backup", "put a backup in the place of the SQLite store"),

@@ -9,11 +9,17 @@ from pathlib import Path
 from typing import Any, get_args
 
 from service.cli.options import Add, add_server, named, read_document, tell_warnings
+from service.cli.tree_files import parts_beside
 from substructures.client import Client
 from substructures.documents import write_json
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
+from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS, is_foreign
+from substructures.interchange.sides import Side
+from substructures.part.definition import Definition
+from substructures.part.part import Part, derive
+from substructures.tree.document import TreeSpec
 
 #: an included file is read when it is in the folder of the file, or below it
 _MOST_BYTES = 4 * 2**20
@@ -114,4 +120,43 @@ def _told(found: Imported) -> Iterator[str]:
     yield f"{found.kind}: checks of {checks}; {renamed} of {len(found.names)} names changed"
 
 
-ADD: Add = {"import": _add_import}
+def _add_same(command: argparse.ArgumentParser) -> None:
+    command.set_defaults(command=_same)
+    for name in ("a", "b"):
+        command.add_argument(name, type=Path, help="definition or tree (JSON, YAML), or a robot file")
+    command.add_argument("--coordinates", default="", metavar="A=B,...", help="names in a that are others in b")
+
+
+def _same(options: argparse.Namespace) -> int:
+    """0 when they are the same, 1 when not."""
+    read = [_part_or_tree(path) for path in (options.a, options.b)]
+    like = next((x.spec for x in read if isinstance(x, Side)), None)
+    a, b = (x if isinstance(x, Side) else Side.of_part(x, like) for x in read)
+    given = dict(pair.strip().partition("=")[::2] for pair in options.coordinates.split(",") if pair.strip())
+    found = equivalence(a, b, given)
+    worst = max((told["error"] for told in found.quantities.values()), default=0.0)
+    if found.equal:
+        how = "as formulas" if found.level == "formulas" else f"in numbers, to {worst:.1e}"
+        print(f"the same {how}: {', '.join(found.quantities)}")
+        return 0
+    print(f"not the same: {write_json(found.first_difference).decode()}")
+    for culprit in found.culprits:
+        print(f"{culprit.body}: {culprit.parameter} {culprit.a} here, {culprit.b} there")
+    return 1
+
+
+def _part_or_tree(path: Path) -> Part | Side:
+    """A tree is coupled, as by ``simulate``; its parts are found beside it or in the catalogue."""
+    if is_foreign(path.read_bytes()):
+        found = read_robot_file(path)
+        document = found.definition if found.tree is None else found.tree
+    else:
+        document = read_document(path)
+    with named(path):
+        if isinstance(document, dict) and "instances" in document:
+            spec = TreeSpec.read(document)
+            return Side.of_tree(spec, parts_beside(spec, path.parent))
+        return derive(Definition.read(document))
+
+
+ADD: Add = {"import": _add_import, "same": _add_same}

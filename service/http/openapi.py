@@ -13,6 +13,7 @@ from pydantic.json_schema import models_json_schema
 
 from service.analyses.numbers import ANALYSES
 from service.schemas.entries import SubmittedDefinition, SubmittedTree, VisibilityRequest
+from service.schemas.equivalences import EquivalenceRequest
 from service.schemas.jobs import CancelRequest, JobRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
@@ -41,7 +42,10 @@ PREFER = {
     "schema": {"type": "string"},
 }
 _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
-_REQUESTS = (AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest)
+_REQUESTS = (
+    *(AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest),
+    EquivalenceRequest,
+)
 _READ_BY_US: tuple[type[BaseModel], ...] = (
     Definition,
     SubmittedDefinition,

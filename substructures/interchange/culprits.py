@@ -90,13 +90,13 @@ def _joints(a: Side, own: Carriers, other: Carriers) -> Iterator[Culprit]:
 
 def _bare(side: Side, frame: str) -> str:
     """The name of a frame, of a single instance without it."""
-    return frame.partition(".")[2] if len(side.spec.instances) == 1 and "." in frame else frame
+    return frame.removeprefix(side.single)
 
 
 def _carried(side: Side, carriers: Carriers, values: Mapping[str, float]) -> dict[int, _Carried]:
     """By coordinate of a: the sum of all links that it carries."""
     Y, n = side.regressor, side.model.dof
-    known = {name: x for name, x in values.items() if name in Y.parameters}
+    known = {name: x for name, x in side.given(values).items() if name in Y.parameters}
     zero = np.zeros(n)
     pi = np.asarray(Y.evaluate(zero, zero, zero, parameters=known)["inertial_parameters"], dtype=float)
     found: dict[int, _Carried] = {}
@@ -148,7 +148,7 @@ def _effects(a: Side, own: Carriers, numbers: Mapping[int, Array], values: Mappi
     """Y at random motions times ten numbers (about the world's origin at q = 0) for every coordinate's body."""
     Y, n = a.regressor, a.model.dof
     rng = np.random.default_rng(2)
-    known = {name: x for name, x in values.items() if name in Y.parameters}
+    known = {name: x for name, x in a.given(values).items() if name in Y.parameters}
     motions = rng.uniform(-1, 1, (3, 12, n))
     W = np.asarray(Y.evaluate(*motions, parameters=known)["regressor"], dtype=float)
     found: dict[int, Array] = {}

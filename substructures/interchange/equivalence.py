@@ -97,10 +97,9 @@ def _formulas(a: Side, b: Side, order: list[int]) -> dict[str, bool]:
             renamed[b.model.coordinates[order[k]] + primes] = graph.symbol(name + primes)
         renamed[f"tau.{b.model.coordinates[order[k]]}"] = graph.symbol(f"tau.{name}")
     names = [q for q in QUANTITIES if q in a.model.program.outputs and q in b.model.program.outputs]
-    if {n for n in a.model.effective if n in a.model.parameters} != {
-        n for n in b.model.effective if n in b.model.parameters
-    }:
+    if a.parameters.keys() != b.parameters.keys():
         return {}
+    renamed |= {b.parameters[name]: graph.symbol(own) for name, own in a.parameters.items()}
     try:
         ours, theirs = (replay(s.model.program, graph, m, names) for s, m in ((a, {}), (b, renamed)))
     except ZeroDivisionError:
@@ -125,7 +124,7 @@ def _is_zero(graph: Graph, x: Expr | int, y: Expr | int) -> bool:
 def _open_parameters(a: Side, b: Side, rng: np.random.Generator) -> dict[str, float]:
     """The same random values for parameters of both sides that have none."""
     missing = [
-        {name for name, p in side.model.parameters.items() if p.get("value") is None and name in side.model.effective}
+        {name for name, own in side.parameters.items() if side.model.parameters[own].get("value") is None}
         for side in (a, b)
     ]
     return {name: float(rng.uniform(0.5, 1.5)) for name in sorted(missing[0] & missing[1])}

@@ -24,42 +24,56 @@ GRAVITY = {"gx": "0.7", "gy": "-1.3", "gz": "-9.5"}
 
 @dataclass(frozen=True)
 class Side:
-    """One of two models. ``names``: coordinates as they are compared, of a part alone without its instance."""
+    """One of two models. ``names``: of its coordinates as they are compared, without the name of a single instance."""
 
     spec: TreeSpec
     parts: Mapping[str, Part]
     model: Model
     names: tuple[str, ...]
+    single: str  #: the name of a single instance with a dot
 
     @classmethod
     def of_tree(cls, spec: TreeSpec, parts: Mapping[str, Part]) -> Side:
         """A tree with the parts of its instances. Raises InvalidDocument, TooLarge as :func:`couple`."""
         model = couple(spec, parts)
         single = f"{spec.instances[0].name}." if len(spec.instances) == 1 else ""
-        return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates))
+        return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates), single)
 
     @classmethod
-    def of_part(cls, part: Part, gravity: Any = None) -> Side:
-        """A part at the world; ``gravity``: that of a tree it is compared with, default: three free parameters."""
-        return cls.of_tree(alone(part.definition, gravity), {INSTANCE: part})
+    def of_part(cls, part: Part, like: TreeSpec | None = None) -> Side:
+        """A part at the world, with the gravity of a tree ``like`` which it is compared with; default: any gravity."""
+        return cls.of_tree(alone(part.definition, like), {INSTANCE: part})
 
     @cached_property
     def regressor(self) -> RegressorModel:
         """Y and pi, made when they are first needed."""
         return regressor(self.spec, self.parts)
 
+    @cached_property
+    def parameters(self) -> dict[str, str]:
+        """The free parameters that have an effect, by their names as they are compared."""
+        names = self.model.parameters.keys() & self.model.effective
+        return {name.removeprefix(self.single): name for name in sorted(names)}
+
+    def given(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Values by names as they are compared, by this model's names; those that it does not have are left out."""
+        return {self.parameters[name]: x for name, x in values.items() if name in self.parameters}
+
     def evaluate(self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None) -> Any:
-        """Numbers of quantities; parameters that this model does not have are left out."""
-        known = {name: x for name, x in parameters.items() if name in self.model.parameters}
-        return evaluate(self.model, names, q, qd, parameters=known)
+        """Numbers of quantities for these parameters, by their names as they are compared."""
+        return evaluate(self.model, names, q, qd, parameters=self.given(parameters))
 
 
-def alone(definition: Definition, gravity: Any = None) -> TreeSpec:
-    """The tree of a part at the world."""
-    free = {name: {"value": value, "unit": "m/s^2"} for name, value in GRAVITY.items()} if gravity is None else {}
+def alone(definition: Definition, like: TreeSpec | None = None) -> TreeSpec:
+    """The tree of a part at the world, under the gravity of another tree or one of three free parameters."""
     instance = {"name": INSTANCE, "definition": definition.model_dump(exclude_defaults=True, by_alias=True)}
-    document = {"name": "alone", "gravity": gravity or list(GRAVITY), "parameters": free, "instances": [instance]}
-    return TreeSpec.stored(document)
+    if like is None:
+        free = {name: {"value": value, "unit": "m/s^2"} for name, value in GRAVITY.items()}
+        gravity: dict[str, Any] = {"gravity": list(GRAVITY), "parameters": free}
+    else:
+        given = like.model_dump(exclude_defaults=True, by_alias=True)
+        gravity = {name: given[name] for name in ("gravity", "parameters") if name in given}
+    return TreeSpec.stored({"name": "alone", **gravity, "instances": [instance]})
 
 
 @dataclass(frozen=True)

@@ -140,8 +140,8 @@ def test_trees_are_compared_with_parts() -> None:
     part = derive(Definition.read(definition))
     document = {"name": "t", "gravity": [1, 2, 3], "instances": [{"name": "arm", "definition": definition}]}
     tree = Side.of_tree(TreeSpec.read(document), {"arm": part})
-    assert equivalence(tree, Side.of_part(part, [1, 2, 3])).equal
-    found = equivalence(tree, Side.of_part(part, [1, 2, 4]))
+    assert equivalence(tree, Side.of_part(part, tree.spec)).equal
+    found = equivalence(tree, Side.of_part(part))
     assert not found.equal
     assert found.first_difference is not None
     assert found.first_difference["quantity"] == "gravity"

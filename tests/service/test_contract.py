@@ -123,7 +123,7 @@ def test_fields_of_analyses(name: str) -> None:
 
 
 def test_limits_and_their_values(client: TestClient) -> None:
-    rows = section(6).split("| limit | default |", 1)[1].splitlines()
+    rows = section(6).strip().split("| limit | default |", 1)[1].splitlines()
     written: dict[str, float] = {}
     for row in filter(None, rows[2:]):
         names, values = (column.strip() for column in row.split("|")[1:3])

@@ -126,3 +126,52 @@ def test_files_beside_an_mjcf_file_are_included_and_none_elsewhere(
     path.write_text('<mujoco><include file="../secret.xml"/></mujoco>')
     assert main(["derive", str(path)]) == 1
     assert "'../secret.xml' is not followed" in capsys.readouterr().err
+
+
+def test_models_are_compared(client: TestClient) -> None:
+    client.post("/v1/imports?store=true&name=arm", content=ARM, headers=XML)
+    same = client.post("/v1/equivalences", json={"a": "arm", "b": {"file": ARM}})
+    assert same.status_code == 200
+    assert (same.json()["equal"], same.json()["level"]) == (True, "formulas")
+    heavier = ARM.replace('value="2"', 'value="3"').replace('<origin xyz="0 0 1"/>', "")
+    other = client.post("/v1/equivalences", json={"a": "arm", "b": {"file": heavier, "kind": "urdf"}})
+    assert other.json()["equal"] is True  # the mass is on the axis
+    wider = client.post("/v1/equivalences", json={"a": "arm", "b": {"file": ARM.replace('iyy="1"', 'iyy="2"')}})
+    assert wider.json()["culprits"] == [{"body": "upper_arm", "parameter": "inertia.yy", "a": 1, "b": 2}]
+    tree = {"name": "t", "gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
+    tree["instances"] = [{"name": "one", "substructure": "arm"}]
+    assert client.post("/v1/trees", json=tree).status_code == 201
+    assert client.post("/v1/equivalences", json={"a": "t", "b": "arm"}).json()["equal"] is True
+
+
+@pytest.mark.parametrize(
+    ("a", "said"),
+    [
+        ("nothing", "there is no substructure or tree 'nothing'"),
+        (3, "/a"),
+        ({"file": "<html/>"}, "this is a web page"),
+        ({"file": ARM, "more": 1}, "a file is its text"),
+        ({"bodies": []}, "'name' is needed"),
+        ({"file": ARM.replace('"shoulder"', '"other"')}, "coordinates cannot be matched by name"),
+    ],
+)
+def test_bad_comparisons_are_refused(client: TestClient, a: object, said: str) -> None:
+    answer = client.post("/v1/equivalences", json={"a": a, "b": {"file": ARM}})
+    assert answer.status_code == 422
+    assert said in answer.text
+
+
+def test_same_compares_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ours, theirs = tmp_path / "a.urdf", tmp_path / "b.urdf"
+    ours.write_text(ARM)
+    theirs.write_text(ARM.replace('iyy="1"', 'iyy="2"'))
+    assert main(["same", str(ours), str(ours)]) == 0
+    assert "the same as formulas" in capsys.readouterr().out
+    assert main(["same", str(ours), str(theirs)]) == 1
+    assert "upper_arm: inertia.yy 1.0 here, 2.0 there" in capsys.readouterr().out
+    tree = {"name": "t", "instances": [{"name": "arm", "substructure": "a"}]}
+    (tmp_path / "tree.json").write_text(json.dumps(tree))
+    assert main(["import", str(ours), "--out", str(tmp_path / "a.json")]) == 0
+    assert main(["same", str(tmp_path / "tree.json"), str(ours)]) == 0
+    theirs.write_text(ARM.replace('"shoulder"', '"other"'))
+    assert main(["same", str(ours), str(theirs), "--coordinates", "shoulder=other"]) == 0

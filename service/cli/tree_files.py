@@ -1,0 +1,32 @@
+"""The parts of a tree document: inline definitions, files beside it, or entries of the shipped catalogue."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from service.cli.options import read_document
+from substructures import catalogue
+from substructures.errors import InvalidDocument
+from substructures.part.definition import Definition
+from substructures.part.part import Part, derive
+from substructures.tree.document import Instance, TreeSpec
+
+SUFFIXES = (".yaml", ".yml", ".json")
+
+
+def parts_beside(spec: TreeSpec, folder: Path) -> dict[str, Part]:
+    """The part of every instance. Raises InvalidDocument for one that is nowhere."""
+    return {i.name: _part(k, i, folder) for k, i in enumerate(spec.instances)}
+
+
+def _part(index: int, instance: Instance, folder: Path) -> Part:
+    if instance.definition is not None:
+        return derive(instance.definition)
+    name = (instance.substructure or "").partition("@")[0]
+    files = [file for suffix in SUFFIXES if (file := folder / f"{name}{suffix}").is_file()]
+    if files:
+        return derive(Definition.read(read_document(files[0])))
+    if name not in catalogue.names():
+        message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
+        raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)
+    return derive(Definition.read(catalogue.load(name)))

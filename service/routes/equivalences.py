@@ -1,0 +1,31 @@
+"""``/v1/equivalences``: whether two models are the same."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+
+from service.answers import Answer, json_answer
+from service.http.acting import ActOf, timed
+from service.http.requests import JsonBody, StoreOf, needs
+from service.operations import equivalences
+from service.routes.bodies import body_of
+from service.schemas.equivalences import EquivalenceRequest, EquivalenceView
+from substructures.documents import read_model, write_json
+
+router = APIRouter(prefix="/v1/equivalences", tags=["imports"])
+
+
+@router.post(
+    "", response_model=EquivalenceView, dependencies=[needs("read")], openapi_extra=body_of("EquivalenceRequest")
+)
+@timed("derive")
+def compare(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+    """Compare two models: by formulas, else by numbers; the culprit is named."""
+    wanted = read_model(EquivalenceRequest, body)
+
+    def work() -> Answer:
+        """Couple both, and compare."""
+        found = equivalences.compared(store, act.viewer, wanted.a, wanted.b, wanted.coordinates)
+        return json_answer(write_json(found.plain()))
+
+    return act.compute(work)
