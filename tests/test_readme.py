@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import shutil
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from service.cli.main import main
 from service.server import background
 from service.settings import Settings
 from substructures import Definition, derive
@@ -53,6 +55,20 @@ def test_requests_in_order(tmp_path: Path) -> None:
     assert "metric[1, 1]" in answers[1]
     assert '"revision":2' in next(answer for answer in answers if '"arm","eye"' in answer or '"eye"' in answer)
     assert shape == "(1000, 8, 8)\n"
+    same = next(answer for answer in answers if '"culprits"' in answer)
+    assert '"equal":true' in same
+
+
+def test_commands_on_robot_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the folder of the clone, but for what is written."""
+    commands = [line for block in blocks("sh") for line in block.splitlines() if "interchange/examples" in line]
+    commands = [line for line in commands if line.startswith("substructures ")]
+    assert len(commands) == 3
+    monkeypatch.chdir(Path(__file__).parent.parent)
+    for line in commands:
+        words = [str(tmp_path / word) if word == "hand.json" else word for word in shlex.split(line)[1:]]
+        assert main(words) == 0, line
+    assert Definition.read(json.loads((tmp_path / "hand.json").read_text())).name == "franka-hand"
 
 
 def test_own_part() -> None:
@@ -69,6 +85,7 @@ def test_python_example(tmp_path: Path) -> None:
     "word",
     [
         *("demo", "serve", "worker", "derive", "submit", "simulate", "analyse", "backup", "restore", "key create"),
+        *("import", "same"),
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.interchange.as_part import Options, PartOfFile, as_part
-from substructures.interchange.kinds import read_robot
+from substructures.interchange.kinds import read_robot, read_rows
+from substructures.interchange.names import library_name
 from substructures.interchange.numbers import ORIGIN
 from substructures.interchange.robot import Robot
 
@@ -62,17 +63,24 @@ def import_file(
     with the digest in ``source``; ``included``: contents of the files that an MJCF file
     includes, by their names there. Raises InvalidDocument with line and element for what cannot be read.
     """
+    rows = read_rows(data, kind, options.parameters != "none")
+    if rows is not None:
+        definition = _told(rows[1], rows[0], data, file, license_of_file)
+        definition |= {} if name is None else {"name": library_name(name)}
+        return Imported(rows[0], definition, None, rows[2].plain(), rows[2].checks(), {}, [])
     found, robot = read_robot(data, kind, included)
     part = as_part(robot, options, name)
+    definition = _told(part.definition, found, data, file, license_of_file)
+    tree, report = _tree(robot, part, definition), robot.report
+    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings)
+
+
+def _told(document: dict[str, Any], kind: str, data: bytes, file: str, license_of_file: str) -> dict[str, Any]:
+    """With the source: file, digest, licence."""
     digest = hashlib.sha256(data).hexdigest()
-    source = f"{found.upper()} file{f' {file[:_LONGEST]}' if file else ''}, sha256:{digest}"
-    definition = part.definition | {"source": source, "tags": [found]}
-    if license_of_file:
-        definition["license"] = license_of_file[:_LONGEST]
-    report = robot.report
-    return Imported(
-        found, definition, _tree(robot, part, definition), report.plain(), report.checks(), part.names, part.bindings
-    )
+    source = f"{kind.upper()} file{f' {file[:_LONGEST]}' if file else ''}, sha256:{digest}"
+    told = {"license": license_of_file[:_LONGEST]} if license_of_file else {}
+    return document | {"source": source, "tags": [kind]} | told
 
 
 def _tree(robot: Robot, part: PartOfFile, definition: dict[str, Any]) -> dict[str, Any] | None:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
+from typing import Any
 
+from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.mjcf.reader import read_mjcf
-from substructures.interchange.report import refuse
+from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Robot
+from substructures.interchange.symoro import is_par, read_par
+from substructures.interchange.tables import read_csv, read_table
 from substructures.interchange.urdf import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
+_CELLS = re.compile(rb"[,;\t]")
 #: what reads a root element, with the contents of included files by name
 Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 #: by the root element of XML formats
@@ -18,13 +24,41 @@ _ROOTS: Mapping[str, tuple[str, Reader]] = {
     "robot": ("urdf", lambda root, _: read_urdf(root)),
     "mujoco": ("mjcf", read_mjcf),
 }
-KINDS = ("urdf", "mjcf")
+KINDS = ("urdf", "mjcf", "dh", "par")
 
 
 def is_foreign(data: bytes) -> bool:
-    """Whether a file is no document of ours, by its content: XML, in any of the encodings that XML has."""
+    """Whether a file is no document of ours, by its content: XML, a table or a SYMORO file."""
+    return is_xml(data) or is_par(data) or _is_table(data)
+
+
+def is_xml(data: bytes) -> bool:
+    """Whether a file begins as XML does, in any of the encodings that XML has."""
     beginning = data[:4000].lstrip(b"\xef\xbb\xbf\xff\xfe\x00 \t\r\n")
     return beginning[:1] == b"<"
+
+
+def _is_table(data: bytes) -> bool:
+    """A DH table: a head with its four columns, or JSON with its rows."""
+    beginning = data[:4000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if beginning[:1] == b"{":
+        return b'"dh"' in beginning
+    head = next((line for line in beginning.splitlines() if line.strip() and not line.startswith(b"#")), b"")
+    return {b"a", b"alpha", b"d", b"theta"} <= {cell.strip() for cell in _CELLS.split(head)}
+
+
+def read_rows(data: bytes, kind: str | None = None, symbolic: bool = True) -> tuple[str, dict[str, Any], Report] | None:
+    """Kind, definition and report of a DH table or a SYMORO file; None for XML. Raises InvalidDocument."""
+    if kind == "par" or (kind is None and is_par(data) and not is_xml(data)):
+        return "par", *read_par(data)
+    if kind == "dh" or (kind is None and _is_table(data)):
+        if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"{":
+            return "dh", *read_csv(data, symbolic)
+        document = read_json(data.lstrip(b"\xef\xbb\xbf"))
+        if not isinstance(document, dict) or "dh" not in document:
+            raise InvalidDocument.at("/dh", "missing", "a table has its rows in 'dh'")
+        return "dh", *read_table(document, symbolic)
+    return None
 
 
 def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, bytes] | None = None) -> tuple[str, Robot]:

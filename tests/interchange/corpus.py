@@ -5,11 +5,9 @@ python tests/interchange/corpus.py          # the table of all of them
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -23,6 +21,7 @@ from substructures.quantities.evaluation import evaluate
 
 sys.path.insert(0, str(Path(__file__).parent))
 from engines import deviation
+from package_files import included, mjcf_files, urdf_files
 from with_mujoco import MujocoTwin
 from with_pinocchio import PinocchioTwin
 
@@ -50,50 +49,11 @@ class Row:
         return f"{self.file:<58} {told}"
 
 
-def urdf_files() -> dict[str, Path]:
-    """Of the package example-robot-data, by their path in it."""
-    return dict(_files("example-robot-data", "urdf"))
-
-
-def mjcf_files() -> dict[str, Path]:
-    """Of the packages dm_control and brax, by their path in them: what has <mujoco> as its root and a body."""
-    found = {**dict(_files("dm_control", "xml")), **dict(_files("brax", "xml"))}
-    return {name: path for name, path in found.items() if _is_whole(path)}
-
-
-def _is_whole(path: Path) -> bool:
-    text = path.read_text()
-    return "<mujoco" in text and "<body" in text
-
-
-def _included(path: Path) -> dict[str, bytes]:
-    """The contents of the files that a file includes, by their names in it."""
-    found: dict[str, bytes] = {}
-    waiting = [path]
-    while waiting:
-        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text()):
-            file = path.parent / name
-            if name not in found and file.exists():
-                found[name] = file.read_bytes()
-                waiting.append(file)
-    return found
-
-
-def _files(package: str, ending: str) -> Iterator[tuple[str, Path]]:
-    try:
-        found = files(package) or []
-    except PackageNotFoundError:
-        return
-    for file in sorted(found, key=str):
-        if file.suffix == f".{ending}":
-            yield "/".join(Path(str(file)).parts[-3:]), Path(str(file.locate()))
-
-
 def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
     """Imported, derived, coupled at the world and evaluated, beside the other engine."""
     start = process_time()
     try:
-        found = import_file(path.read_bytes(), file=path.name, included=_included(path))
+        found = import_file(path.read_bytes(), file=path.name, included=included(path))
     except InvalidInput as error:
         return Row(name, refused=f"refused: {error}")
     instance = {"name": "x", "definition": found.definition}

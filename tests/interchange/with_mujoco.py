@@ -12,6 +12,7 @@ import numpy as np
 from engines import Numbers, Place, euler_matrix, in_our_coordinates, quaternion, velocity_map
 
 Array = Any
+mujoco.set_mju_user_warning(lambda _message: None)  # else they are written to a file here
 KIND = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball"}
 
 

@@ -1,0 +1,200 @@
+"""Tables of Denavit-Hartenberg parameters as definitions: CSV and JSON, standard and modified, with units.
+
+    modified    Rx(alpha) Tx(a) Rz(theta) Tz(d)           the joint's axis is the third one of its own frame
+    standard    Rz(theta) Tz(d) Tx(a) Rx(alpha)           the joint's axis is the third one of the frame before
+
+(J. J. Craig, Introduction to Robotics; J. Denavit and R. S. Hartenberg, 1955). Masses are in the frame of the row.
+
+CSV: comment lines ``# convention: modified``, ``# length: mm``, ``# angle: deg``, then a head and a row for each joint.
+JSON: ``{"dh": [rows], "convention": ..., "length": ..., "angle": ...}``. Columns: name, type, a, alpha, d, theta, mass
+[kg], cx, cy, cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m^2], armature, damping [SI], min, max; what moves has its offset
+in the table.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Any
+
+from substructures.documents.text import decoded
+from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.interchange.names import Names, library_name
+from substructures.interchange.numbers import number_of
+from substructures.interchange.report import Place, Report, refuse
+
+CONVENTIONS = ("standard", "modified")
+_LENGTHS, _ANGLES = ("a", "d", "cx", "cy", "cz"), ("alpha", "theta")
+_MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_LAWS = ("armature", "damping")
+_NUMBERS = (*_LENGTHS, *_ANGLES, "mass", "min", "max", *_LAWS, *(f"I{e}" for e in _MOMENTS))
+_COLUMNS = ("name", "type", *_NUMBERS)
+_TYPES = {"revolute": "revolute", "r": "revolute", "prismatic": "prismatic", "p": "prismatic"}
+_MOST_ROWS = 200
+_SETTINGS = ("convention", "length", "angle", "name")
+
+
+@dataclass
+class _Table:
+    """Rows as texts with their places, and what holds for all of them."""
+
+    settings: dict[str, str]
+    rows: list[tuple[Place, dict[str, str]]] = field(default_factory=list)
+
+
+def read_csv(data: bytes, symbolic: bool = True) -> tuple[dict[str, Any], Report]:
+    """The definition of a CSV table; ``symbolic``: with masses as parameters. Raises InvalidDocument."""
+    text = decoded(data)
+    settings: dict[str, str] = {}
+    kept: list[tuple[int, str]] = []
+    for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
+        if line.lstrip().startswith("#"):
+            key, colon, given = line.lstrip("# \t").partition(":")
+            if colon and key.strip().lower() in _SETTINGS:
+                settings[key.strip().lower()] = given.strip()
+        elif line.strip():
+            kept.append((number, line))
+    if not 2 <= len(kept) <= _MOST_ROWS + 1:
+        raise refuse(
+            Place(1, "table"), "no-rows", f"a head and 1 to {_MOST_ROWS} rows are needed, found {len(kept)} lines"
+        )
+    head_line, head = kept[0]
+    delimiter = ";" if ";" in head else "\t" if "\t" in head else ","
+    names = [name.strip() for name in head.split(delimiter)]
+    _known(Place(head_line, "head"), names)
+    table = _Table(settings)
+    for number, line in kept[1:]:
+        cells = next(csv.reader([line], delimiter=delimiter), [])
+        place = Place(number, "row")
+        if len(cells) != len(names):
+            raise refuse(place, "wrong-length", f"{len(cells)} cells, the head has {len(names)}")
+        table.rows.append((place, {n: c.strip() for n, c in zip(names, cells, strict=True) if c.strip()}))
+    return _definition(table, symbolic)
+
+
+def read_table(document: Mapping[str, Any], symbolic: bool = True) -> tuple[dict[str, Any], Report]:
+    """The definition of a JSON table; ``symbolic``: with masses as parameters. Raises InvalidDocument."""
+    place = Place(0, "/")
+    unknown = [key for key in document if key not in ("dh", *_SETTINGS)]
+    if unknown:
+        raise refuse(place, "unknown-field", f"unknown field '{unknown[0][:40]}'; there are dh, {', '.join(_SETTINGS)}")
+    rows = document["dh"]
+    if not isinstance(rows, list) or not 1 <= len(rows) <= _MOST_ROWS:
+        raise refuse(Place(0, "/dh"), "no-rows", f"a list of 1 to {_MOST_ROWS} rows is needed")
+    table = _Table({key: str(document[key]) for key in _SETTINGS if key in document})
+    for i, row in enumerate(rows):
+        place = Place(0, f"/dh/{i}")
+        if not isinstance(row, Mapping):
+            raise refuse(place, "object-expected", "a row is an object")
+        _known(place, list(row))
+        if any(isinstance(x, Mapping | list | bool) or x is None for x in row.values()):
+            raise refuse(place, "bad-number", "numbers and names are needed")
+        table.rows.append((place, {k: str(x) for k, x in row.items()}))
+    return _definition(table, symbolic)
+
+
+def _known(place: Place, names: list[str]) -> None:
+    for name in names:
+        if name not in _COLUMNS:
+            raise refuse(place, "unknown-column", f"unknown column '{name[:40]}'; there are {', '.join(_COLUMNS)}")
+    if len(set(names)) < len(names) or not {"a", "alpha", "d", "theta"} <= set(names):
+        raise refuse(place, "missing-column", "the columns a, alpha, d and theta are needed, each once")
+
+
+def _definition(table: _Table, symbolic: bool) -> tuple[dict[str, Any], Report]:
+    report, names = Report(), Names()
+    convention = table.settings.get("convention", "")
+    if convention not in CONVENTIONS:
+        message = f"say 'convention: standard' or 'convention: modified', found '{convention[:40]}'"
+        raise refuse(Place(1, "table") if table.rows[0][0].line else Place(0, "/convention"), "convention", message)
+    units = _unit(table, "length", "m"), _unit(table, "angle", "rad")
+    bodies = list(_bodies(table, names, units, convention == "standard"))
+    if not any("mass" in row for _, row in table.rows):
+        report.warning(table.rows[0][0], "no masses: the part has a geometry, but its metric is zero", "physics")
+    title = table.settings.get("name", "")
+    ports = [{"name": names.new("tip"), "body": bodies[-1]["name"]}]
+    document = {"name": library_name(title, "dh-table"), "title": title[:200], "bodies": bodies, "ports": ports}
+    return document | ({"parameters": _parameters(bodies)} if symbolic else {}), report
+
+
+def _parameters(bodies: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Masses, mass centres and moments that are not zero, under names; these take their places in the bodies."""
+    found: dict[str, dict[str, Any]] = {}
+    names = Names(body["joint"].get("coordinate", "") for body in bodies)
+
+    def named(wanted: str, x: Any, unit: str) -> Any:
+        if not x:
+            return x
+        name = names.new(wanted)
+        found[name] = dict(x) if isinstance(x, Mapping) else {"value": x, "unit": unit}
+        return name
+
+    for body in bodies:
+        if "mass" in body:
+            own = body["name"]
+            body["mass"] = named(f"m_{own}", body["mass"], "kg")
+            body["com"] = [named(f"c{e}_{own}", x, "m") for e, x in zip("xyz", body["com"], strict=True)]
+            body["inertia"] = {e: named(f"I{e}_{own}", x, "kg m^2") for e, x in body["inertia"].items()}
+    return found
+
+
+def _unit(table: _Table, name: str, default: str) -> str:
+    """The unit of lengths or angles. Raises InvalidDocument for one of something else."""
+    given = table.settings.get(name, default)
+    try:
+        if read_unit(given).dimension == read_unit(default).dimension:
+            return given
+    except UnknownUnitError:
+        pass
+    place = Place(1, "table") if table.rows[0][0].line else Place(0, f"/{name}")
+    raise refuse(place, "unknown-unit", f"'{given[:40]}' is no unit of a {name}; expected for example {default}")
+
+
+def _bodies(table: _Table, names: Names, units: tuple[str, str], is_standard: bool) -> Iterator[dict[str, Any]]:
+    parent = "base"
+    coordinates = Names()
+    for i, (place, row) in enumerate(table.rows, 1):
+        cell = _Cells(place, row, units)
+        name = names.new(row.get("name", f"link{i}"))
+        joint = _joint(place, row, cell) | {"coordinate": coordinates.new(row.get("name", f"q{i}"))}
+        seat = {"theta": cell("alpha", "angle"), "d": cell("a", "length")}
+        mass = {"mass": cell("mass", ""), "com": [cell(c, "length") for c in ("cx", "cy", "cz")]}
+        mass["inertia"] = {e: cell(f"I{e}", "") for e in _MOMENTS}
+        if is_standard:
+            moving = names.new(f"{name}_joint")
+            yield {"name": moving, "parent": parent, "joint": joint}
+            yield {"name": name, "parent": moving, "joint": {"type": "fixed", **seat}, **mass}
+        else:
+            yield {"name": name, "parent": parent, "joint": joint | seat, **mass}
+        parent = name
+
+
+def _joint(place: Place, row: Mapping[str, str], cell: _Cells) -> dict[str, Any]:
+    given = row.get("type", "revolute").lower()
+    if given not in _TYPES:
+        raise refuse(place, "unknown-type", f"type '{given[:40]}' is none of revolute, prismatic")
+    kind = _TYPES[given]
+    joint: dict[str, Any] = {"type": kind, "phi": cell("theta", "angle"), "tau": cell("d", "length")}
+    joint |= {law: cell(law, "") for law in _LAWS if law in row}
+    if "min" in row and "max" in row:
+        unit = "angle" if kind == "revolute" else "length"
+        joint["limits"] = [cell("min", unit), cell("max", unit)]
+    return joint
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """The numbers of a row, with the unit of the table."""
+
+    place: Place
+    row: Mapping[str, str]
+    units: tuple[str, str]
+
+    def __call__(self, name: str, kind: str) -> Decimal | dict[str, Any]:
+        """A number; 0 where the cell is empty."""
+        number = number_of(self.row.get(name, "0"), Place(self.place.line, f"{self.place.element}, {name}"), name)
+        if not kind or not number:
+            return number
+        return {"value": number, "unit": self.units[0] if kind == "length" else self.units[1]}

@@ -1,0 +1,47 @@
+"""Robot files in installed packages that nobody here wrote; nothing of these packages is imported."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
+
+
+def urdf_files() -> dict[str, Path]:
+    """Of the package example-robot-data, by their path in it."""
+    return dict(_files("example-robot-data", "urdf"))
+
+
+def mjcf_files() -> dict[str, Path]:
+    """Of the packages dm_control and brax, by their path in them: what has <mujoco> as its root and a body."""
+    found = {**dict(_files("dm_control", "xml")), **dict(_files("brax", "xml"))}
+    return {name: path for name, path in found.items() if _is_whole(path)}
+
+
+def _is_whole(path: Path) -> bool:
+    text = path.read_text()
+    return "<mujoco" in text and "<body" in text
+
+
+def included(path: Path) -> dict[str, bytes]:
+    """The contents of the files that a file includes, by their names in it."""
+    found: dict[str, bytes] = {}
+    waiting = [path]
+    while waiting:
+        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text()):
+            file = path.parent / name
+            if name not in found and file.exists():
+                found[name] = file.read_bytes()
+                waiting.append(file)
+    return found
+
+
+def _files(package: str, ending: str) -> Iterator[tuple[str, Path]]:
+    try:
+        found = files(package) or []
+    except PackageNotFoundError:
+        return
+    for file in sorted(found, key=str):
+        if file.suffix == f".{ending}":
+            yield "/".join(Path(str(file)).parts[-3:]), Path(str(file.locate()))
