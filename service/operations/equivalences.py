@@ -27,7 +27,8 @@ Parts = tuple[TreeSpec, Mapping[str, Part]]
 def compared(store: Store, viewer: Viewer, a: Any, b: Any, coordinates: Mapping[str, str]) -> Equivalence:
     """Whether two models are the same; each a reference, a definition, a tree, or ``{"file": text}``.
 
-    A part that is compared with a tree gets its gravity; references are to what the viewer sees. Raises InvalidDocument, TooLarge, LongWork.
+    A part that is compared with a tree gets its gravity; references are to what the viewer sees.
+    Raises InvalidDocument, TooLarge, LongWork.
     """
     found: list[Part | Parts] = []
     for name, given in (("a", a), ("b", b)):
