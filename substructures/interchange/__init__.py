@@ -1,13 +1,15 @@
-"""Foreign documents in: robot files (URDF, ...) to definitions, with a report of what became of everything in them.
+"""Foreign documents in: robot files to definitions, with a report of what became of everything in them; comparisons.
 
-==============  ====================================================================================================
-module          what is there
-==============  ====================================================================================================
-kinds           which format a file has, and its reader
-xml, numbers    elements with their lines, exact numbers
-urdf            one reader for each format, all to ``robot.Robot``
-robot, merge    links on parents with motions between them; links that do not move against each other as one
-as_part         a robot as the definition of a substructure
-importing       all of it: bytes to definition, report, checks and names
-==============  ====================================================================================================
+==================  ================================================================================================
+module              what is there
+==================  ================================================================================================
+importing           all of it: bytes to definition (or tree), report, checks and names
+kinds               which format a file has, and its reader
+urdf, mjcf, sdf     readers of XML formats, all to ``robot.Robot``
+tables, symoro      readers of rows of Denavit-Hartenberg parameters, straight to definitions
+robot, merge        links on parents with motions between them; links that do not move against each other as one
+as_part, names      a robot as the definition of a substructure; names of files as names of definitions
+equivalence         whether two models are the same; ``culprits``: which body and parameter is not
+xml, numbers        elements with their lines and exact numbers; ``rotations`` and inertias as doubles
+==================  ================================================================================================
 """

@@ -11,6 +11,7 @@ from substructures.errors import InvalidDocument
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Robot
+from substructures.interchange.sdf import read_sdf
 from substructures.interchange.symoro import is_par, read_par
 from substructures.interchange.tables import read_csv, read_table
 from substructures.interchange.urdf import read_urdf
@@ -23,8 +24,9 @@ Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 _ROOTS: Mapping[str, tuple[str, Reader]] = {
     "robot": ("urdf", lambda root, _: read_urdf(root)),
     "mujoco": ("mjcf", read_mjcf),
+    "sdf": ("sdf", lambda root, _: read_sdf(root)),
 }
-KINDS = ("urdf", "mjcf", "dh", "par")
+KINDS = ("urdf", "mjcf", "sdf", "dh", "par")
 
 
 def is_foreign(data: bytes) -> bool:

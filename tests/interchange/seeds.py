@@ -25,6 +25,14 @@ MJCF = """<mujoco model="m"><compiler angle="radian" eulerseq="XYZ" settotalmass
 _CORPUS = [
     path.read_bytes() for path in [*urdf_files().values(), *mjcf_files().values()] if path.stat().st_size < 12000
 ]
+SDF = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><pose relative_to="a" degrees="true">
+0 0 1 0 90 0</pose><inertial><pose>0 0 1 0.1 0.2 0</pose><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>
+</inertia></inertial></link>
+<frame name="f" attached_to="b"><pose>0 1 0 0 0 0</pose></frame><joint name="j" type="universal">
+<parent>a</parent><child>b</child><axis><xyz expressed_in="f">1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit>
+</axis>
+<axis2><xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2>
+</joint></model></sdf>"""
 DH = b"""# convention: standard
 # length: mm
 name,type,a,alpha,d,theta,mass,cx,Ixx,min,max
@@ -48,4 +56,4 @@ MX = {0.03,MX2*cos(pi/5)}
 M = {3,M2}
 FV = {0,FV2}
 """
-SEEDS: list[bytes] = [*[URDF.encode(), MJCF.encode(), DH, TABLE, PAR] * 8, *_CORPUS]
+SEEDS: list[bytes] = [*[URDF.encode(), MJCF.encode(), SDF.encode(), DH, TABLE, PAR] * 8, *_CORPUS]

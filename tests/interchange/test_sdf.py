@@ -1,0 +1,103 @@
+"""SDF files: the same arm as in URDF, with poses relative to all there is; what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from substructures import Definition, derive
+from substructures.errors import InvalidDocument
+from substructures.interchange.equivalence import equivalence
+from substructures.interchange.importing import import_file
+from substructures.interchange.sides import Side
+
+URDF = """<robot name="arm"><link name="ground"/>
+<link name="upper"><inertial><origin xyz="0.1 0 0.3" rpy="0.1 0.2 0.3"/><mass value="4"/>
+ <inertia ixx="0.3" iyy="0.4" izz="0.2" ixy="0.01" ixz="0.02" iyz="0.03"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0 0.1 0.2"/><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.05"/>
+ </inertial></link>
+<joint name="shoulder" type="revolute"><parent link="ground"/><child link="upper"/><axis xyz="0 1 0"/>
+ <origin xyz="0 0 0.4"/><limit lower="-1" upper="2" effort="1" velocity="1"/><dynamics damping="0.5"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><axis xyz="1 0 0"/>
+ <origin xyz="0 0.1 0.6" rpy="0.3 0 0"/></joint></robot>"""
+#: links in the model or relative to each other, the frame of the lower link away from its axis and turned about it
+SDF = """<sdf version="1.9"><model name="arm"><pose>0 0 0 0 0 0</pose>
+<link name="upper"><pose>0 0 0.4 0 0 0</pose><inertial><pose>0.1 0 0.3 0.1 0.2 0.3</pose><mass>4</mass>
+ <inertia><ixx>0.3</ixx><iyy>0.4</iyy><izz>0.2</izz><ixy>0.01</ixy><ixz>0.02</ixz><iyz>0.03</iyz></inertia></inertial></link>
+<frame name="pivot" attached_to="upper"><pose degrees="false">0 0.1 0.6 0.3 0 0</pose></frame>
+<frame name="grip" attached_to="pivot"/>
+<link name="lower"><pose relative_to="pivot" degrees="true">0 0 0.5 0 0 90</pose><inertial>
+ <pose>0.1 0 -0.3 0 0 0</pose><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.05</izz></inertia>
+ </inertial></link>
+<joint name="shoulder" type="revolute"><parent>world</parent><child>upper</child>
+ <axis><xyz>0 1 0</xyz><limit><lower>-1</lower><upper>2</upper></limit>
+ <dynamics><damping>0.5</damping></dynamics></axis>
+</joint>
+<joint name="elbow" type="revolute"><pose relative_to="pivot">0 0 0 0 0 0.7</pose>
+ <parent>upper</parent><child>lower</child>
+ <axis><xyz expressed_in="pivot">1 0 0</xyz></axis></joint></model></sdf>"""
+
+
+def side(text: str) -> Side:
+    return Side.of_part(derive(Definition.read(import_file(text.encode()).definition)))
+
+
+def test_the_same_arm_in_sdf() -> None:
+    found = equivalence(side(URDF), side(SDF))
+    assert found.equal, (found.first_difference, found.culprits)
+    read = import_file(SDF.encode()).definition
+    assert [b["joint"].get("limits") for b in read["bodies"]] == [[-1, 2], None]
+    assert [p["name"] for p in read["ports"]] == ["lower_frame", "pivot", "grip"]
+
+
+def test_axes_are_given_in_the_frame_of_the_joint() -> None:
+    turned = SDF.replace('<xyz expressed_in="pivot">1 0 0', "<xyz>0.7648421872844885 -0.644217687237691 0")
+    assert equivalence(side(URDF), side(turned)).equal
+    assert not equivalence(side(URDF), side(SDF.replace(' expressed_in="pivot"', ""))).equal
+
+
+def test_nested_models_have_names_with_two_colons() -> None:
+    start, middle, end = SDF.partition('<link name="upper">')
+    inner = (middle + end).replace("</model></sdf>", "")
+    nested = f'{start}<model name="in"><pose>0 0 0 0 0 0</pose>{inner}</model></model></sdf>'
+    found = import_file(nested.encode())
+    assert [b["name"] for b in found.definition["bodies"]] == ["in__upper", "in__lower"]
+    names = {"shoulder": "in__shoulder", "elbow": "in__elbow"}
+    assert equivalence(side(URDF), side(nested), names).equal
+
+
+def test_universal_and_ball_joints() -> None:
+    """axis2 is carried by axis: the same as two joints of one body."""
+    both = (
+        '<sdf version="1.7"><model name="m"><link name="b"><inertial><pose>0 0 1 0 0 0</pose><mass>2</mass><inertia>'
+        "<ixx>1</ixx><iyy>2</iyy><izz>2.5</izz></inertia></inertial></link>"
+        '<joint name="u" type="universal"><parent>world</parent><child>b</child><axis><xyz>1 0 0</xyz></axis>'
+        "<axis2><xyz>0 1 0</xyz></axis2></joint></model></sdf>"
+    )
+    twin = (
+        '<mujoco><worldbody><body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2.5"/>'
+        '<joint name="u" axis="1 0 0"/><joint name="u_2" axis="0 1 0"/></body></worldbody></mujoco>'
+    )
+    assert equivalence(side(both), side(twin)).equal
+    ball = import_file(both.replace('type="universal"', 'type="ball"').encode()).definition
+    assert ball["bodies"][0]["joint"]["coordinate"] == ["u_yaw", "u_pitch", "u_roll"]
+
+
+BAD = {
+    "version": (SDF.replace("1.9", "1.2"), "line 1: <sdf>: version '1.2' is none of"),
+    "include": (SDF.replace("<frame", "<include><uri>m</uri></include><frame", 1), "line 4: <include>: <include>"),
+    "frame": (SDF.replace('relative_to="pivot"', 'relative_to="nowhere"', 1), "there is no frame 'nowhere'"),
+    "circle": (SDF.replace('attached_to="upper"><pose', 'attached_to="upper"><pose relative_to="lower"'), "to itself"),
+    "link": (SDF.replace("<parent>upper", "<parent>arm"), 'line 13: <joint name="elbow">: there is no link .arm'),
+    "axis": (SDF.replace("<xyz>0 1 0", "<xyz>0 0 0"), "line 10: <xyz>: the axis has no direction"),
+    "type": (SDF.replace('"elbow" type="revolute"', '"elbow" type="screw"'), "type 'screw' is none of"),
+    "pose": (SDF.replace("0.1 0.2 0.3</pose>", "0.1 0.2</pose>"), "line 2: <pose>: 'pose' needs 6 numbers"),
+    "mass": (SDF.replace("<mass>4", "<mass>-4"), "line 2: <inertial>: the mass -4 kg is negative"),
+    "models": ('<sdf version="1.9"/>', "0 models: one is needed"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_files_are_refused_with_their_place(name: str) -> None:
+    text, message = BAD[name]
+    with pytest.raises(InvalidDocument, match=message):
+        import_file(text.encode())
