@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from service.refusals import Refused, unprocessable
 from substructures.export.render import FORMATS
+from substructures.printers import FORMS
 
 JSON = "json"
 MEDIA_TYPES = dict(FORMATS)
-FORMS = ("compact", "expanded")
 
 
 def choose_format(wanted: str | None, accept: str) -> str:
@@ -35,7 +35,7 @@ def choose_media_type(accept: str, offered: Sequence[str]) -> str:
 
 
 def choose_form(wanted: str) -> str:
-    """``compact`` or ``expanded``. Raises Refused 422."""
+    """One of FORMS. Raises Refused 422."""
     if wanted not in FORMS:
         raise unprocessable("form", f"unknown form '{wanted[:40]}'; there are {', '.join(FORMS)}", "/query/form")
     return wanted

@@ -24,7 +24,8 @@ def sleigh(gravity: tuple[float, ...] = (0, 0, 0)) -> Model:
         "com": ["a", 0, 0],
         "inertia": {"xx": "I", "zz": "I"},
     }
-    parameters = {"m": {"value": 2}, "I": {"value": 0.3}, "a": {"value": 0.25}}
+    parameters = {"m": {"value": 2, "unit": "kg"}, "a": {"value": 0.25, "unit": "m"}}
+    parameters["I"] = {"value": 0.3, "unit": "kg*m^2"}
     return single({"name": "sleigh", "parameters": parameters, "bodies": [body]}, list(gravity))
 
 

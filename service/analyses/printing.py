@@ -37,7 +37,7 @@ CHRISTOFFEL = "christoffel"
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How formulas are printed: format, form (compact or expanded), text of ``bind=``, prefix of functions."""
+    """How formulas are printed: format, form (one of FORMS), text of ``bind=``, prefix of functions."""
 
     format: str
     form: str

@@ -23,6 +23,7 @@ from service.operations.models import Style
 from service.settings import Limits
 from substructures.client import Client
 from substructures.export import FORMATS, interface_of_model
+from substructures.printers import FORMS
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
@@ -47,7 +48,7 @@ def _add_analyse(command: argparse.ArgumentParser) -> None:
     command.add_argument("request", type=Path, nargs="?", help="request of numbers, JSON or YAML")
     _add_output(command)
     command.add_argument("--format", choices=sorted(FORMATS), default="text", help="of formulas")
-    command.add_argument("--form", choices=("compact", "expanded"), default="compact", help="of formulas")
+    command.add_argument("--form", choices=FORMS, default=FORMS[0], help="of formulas")
     command.add_argument("--bind", default="", help="numbers in formulas: name:value,... or defaults")
     command.add_argument("--name", default=NAME, help="prefix of functions, where the format is a language")
     for name, text in OPTIONS.items():

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from service.pages.html import Content, Html, html, table, tag
 from substructures.errors import TooLarge
-from substructures.expr.program import Program
+from substructures.expr.program import KINDS, Program
 from substructures.printers import render
 
 #: operations of a formula that is shown inside of a page
 SHOWN = 3000
 LONGEST = 40
+_SYMBOL = re.compile(rf"# .* is ({'|'.join(KINDS)}) \[.*\]")
 _KINDS = {"R": ("revolute", "rad"), "P": ("prismatic", "m")}
 _NAMES = {"metric": "metric", "christoffel": "Christoffel symbols", "gravity": "gravity forces"}
 
@@ -129,9 +131,10 @@ def _times(report: Mapping[str, Any]) -> list[str]:
 def formula(program: Program, address: str) -> Html:
     """Formulas as text, or where they can be had when they are long."""
     try:
-        text = render(program, "text", limit=SHOWN)
+        text = render(program, "text", "readable", limit=SHOWN)
     except TooLarge as error:
         what = f"Too long for a page: size {error.size:,}; up to {error.limit:,} is shown here. "
         return tag("p", what, tag("a", "Load it as text", href=address), class_="quiet")
-    lines = text.split("\n")[1 + len(program.symbols) :]  # names and units stand in the tables of the page
+    # names and units stand in the tables of the page
+    lines = [line for line in text.split("\n")[1:] if not _SYMBOL.fullmatch(line)]
     return tag("pre", tag("code", "\n".join(lines)), tabindex="0")

@@ -7,8 +7,9 @@ from typing import Annotated
 from fastapi import Depends, Header, Query
 
 from service.analyses.printing import NAME
-from service.negotiation import FORMS, MEDIA_TYPES, choose_form, choose_format
+from service.negotiation import MEDIA_TYPES, choose_form, choose_format
 from service.operations.models import Style
+from substructures.printers import FORMS
 
 
 async def style_of(
@@ -17,8 +18,13 @@ async def style_of(
         Query(max_length=40, description="wins over Accept", json_schema_extra={"enum": [*MEDIA_TYPES, None]}),
     ] = None,
     form: Annotated[
-        str, Query(description="compact (shared subexpressions) or expanded", json_schema_extra={"enum": [*FORMS]})
-    ] = "compact",
+        str,
+        Query(
+            description="textbook (collected, factored, cancelled), compact (shared subexpressions), expanded, or "
+            "readable: textbook in text and LaTeX where that is quick, otherwise compact",
+            json_schema_extra={"enum": [*FORMS]},
+        ),
+    ] = FORMS[0],
     bind: Annotated[
         str, Query(max_length=50_000, description="name:value,... or defaults; a value may be 1200 mm")
     ] = "",

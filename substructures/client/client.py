@@ -45,7 +45,7 @@ class Client(JobCaller):
         tree: str,
         quantity: str,
         format: str = "text",  # noqa: A002 -- the name in the contract
-        form: str = "compact",
+        form: str = "readable",
         bind: str = "",
         **options: str | list[str],
     ) -> str:

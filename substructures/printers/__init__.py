@@ -6,7 +6,7 @@ Sizes are known before anything is printed. User names appear in formulas in the
 
 from __future__ import annotations
 
-from substructures.printers.render import FORMATS, entries, render
+from substructures.printers.render import FORMATS, FORMS, entries, render
 from substructures.printers.symmetry import symmetry_rule
 
-__all__ = ["FORMATS", "entries", "render", "symmetry_rule"]
+__all__ = ["FORMATS", "FORMS", "entries", "render", "symmetry_rule"]

@@ -67,6 +67,10 @@ class Collector:
         plain = self.plain(polynomial)
         if len(polynomial) < 2:
             return plain
+        number, parts = factored(polynomial, Fraction(1))
+        if sum(n for part, n in parts if len(part) > 1) > 1:
+            factors: list[tuple[Factor, int]] = [(self(part), n) for part, n in parts]
+            return Sum((product(number, self.in_order(factors)),))
         forms = [self._gathered(polynomial, self._geometry), self._gathered(polynomial, self._masses), plain]
         return min(forms, key=len)
 

@@ -31,6 +31,8 @@ def factors(waves: Waves) -> Factors:
         return whole
     degrees = [max(sum(n for _, k, n in some if k == angle) for _, some in waves) for angle in angles]
     number, parts = _polynomial(waves, angles, degrees).factor()
+    if sum(int(n) for part, n in parts if not _is_unit(part)) < 2:
+        return whole
     value, found = Fraction(int(number.p), int(number.q)), []
     for part, n in parts:
         form, halves = _read(part, angles)
@@ -62,6 +64,11 @@ def _polynomial(waves: Waves, angles: Sequence[Mode], degrees: Sequence[int]) ->
             term *= (1 + t**2) ** n
         result += term
     return result
+
+
+def _is_unit(part: Any) -> bool:
+    """Whether a factor is 1 + t^2 for one of the tangents, or constant."""
+    return len(part) < 2 or (list(part.coeffs()) == [1, 1] and sorted(map(int, part.degrees()))[-2:] in ([2], [0, 2]))
 
 
 def _read(part: Any, angles: Sequence[Mode]) -> tuple[Waves | None, list[int]]:

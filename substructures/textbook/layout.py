@@ -75,11 +75,11 @@ class Layout:
             ((moving, waves),) = function
             if not moving and not waves:
                 return list(self.collect(polynomial).terms)
-        if len(polynomial) == 1 and polynomial.get((), Fraction(0)) in (1, -1) and len(function) > 1:
-            return [t.scaled(polynomial[()]) for t in self._function(function).terms]
-        constant = self.collect.factored(polynomial)
         moving_, waves_ = self._common(function)
         number, inner = self._split({_over(m, (moving_, waves_)): c for m, c in function.items()})
+        if len(polynomial) == 1 and polynomial.get((), Fraction(0)) in (1, -1) and [n for _, n in inner] == [1]:
+            return [t.scaled(polynomial[()]) for t in self._function(function).terms]
+        constant = self.collect.factored(polynomial)
         factors: list[tuple[Factor, int]] = [*constant.factors, *self._waves(waves_), *self.atoms.factors(moving_)]
         return [product(constant.coefficient * number, [*factors, *inner])]
 

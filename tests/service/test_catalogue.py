@@ -149,7 +149,9 @@ def test_every_format_counts_in_one_way_and_says_so(filled: TestClient) -> None:
     """F of joint 1 for coordinate 1 is (-m l cos q, -m l sin q, 0); places in the query count from 0."""
 
     def printed(form: str, **query: Any) -> str:
-        answer = filled.get("/v1/substructures/pendulum/formulas/F", params={"format": form, **query})
+        answer = filled.get(
+            "/v1/substructures/pendulum/formulas/F", params={"format": form, "form": "compact", **query}
+        )
         assert answer.status_code == 200
         return answer.text
 

@@ -1,0 +1,208 @@
+"""What is printed, beside what textbooks print: lines typed by hand, and the source's own arrangement as a formula.
+
+``line`` is what is printed, letter by letter. ``source`` was typed from the publication, as it stands there; both are
+compared in ball arithmetic at random points, straight from their texts.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from closed_trees import tree_model
+from random_trees import Plain
+from rolling_bodies import BLADE, FORWARD, sleigh
+
+from substructures import Model, Program, catalogue
+from substructures.analysis.equations.curvature import curvature
+from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.routh import routh
+from substructures.expr.direct import ball
+from substructures.expr.syntax import read
+from substructures.printers import render
+from substructures.quantities.formulas import derived
+
+
+class Line(NamedTuple):
+    """A printed line of an output of a model, and the same in the words of a source."""
+
+    model: str
+    output: str
+    line: str
+    source: str
+    origin: str
+
+
+def top() -> Model:
+    """A symmetric top with its fixed point below the mass centre; moments about the mass centre."""
+    units = {"m": "kg", "l": "m", "A": "kg*m^2", "C": "kg*m^2"}
+    place = {"position": [0, 0, 0]}
+    joints: list[Plain] = [{"coordinate": "psi"}, {"coordinate": "theta", "placement": place, "axis": [1, 0, 0]}]
+    joints.append({"coordinate": "phi"})
+    names = ("outer", "inner", "top")
+    bodies: list[Plain] = [
+        {"name": name, "parent": names[k - 1] if k else "base", "joint": {"type": "revolute"} | joint}
+        for k, (name, joint) in enumerate(zip(names, joints, strict=True))
+    ]
+    bodies[-1] |= {"mass": "m", "com": [0, 0, "l"], "inertia": {"xx": "A", "yy": "A", "zz": "C"}}
+    part = {"name": "top", "parameters": {k: {"value": 1, "unit": u} for k, u in units.items()}, "bodies": bodies}
+    return tree({"top": part})
+
+
+def tree(parts: Plain) -> Model:
+    gravity = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
+    return tree_model(gravity | {"instances": [{"name": "x", "substructure": name} for name in parts]}, parts)
+
+
+@cache
+def program(model: str, output: str) -> Program:
+    """One output of an entry of the catalogue, or of a body of its own."""
+    if model == "sleigh":
+        return quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD).program.select([output])
+    if model == "top":
+        return routh(top()).program.select([output])
+    found = tree({model: catalogue.load(model)})
+    if output == "scalar_curvature":
+        return curvature(found).select([output])
+    return derived(found, output).select([output]) if output == "forward_dynamics" else found.program.select([output])
+
+
+LANDAU = "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. 1976, section 5, problem 1, with phi2 = q1 + q2"
+TEDRAKE = "R. Tedrake, Underactuated Robotics, chapter The acrobot, the cart-pole and quadrotors"
+FURUTA = "B. S. Cazzolato, Z. Prime, On the Dynamics of the Furuta Pendulum, 2011, equation 33"
+SPONG = (
+    "M. W. Spong, S. Hutchinson, M. Vidyasagar, Robot Modeling and Control, 2006, section 7.4, and a load at the end"
+)
+TOP = "H. Goldstein, Classical Mechanics, 2nd ed. 1980, sections 5-7 and 8-3, with A + m l^2 about the fixed point"
+BLOCH = "A. M. Bloch, Nonholonomic Mechanics and Control, 2003, section 1.7"
+PUMA = "sum of the links' moments about axis 2, B. Armstrong, O. Khatib, J. Burdick, ICRA 1986, before abbreviation"
+
+COORDINATES = [f"q{n}" for n in range(1, 7)]
+
+LINES = [
+    Line(
+        "double-pendulum",
+        "metric[1, 1]",
+        "(m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q2)",
+        "(m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q1 - (q1 + q2))",
+        LANDAU,
+    ),
+    Line(
+        "double-pendulum",
+        "forces[1]",
+        "tau_1 - (m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2)",
+        "tau_1 - (m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2)",
+        LANDAU,
+    ),
+    Line("double-pendulum", "christoffel[1, 2, 2]", "-m2*l1*l2*sin(q2)", "-m2*l1*l2*sin(q2)", LANDAU),
+    Line(
+        "double-pendulum",
+        "scalar_curvature",
+        "2*m1*cos(q2)/(l1*l2*(m1 + m2*sin(q2)^2)^2)",
+        "2*m1*cos(q2)/(l1*l2*(m1 + m2*(1 - cos(q2)^2))^2)",
+        "twice Gauss' curvature by Brioschi's formula",
+    ),
+    Line(
+        "double-pendulum",
+        "forward_dynamics[1]",
+        "(l2*(tau_1 - tau_2) - m1*g*l1*l2*sin(q1) + m2*g*l1*l2*cos(q1 + q2)*sin(q2) - l1*tau_2*cos(q2)"
+        " + m2*l1*l2^2*sin(q2)*(q1' + q2')^2 + m2*l1^2*l2*sin(q2)*cos(q2)*q1'^2)/(l1^2*l2*(m1 + m2*sin(q2)^2))",
+        # Cramer's rule on M q'' + C = Q
+        "(m2*l2^2*(tau_1 - (m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2) + m2*l1*l2*sin(q2)*(2*q1'*q2' + q2'^2))"
+        " - (m2*l2^2 + m2*l1*l2*cos(q2))*(tau_2 - m2*g*l2*sin(q1 + q2) - m2*l1*l2*sin(q2)*q1'^2))"
+        "/(m2*l2^2*((m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q2)) - (m2*l2^2 + m2*l1*l2*cos(q2))^2)",
+        LANDAU,
+    ),
+    Line(
+        "acrobot",
+        "metric[1, 1]",
+        "Ic1 + Ic2 + m1*lc1^2 + m2*l1^2 + m2*lc2^2 + 2*m2*l1*lc2*cos(q2)",
+        "(Ic1 + m1*lc1^2) + (Ic2 + m2*lc2^2) + m2*l1^2 + 2*m2*l1*lc2*cos(q2)",
+        TEDRAKE,
+    ),
+    Line(
+        "acrobot",
+        "forces[1]",
+        "tau_1 - g*(m1*lc1 + m2*l1)*cos(q1) - m2*g*lc2*cos(q1 + q2)",
+        "tau_1 - m1*g*lc1*cos(q1) - m2*g*(l1*cos(q1) + lc2*cos(q1 + q2))",
+        TEDRAKE,
+    ),
+    Line(
+        "cart-pendulum",
+        "forward_dynamics[1]",
+        "(l0*tau_0 + tau_1*cos(q1) + m1*g*l0*sin(q1)*cos(q1) - m1*l0^2*sin(q1)*q1'^2)/(l0*(m0 + m1*sin(q1)^2))",
+        "1/(m0 + m1*sin(q1)^2)*(tau_0 + tau_1*cos(q1)/l0 - m1*sin(q1)*(l0*q1'^2 - g*cos(q1)))",
+        TEDRAKE + ", from the upright position, and a torque",
+    ),
+    Line(
+        "furuta-pendulum",
+        "metric[1, 1]",
+        "J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2",
+        "J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2",
+        FURUTA,
+    ),
+    Line("furuta-pendulum", "metric[1, 2]", "m2*L1*l2*cos(q2)", "m2*L1*l2*cos(q2)", FURUTA),
+    Line(
+        "furuta-pendulum",
+        "christoffel[1, 1, 2]",
+        "(J2 + m2*l2^2)*sin(q2)*cos(q2)",
+        "1/2*(J2 + m2*l2^2)*sin(2*q2)",
+        FURUTA,
+    ),
+    Line(
+        "scara",
+        "metric[1, 1]",
+        "I1 + I2 + Ia4 + m1*c1^2 + m2*(a1^2 + c2^2) + (m3 + m4)*(a1^2 + a2^2) + 2*a1*(m2*c2 + (m3 + m4)*a2)*cos(q2)",
+        "m1*c1^2 + m2*(a1^2 + c2^2 + 2*a1*c2*cos(q2)) + (m3 + m4)*(a1^2 + a2^2 + 2*a1*a2*cos(q2)) + I1 + I2 + Ia4",
+        SPONG,
+    ),
+    Line("scara", "metric[2, 2]", "I2 + Ia4 + m2*c2^2 + (m3 + m4)*a2^2", "m2*c2^2 + (m3 + m4)*a2^2 + I2 + Ia4", SPONG),
+    Line(
+        "top",
+        "routhian",
+        "-p_phi^2/(2*C) - m*g*l*cos(theta) + 1/2*(A + m*l^2)*theta'^2"
+        " - (p_psi - p_phi*cos(theta))^2/(2*(A + m*l^2)*sin(theta)^2)",
+        "(A + m*l^2)*theta'^2/2 - (p_psi - p_phi*cos(theta))^2/(2*(A + m*l^2)*sin(theta)^2) - p_phi^2/(2*C)"
+        " - m*g*l*cos(theta)",
+        TOP,
+    ),
+    Line("sleigh", "bias[2]", "m*a*u*w", "m*a*u*w", BLOCH),
+    Line("sleigh", "metric[2, 2]", "I + m*a^2", "I + m*a^2", BLOCH),
+    Line(
+        "puma560",
+        "metric[2, 2]",
+        "Iyy3 + Izz2 + Jm2*G2^2 + m2*(a2^2 + 2*a2*cx2 + cx2^2 + cy2^2) + m3*(a2^2 + a3^2 + 2*a3*cx3 + cx3^2 + cz3^2)"
+        " + m4*(a2^2 + a3^2 + cy4^2 + 2*cy4*d4 + d4^2) + (m5 + m6)*(a2^2 + a3^2 + d4^2)"
+        " + 2*a2*((m3 + m4 + m5 + m6)*a3 + m3*cx3)*c3 - 2*m6*a2*cz6*(c3*c4*s5 + s3*c5)"
+        " - 2*a2*(m3*cz3 + m4*cy4 + (m4 + m5 + m6)*d4)*s3 - 2*m6*a3*cz6*c4*s5 + (Iyy5 + Izz4)*c4^2"
+        " + m6*cz6^2*(c4^2 + s4^2*c5^2) + Iyy6*(c4*c6 - s4*c5*s6)^2 + Ixx6*(c4*s6 + s4*c5*c6)^2 + Ixx4*s4^2"
+        " + Ixx5*s4^2*c5^2 + (Izz5 + Izz6)*s4^2*s5^2 + 2*m6*cz6*d4*c5",
+        "Jm2*G2^2 + Izz2 + m2*((a2 + cx2)^2 + cy2^2)"
+        " + Iyy3 + m3*((a2 + c3*(a3 + cx3) - s3*cz3)^2 + (s3*(a3 + cx3) + c3*cz3)^2)"
+        " + Ixx4*s4^2 + Izz4*c4^2 + m4*((a2 + c3*a3 - s3*(d4 + cy4))^2 + (s3*a3 + c3*(d4 + cy4))^2)"
+        " + Ixx5*(s4*c5)^2 + Iyy5*c4^2 + Izz5*(s4*s5)^2 + m5*((a2 + c3*a3 - s3*d4)^2 + (s3*a3 + c3*d4)^2)"
+        " + Ixx6*(s4*c5*c6 + c4*s6)^2 + Iyy6*(s4*c5*s6 - c4*c6)^2 + Izz6*(s4*s5)^2"
+        " + m6*((a2 + c3*(a3 - cz6*c4*s5) - s3*(d4 + cz6*c5))^2 + (s3*(a3 - cz6*c4*s5) + c3*(d4 + cz6*c5))^2)",
+        PUMA,
+    ),
+]
+
+
+@pytest.mark.parametrize("case", LINES, ids=lambda case: f"{case.model} {case.output}")
+def test_lines_of_textbooks(case: Line) -> None:
+    name = case.output.partition("[")[0]
+    text = render(program(case.model, name), "text", "textbook")
+    printed = dict(line.split(" = ", 1) for line in text.splitlines() if " = " in line and not line.startswith("#"))
+    assert printed[case.output] == case.line
+    # abbreviations such as c23, then everything else at random
+    names = {step.value for step in [*read(case.line), *read(case.source)] if step.op == "name"}
+    rng = np.random.default_rng(5)
+    for _ in range(3):
+        point = {n: Fraction(int(rng.integers(100, 900)), 400) for n in [*sorted(map(str, names)), *COORDINATES]}
+        point |= {n: ball(printed[n], point, precision=300) for n in printed if n in names}
+        one, two = (ball(text, point, precision=300) for text in (case.line, case.source))
+        assert (one - two).contains(0)
+        assert float((one - two).rad()) < 1e-60
