@@ -31,10 +31,13 @@ async def style_of(
     name: Annotated[
         str, Query(max_length=80, description="prefix of functions, where the format is a language")
     ] = NAME,
+    document: Annotated[bool, Query(description="LaTeX as a whole document, with a table of symbols")] = False,
     accept: Annotated[str, Header()] = "*/*",
 ) -> Style:
     """The style that a request asks for."""
-    return Style(choose_format(format, accept), choose_form(form), bind, name)
+    wanted = choose_format(format, accept)
+    wanted = "latex-document" if document and wanted == "latex" else wanted
+    return Style(wanted, choose_form(form), bind, name)
 
 
 StyleOf = Annotated[Style, Depends(style_of)]

@@ -83,12 +83,12 @@ class Language(ABC):
         found = None if 12 % value.denominator == 0 else shortest_decimal(abs(value))
         if found is None:
             return self.number(value)
-        piece = self.scientific(*found) if found[1] else Piece(found[0])
+        piece = self.scientific(*found)
         return piece if value > 0 else self.neg(piece)
 
     def scientific(self, mantissa: str, exponent: int) -> Piece:
         """mantissa * 10^exponent."""
-        return Piece(f"{mantissa}e{exponent}")
+        return Piece(f"{mantissa}e{exponent}" if exponent else mantissa)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
         """A power of a cosine or sine."""

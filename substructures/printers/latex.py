@@ -86,6 +86,8 @@ class Latex(Language):
 
     def scientific(self, mantissa: str, exponent: int) -> Piece:
         """mantissa * 10^exponent."""
+        if not exponent:
+            return Piece(mantissa)
         return Piece(rf"{mantissa} \cdot 10^{{{exponent}}}", PRODUCT)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
@@ -132,13 +134,18 @@ class Latex(Language):
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
-        rows = [f"{name} &= {broken(text)}" for name, text in listing.abbreviations]
-        rows += [f"{self.letter}_{{{n}}} &= {broken(text)}" for n, text in listing.temporaries]
+        rows = self.abbreviated(listing)
         for output, array in self.program.outputs.items():
-            rows += self._rows(output, array, listing.entries[output])
+            rows += self.rows(output, array, listing.entries[output])
         return "\n".join([*lines, r"\begin{aligned}", " \\\\\n".join(rows), r"\end{aligned}"]) + "\n"
 
-    def _rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
+    def abbreviated(self, listing: Listing) -> list[str]:
+        """Rows of abbreviations and temporaries."""
+        rows = [f"{name} &= {broken(text)}" for name, text in listing.abbreviations]
+        return rows + [f"{self.letter}_{{{n}}} &= {broken(text)}" for n, text in listing.temporaries]
+
+    def rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
+        """Rows of an output, its symmetry as the last one."""
         letter = _LETTERS.get(output) or latex_names([output])[0]
         letter = letter if letter.isalpha() or output in _LETTERS else f"{{{letter}}}"
         separator = "," if max(array.shape, default=0) > 9 else ""

@@ -80,7 +80,7 @@ def latex_names(names: Iterable[str]) -> list[str]:
     result: dict[str, None] = {}
     for name in names:
         text = _latex_name(name)
-        text = text if text not in result else _typewriter(name)
+        text = text if text not in result else typewriter(name)
         result[text if text not in result else f"{text}_{{{len(result)}}}"] = None
     return list(result)
 
@@ -90,7 +90,7 @@ def _latex_name(name: str) -> str:
     *owners, last = name[: len(name) - primes].split(".")
     match = _PIECE.fullmatch(last)
     if match is None or primes > 4 or not all(re.fullmatch(r"[A-Za-z0-9_-]+", o, re.ASCII) for o in owners):
-        return _typewriter(name)
+        return typewriter(name)
     letters, digits, rest = match.groups()
     if letters not in GREEK and (len(letters) == 2 or (len(letters) == 3 and letters[0] in "IJ")):
         # lc1 is l_{c1}, Izz4 is I_{zz4}
@@ -117,6 +117,7 @@ def _subscript(part: str) -> str:
     return "\\" + part if part in GREEK else rf"\mathrm{{{part.replace('_', chr(92) + '_')}}}"
 
 
-def _typewriter(name: str) -> str:
+def typewriter(name: str) -> str:
+    """Any text as it stands, for the mathematics of LaTeX."""
     special = {"_": r"\_", "^": r"\hat{}", "'": r"\textquotesingle "}
     return r"\mathtt{" + "".join(special.get(c, c) for c in comment(name)).replace(" ", r"\ ") + "}"

@@ -18,7 +18,9 @@ from substructures.expr.replay import replay
 from substructures.expr.walk import transfer
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
+from substructures.printers.latex_document import LatexDocument
 from substructures.printers.listing import check_size, compact, expanded, inlined
+from substructures.printers.mathml import MathML
 from substructures.printers.names import short_names
 from substructures.printers.text import Text
 from substructures.printers.textbook import textbook, textbook_inlined
@@ -28,6 +30,8 @@ from substructures.textbook.forms import atoms_of, to_expr
 LANGUAGES: Mapping[str, type[Language]] = {
     "text": Text,
     "latex": Latex,
+    "latex-document": LatexDocument,
+    "mathml": MathML,
 }
 
 #: media type of every format

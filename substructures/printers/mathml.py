@@ -1,0 +1,216 @@
+"""Presentation MathML in a page of XHTML: one ``<math>`` for every term of a sum, so that lines wrap.
+
+Elements of MathML Core only, which browsers draw without help: math, mrow, mi, mn, mo, mtext, mspace, msub, msup,
+mfrac, msqrt, mover.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import ClassVar
+from xml.sax.saxutils import escape
+
+from substructures.expr.program import Output, Program
+from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
+from substructures.printers.names import comment, latex_names, prefix
+from substructures.printers.numbers import decimal_text
+from substructures.printers.symmetry import symmetry_rule
+
+#: before every term of a sum that stands in no parentheses or fraction
+TERM = "\x1f"
+_LETTERS = {"metric": "g", "christoffel": "&#x393;", "forces": "Q", "coriolis": "C"}
+_NAMED = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "log": "ln", "sign": "sgn"}
+_LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
+_UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+_CODES = [*range(0x3B1, 0x3BF), 0x3C0, 0x3C1, *range(0x3C3, 0x3CA)]
+_CODES += [0x393, 0x394, 0x398, 0x39B, 0x39E, 0x3A0, 0x3A3, 0x3A5, 0x3A6, 0x3A8, 0x3A9]
+_GREEK = dict(zip(f"{_LOWER} {_UPPER}".split(" "), (f"&#{code};" for code in _CODES), strict=True))
+_PART = re.compile(r"\\(d+)ot\{|\\math(?:rm|it|tt)\{([^}]*)\}|\\([A-Za-z]+)|([A-Za-z]+|[0-9]+)|(.)", re.DOTALL)
+_PAGE = """<?xml version="1.0" encoding="utf-8"?>
+<html xmlns="http://www.w3.org/1999/xhtml"><head><title>{title}</title><style>
+p {{ line-height: 2; }} math {{ font-size: 1.1em; }} td {{ padding-right: 2em; }}
+</style></head><body><h1>{title}</h1>
+{body}
+</body></html>
+"""
+
+
+def row(*parts: str) -> str:
+    """Several elements as one."""
+    return "<mrow>" + "".join(parts) + "</mrow>" if len(parts) != 1 else parts[0]
+
+
+def operator(sign: str, between: bool = False) -> str:
+    """A sign; ``between`` two terms, also where it begins a formula."""
+    return f'<mo form="infix">{sign}</mo>' if between else f"<mo>{sign}</mo>"
+
+
+MINUS_SIGN = "&#x2212;"
+MINUS, DOT = operator(MINUS_SIGN), operator("&#xB7;")
+
+
+class MathML(Language):
+    """Formulas as presentation MathML. Indices count from 1."""
+
+    media = "application/xhtml+xml; charset=utf-8"
+    width = 4000
+    first = 1
+    is_for_people = True
+    functions: ClassVar = _NAMED
+
+    def __init__(self, program: Program) -> None:
+        super().__init__(program)
+        written = latex_names(s.name for s in program.symbols)
+        self.names = [
+            f"<mtext>{escape(comment(s.name))}</mtext>" if latex.startswith(r"\mathtt") else named(latex)
+            for latex, s in zip(written, program.symbols, strict=True)
+        ]
+        self.prefix = prefix(s.name for s in program.symbols)
+
+    def symbol(self, n: int) -> Piece:
+        """A name in italics with indices, dots for rates."""
+        return Piece(self.names[n])
+
+    def temporary(self, n: int) -> Piece:
+        """A letter with a number below."""
+        return Piece(f"<msub><mi>{self.prefix}</mi><mn>{n}</mn></msub>")
+
+    def abbreviation(self, op: str, digits: str) -> Piece:
+        """c with the numbers of the angles of cos(q1 + q2) below."""
+        return Piece(f"<msub><mi>{op[0]}</mi><mn>{digits}</mn></msub>")
+
+    def pi(self) -> Piece:
+        """The Greek letter."""
+        return Piece("<mi>&#x3C0;</mi>")
+
+    def number(self, value: Fraction) -> Piece:
+        """An integer, a fraction, or a decimal number where that is exact and shorter."""
+        if value < 0:
+            return self.neg(self.number(-value))
+        if value.denominator == 1:
+            return Piece(f"<mn>{value.numerator}</mn>")
+        text = decimal_text(value) if value.denominator > 24 else None
+        if text:
+            return Piece(f"<mn>{text}</mn>")
+        return Piece(f"<mfrac><mn>{value.numerator}</mn><mn>{value.denominator}</mn></mfrac>", PRODUCT)
+
+    def scientific(self, mantissa: str, exponent: int) -> Piece:
+        """mantissa * 10^exponent."""
+        if not exponent:
+            return Piece(f"<mn>{mantissa}</mn>")
+        power = f"<msup><mn>10</mn><mn>{exponent}</mn></msup>"
+        return Piece(f"<mn>{mantissa}</mn>{DOT}{power}", PRODUCT)
+
+    def parentheses(self, text: str) -> str:
+        """Parentheses that grow with what they hold."""
+        return row(operator("("), solid(text), operator(")"))
+
+    def add(self, a: Piece, b: Piece) -> Piece:
+        """a + b."""
+        if b.precedence == NEGATION:
+            return Piece(f"{a.text}{TERM}{operator(MINUS_SIGN, True)}{b.text.removeprefix(MINUS)}", SUM)
+        return Piece(f"{a.text}{TERM}{operator('+', True)}{self.inside(b, PRODUCT)}", SUM)
+
+    def sub(self, a: Piece, b: Piece) -> Piece:
+        """a - b."""
+        return Piece(f"{a.text}{TERM}{operator(MINUS_SIGN, True)}{self.inside(b, PRODUCT)}", SUM)
+
+    def neg(self, a: Piece) -> Piece:
+        """-a."""
+        return Piece(MINUS + self.inside(a, PRODUCT), NEGATION)
+
+    def mul(self, a: Piece, b: Piece) -> Piece:
+        """A thin space, or a dot before digits."""
+        left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
+        sign = DOT if right.startswith(("<mn>", "<mfrac>")) else operator("&#x2062;")
+        return Piece(left + sign + right, PRODUCT)
+
+    def div(self, a: Piece, b: Piece) -> Piece:
+        """A fraction."""
+        return Piece(f"<mfrac>{row(solid(a.text), '')}{row(solid(b.text), '')}</mfrac>", PRODUCT)
+
+    def power(self, a: Piece, n: int) -> Piece:
+        """An exponent."""
+        exponent = f"<mn>{n}</mn>" if n >= 0 else row(MINUS, f"<mn>{-n}</mn>")
+        return Piece(f"<msup>{row(self.inside(a, ATOM), '')}{exponent}</msup>", POWER)
+
+    def trig(self, op: str, angle: Piece, power: int) -> Piece:
+        """The exponent stands before the angle, which needs no parentheses as a single name."""
+        head = f"<mi>{op}</mi>" if power == 1 else f"<msup><mi>{op}</mi><mn>{power}</mn></msup>"
+        text = '<mspace width="0.17em"/>' + angle.text if angle.precedence == ATOM else self.parentheses(angle.text)
+        return Piece(row(head, operator("&#x2061;"), text), POWER)
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A root sign, bars of an absolute value, or the function's name."""
+        if op == "sqrt":
+            return Piece(f"<msqrt>{solid(args[0].text)}</msqrt>")
+        if op == "abs":
+            return Piece(row(operator("|"), solid(args[0].text), operator("|")))
+        inner = operator(",").join(solid(a.text) for a in args)
+        return Piece(row(f"<mi>{self.functions.get(op, op)}</mi>", operator("&#x2061;"), self.parentheses(inner)))
+
+    def finished(self, text: str) -> str:
+        """A formula as one element."""
+        return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{row(solid(text), "")}</math>'
+
+    def render(self, listing: Listing, name: str) -> str:
+        """A page: what the symbols are, then a paragraph for every element."""
+        lines = [f"<p>{escape(comment(self.remark))}</p>"] if self.remark else []
+        lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
+        lines += [self._line(left, text) for left, text in listing.abbreviations]
+        lines += [self._line(self.temporary(n).text, text) for n, text in listing.temporaries]
+        for output, array in self.program.outputs.items():
+            lines += self._output(output, array, listing.entries[output])
+        return _PAGE.format(title=escape(comment(name)), body="\n".join(lines))
+
+    def _described(self, n: int) -> str:
+        symbol = self.program.symbols[n]
+        words = "".join(f"<td>{escape(comment(x))}</td>" for x in (symbol.name, symbol.kind, symbol.unit))
+        return f"<tr><td>{self.finished(self.names[n])}</td>{words}</tr>"
+
+    def _output(self, output: str, array: Output, texts: Sequence[str]) -> list[str]:
+        letter = f"<mi>{_LETTERS[output]}</mi>" if output in _LETTERS else f"<mtext>{escape(comment(output))}</mtext>"
+        said = f"Indices from 1; {symmetry_rule(array.symmetry, comment(output))}." if array.shape else ""
+        lines = [f"<h2>{escape(comment(output))}</h2><p>{escape(said)}</p>"]
+        separator = "," if max(array.shape, default=0) > 9 else ""
+        for index, text in zip(array.index, texts, strict=True):
+            place = separator.join(str(i + 1) for i in index)
+            lines.append(self._line(f"<msub>{letter}<mn>{place}</mn></msub>" if place else letter, text))
+        return lines if texts else [*lines, self._line(letter, "<mn>0</mn>")]
+
+    def _line(self, left: str, text: str) -> str:
+        """One element; every term is a formula of its own."""
+        first, *others = text.split(TERM)
+        terms = [left + operator("=") + first, *others]
+        return "<p>" + "\n".join(self.finished(term) for term in terms) + "</p>"
+
+
+def solid(text: str) -> str:
+    """A sum as one formula."""
+    return text.replace(TERM, "")
+
+
+def named(latex: str) -> str:
+    """A name of :func:`substructures.printers.names.latex_names` in MathML."""
+    dots = 0
+    if match := re.match(r"\\(d+)ot\{(.*?)\}(?=_|$)", latex):
+        dots, latex = len(match.group(1)), match.group(2) + latex[match.end() :]
+    base, _, below = latex.partition("_{")
+    found = "".join(_pieces(base))
+    if dots:
+        found = f"<mover>{found}<mo>{'&#x2D9;' if dots == 1 else '.' * dots}</mo></mover>"
+    return f"<msub>{found}{row(*_pieces(below[:-1]), '')}</msub>" if below else found
+
+
+def _pieces(latex: str) -> list[str]:
+    """Letters, numbers and signs of a name."""
+    found = []
+    for _, upright, command, plain, sign in _PART.findall(latex):
+        word = upright or _GREEK.get(command, command) or plain
+        if word:
+            found.append(f"<mn>{word}</mn>" if word.isdigit() else f"<mi>{word}</mi>")
+        elif sign in ",":
+            found.append(operator(","))
+    return found
