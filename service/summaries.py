@@ -17,6 +17,7 @@ def tree_summary(spec: TreeSpec, model: Model) -> bytes:
     """Canonical JSON: the summary of the model, with gravity and instances as they were given."""
     given = read_json(spec.canonical())
     shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
+    shown |= {"loads": given["loads"]} if "loads" in given else {}
     return write_json({**model.summary(), **shown})
 
 

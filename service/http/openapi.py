@@ -20,6 +20,7 @@ from service.schemas.resources import AliasRequest, Problem, YankRequest
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.part.definition import Definition
 from substructures.tree.document import Instance
+from substructures.tree.load_document import AnyTreeLoad
 
 TEMPLATE = "#/components/schemas/{model}"
 PROBLEM: dict[int | str, dict[str, Any]] = {
@@ -51,6 +52,7 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
     SubmittedDefinition,
     SubmittedTree,
     Instance,
+    AnyTreeLoad,
     *_REQUESTS,
     VelocityConstraints,
     *_ANALYSED,

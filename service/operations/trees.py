@@ -96,6 +96,24 @@ def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: st
     return TreeChange({**spec, "instances": kept}, base, is_pinned(text), "")
 
 
+def load(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
+    """One load more between frames of an existing tree. Raises Refused 404 or 412."""
+    base, spec = _existing(store, viewer, text, if_match)
+    loads = spec.get("loads", [])
+    return TreeChange({**spec, "loads": [*loads, data]}, base, is_pinned(text), f"/loads/{len(loads)}")
+
+
+def unload(store: Store, viewer: Viewer, text: str, name: str, if_match: str | None = None) -> TreeChange:
+    """One load of the tree less. Raises Refused 404 or 412."""
+    base, spec = _existing(store, viewer, text, if_match)
+    loads = spec.get("loads", [])
+    kept = [each for each in loads if each["name"] != name]
+    if len(kept) == len(loads):
+        raise not_found(f"the tree '{text}' has no load '{name}'", "unknown-load")
+    changed = {key: value for key, value in spec.items() if key != "loads"} | ({"loads": kept} if kept else {})
+    return TreeChange(changed, base, is_pinned(text), "")
+
+
 def prepare_change(store: Store, viewer: Viewer, change: TreeChange) -> Revision:
     """Couple a changed tree. Raises InvalidDocument, TooLarge, LongWork."""
     try:

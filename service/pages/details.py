@@ -84,6 +84,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
         _split(path, reference, about),
         tag("h2", "Instances"),
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
+        *_loads(summary.get("loads", ())),
         *_sections(
             words.coordinates(model.coordinates, model.joints),
             words.parameters(summary["parameters"]),
@@ -96,6 +97,12 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
 
 def _owner(shown: Version | Tree) -> str:
     return shown.owner if shown.is_public else f"{shown.owner}, who alone sees it"
+
+
+def _loads(loads: Sequence[Mapping[str, Any]]) -> list[Html]:
+    """The loads of a tree: what acts between what."""
+    rows = [(x["name"], x["type"], x.get("from", ""), x.get("to", x.get("coordinate", ""))) for x in loads]
+    return [tag("h2", "Loads"), table(("name", "type", "from", "on"), rows)] if rows else []
 
 
 def _number(given: Any) -> str:

@@ -131,3 +131,30 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match:
 def remove_coupling(ref: str, instance: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove an instance that carries no other: a new revision."""
     return changed(act, lambda: trees.removal(store, act.viewer, ref, instance, if_match))
+
+
+@router.post(
+    "/{ref}/loads",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("AnyTreeLoad"),
+    responses=made(TreeView),
+)
+@timed("derive")
+def add_load(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
+    """Let one more load act between frames of the tree: a new revision."""
+    return changed(act, lambda: trees.load(store, act.viewer, ref, body, if_match))
+
+
+@router.delete(
+    "/{ref}/loads/{load}",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    responses=made(TreeView),
+)
+@timed("derive")
+def remove_load(ref: str, load: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
+    """Remove a load of the tree: a new revision."""
+    return changed(act, lambda: trees.unload(store, act.viewer, ref, load, if_match))

@@ -17,6 +17,7 @@ from flint import fmpq
 from substructures.certificate.numbers import Plain
 from substructures.expr.direct import BALL_FUNCTIONS
 from substructures.expr.operations import Operation
+from substructures.expr.syntax import MEASURES
 
 State = dict[str, Any]
 #: what is positive in the first state; everything else has both signs
@@ -25,11 +26,11 @@ POSITIVE = frozenset(("parameter", "inertia"))
 ANALYTIC = frozenset(
     ("int", "rat", "sym", "add", "sub", "mul", "neg", "div", "powi", "sin", "cos", "tan", "atan", "exp")
 )
-_BRANCHING = tuple(name for name in BALL_FUNCTIONS if name not in ANALYTIC)
+_BRANCHING = (*(name for name in BALL_FUNCTIONS if name not in ANALYTIC), *MEASURES)
 #: what may be given of a joint, and types of loads, in which no more happens (axes are constant)
 _ROW = ("type", "coordinate", "psi", "theta", "d", "sigma", "phi", "tau", "placement", "axis")
 _JOINT = {*_ROW, "stiffness", "rest", "damping", "armature", "limits"}
-_LOADS = {"force", "torque", "joint", "potential"}
+_LOADS = {"force", "torque", "joint", "potential", "bushing"}
 
 
 def states_needed(operations: Sequence[Operation], documents: Iterable[Plain]) -> int:

@@ -29,12 +29,14 @@ from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
 from substructures.certificate.potentials import gradient_instead, is_found
 from substructures.certificate.slopes import at_start
+from substructures.certificate.tree_loads import TreeForces
 from substructures.expr.operations import Output
 
 
 def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
     """Every symbol that the program of the tree may have: its kind by its name. ``definitions``: by instance."""
     kinds = dict.fromkeys(tree.get("parameters", ()), "parameter") | {"t": "time"}
+    kinds |= dict.fromkeys(tree.get("inputs", ()), "input")
     for instance in tree.get("instances", ()):
         name, bound = instance["name"], instance.get("parameters", {})
         definition = definitions[name]
@@ -55,19 +57,21 @@ def tree_outputs(
     result = Outputs()
     numbers, bodies, loads, acting = built(tree, definitions, values)
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
-    gravity = numbers.vector(tree.get("gravity", NONE))
+    gravity, beside = numbers.vector(tree.get("gravity", NONE)), _beside(tree, definitions, bodies, numbers)
     carried = carried_by_joints(bodies, bodies.own)
     equations(result, bodies, carried, stored)
-    _forces(result, bodies, carried, gravity, _sums(x for f in acting for x in (f.applied, f.wrenches)), rates, second)
+    forces_of = [*(x for f in acting for x in (f.applied, f.wrenches)), beside.applied]
+    _forces(result, bodies, carried, gravity, _sums(forces_of), rates, second)
     for each in acting:
         each.bent += each.steady
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
-        known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes))])
-        _, start, _, there = built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
-        gradient_instead(result, "potential_energy", acting, known, _potential_energy(start, gravity, there))
+        known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes)), beside.slopes])
+        some, start, _, there = built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
+        begin = _potential_energy(start, gravity, there) + _beside(tree, definitions, start, some).potential
+        gradient_instead(result, "potential_energy", acting, known, begin)
     else:
-        result.scalar("potential_energy", _potential_energy(bodies, gravity, acting))
+        result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + beside.potential)
     _limits(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
@@ -93,6 +97,12 @@ def built(
         for name, inside, joints in loads
     ]
     return numbers, bodies, loads, acting
+
+
+def _beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, numbers: Numbers) -> TreeForces:
+    """What the loads of the tree do beside those of its parts."""
+    inside = (f"{name}.{p}" for name, definition in definitions.items() for p in definition.get("parameters", ()))
+    return TreeForces(tree, bodies, numbers, frozenset((*tree.get("parameters", ()), *inside)))
 
 
 def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:

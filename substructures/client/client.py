@@ -40,6 +40,10 @@ class Client(JobCaller):
         """Couple one more instance onto a tree; the new revision."""
         return self._made(f"/v1/trees/{step(tree)}/couplings", instance)
 
+    def load(self, tree: str, load: Any) -> dict[str, Any]:
+        """Let one more load act between frames of a tree; the new revision."""
+        return self._made(f"/v1/trees/{step(tree)}/loads", load)
+
     def formula(
         self,
         tree: str,

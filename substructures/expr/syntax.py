@@ -6,10 +6,12 @@
     product = sign { ("*" | "/") sign }
     sign    = { "+" | "-" } power
     power   = atom [ ("^" | "**") integer ]
-    atom    = number | name | function "(" sum ")" | "(" sum ")"
+    atom    = number | name | function "(" sum ")" | measure | "(" sum ")"
+    measure = ("distance" | "angle") [ "'" ] "(" name "," name ")"
     name    = letter { letter | digit | "_" } { "." name } { "'" }
 
-Functions: ``sin cos tan sqrt``; constants: ``pi``. Numbers are exact decimals.
+Functions: ``sin cos tan sqrt``; constants: ``pi``. Numbers are exact decimals. A measure of two frames of a
+tree, or its rate ('), is a name to whoever reads it further: ``distance(a.tip, b.tip)``, spaced like that.
 
 What was read is a list of steps in postfix order, exactly as written: nothing is simplified, so that values straight
 from the text (:mod:`substructures.expr.direct`) share nothing with the graph that formulas are built in.
@@ -33,11 +35,14 @@ MAX_DIGITS = 400
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*)"
-    r"|(?P<op>\*\*|[-+*/^()]))",
+    r"|(?P<op>\*\*|[-+*/^(),]))",
     re.ASCII,
 )
 FUNCTIONS = ("sin", "cos", "tan", "sqrt")
 RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
+#: measures of two frames
+MEASURES = ("distance", "angle")
+_MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.-]+), ([A-Za-z0-9_.-]+)\)", re.ASCII)
 #: operations without operands
 LEAVES = frozenset(("number", "name", "pi"))
 
@@ -164,6 +169,8 @@ class _Reader:
             self.at += 1
             if text in FUNCTIONS:
                 self.call(text, column)
+            elif text.removesuffix("'") in MEASURES and self.take("("):
+                self.step("name", column, f"{text}({self.frame(',')}, {self.frame(')')})")
             elif self.tokens[self.at][1] == "(":
                 raise ExpressionError(f"unknown function '{text[:80]}'", column, text)
             else:
@@ -179,6 +186,16 @@ class _Reader:
             return decimal_number(text)
         except (ValueError, ArithmeticError):
             raise ExpressionError(f"number has more than {MAX_DIGITS} digits", column) from None
+
+    def frame(self, end: str) -> str:
+        """A name and what comes after it: a frame of a measure"""
+        kind, text, _ = self.tokens[self.at]
+        if kind != "name" or text.endswith("'"):
+            raise self.fail("a frame")
+        self.at += 1
+        if not self.take(end):
+            raise self.fail(f"'{end}'")
+        return text
 
     def call(self, name: str, column: int) -> None:
         """function parenthesis"""
@@ -196,6 +213,16 @@ class _Reader:
         if not self.take(")"):
             raise self.fail("')'")
         self.depth -= 1
+
+
+def measured(name: str) -> tuple[str, str, str] | None:
+    """The measure with its mark, and the frames, of the name of a measure; None of any other name.
+
+    >>> measured("angle'(a.base, b.base)"), measured("a.q1'")
+    (("angle'", 'a.base', 'b.base'), None)
+    """
+    found = _MEASURE.fullmatch(name)
+    return (found[1], found[2], found[3]) if found else None
 
 
 def read(text: str) -> tuple[Step, ...]:

@@ -16,6 +16,7 @@ from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.quantities.evaluation import evaluate
 from substructures.tree.document import TreeSpec
+from substructures.tree.load_document import Bushing, TreeSpring
 from substructures.tree.model import Model
 
 WIDTH, HEIGHT, MARGIN = 320.0, 240.0, 28.0
@@ -35,6 +36,7 @@ class _Scene:
     lines: list[tuple[str, str, int]]
     joints: list[tuple[str, bool, Array, int]]
     ports: list[tuple[str, int]]
+    springs: list[tuple[str, str]]
 
 
 def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> str:
@@ -45,6 +47,7 @@ def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = No
     scene = _scene(spec, parts, model, _pose(parts, model) if q is None else q)
     project = _projection(scene)
     shapes = [_line(project(scene.position[a]), project(scene.position[b]), i) for a, b, i in scene.lines]
+    shapes += [_spring(project(scene.position[a]), project(scene.position[b])) for a, b in scene.springs]
     shapes += [_joint(scene, project, *joint) for joint in scene.joints]
     shapes += [_triad(scene, project, frame) for frame, _ in scene.ports]
     shapes += [_ground(project(scene.position[f"{i.name}.{BASE}"])) for i in spec.instances if i.at == "world"]
@@ -80,7 +83,10 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _
     index = {name: i for i, name in enumerate(model.frames)}
     position = {name: np.nan_to_num(kinematics["position"][i]) for name, i in index.items()}
     rotation = {name: np.nan_to_num(kinematics["rotation"][i]) for name, i in index.items()}
-    scene = _Scene(position, rotation, [], [], [])
+    springs = [(load.from_, load.to) for load in spec.loads if isinstance(load, (TreeSpring, Bushing))]
+    if any("world" in ends for ends in springs):
+        position["world"] = np.zeros(3)
+    scene = _Scene(position, rotation, [], [], [], springs)
     for colour, instance in enumerate(spec.instances):
         part, name = parts[instance.name], instance.name
         if instance.at != "world":
@@ -135,6 +141,15 @@ def _joint(scene: _Scene, project: Any, frame: str, slides: bool, axis: Array, c
         return f'<rect {place} x="-9" y="-5" width="18" height="10" {paint}/>'
     foreshortened = 8 * max(0.25, 1 - min(float(np.linalg.norm(along)), 1.0))
     return f'<ellipse {place} rx="{foreshortened:.1f}" ry="8" {paint}/>'
+
+
+def _spring(a: Array, b: Array) -> str:
+    """A zigzag between two points."""
+    along = b - a
+    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
+    turns = [a + (k + 1) / 8 * along + (-1) ** k * 4 * across for k in range(7)]
+    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in (a, *turns, b))
+    return f'<polyline points="{points}" fill="none" stroke="#555" stroke-width="1.5"/>'
 
 
 def _triad(scene: _Scene, project: Any, frame: str) -> str:

@@ -30,7 +30,8 @@ from substructures.tree.assembly import assemble
 from substructures.tree.coupling import asked, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
-from substructures.tree.model_outputs import model_outputs
+from substructures.tree.loads import load_formulas
+from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.mounted_part import MountedPart
 
 Scalars = list[Any]
@@ -39,8 +40,15 @@ PartEvaluator = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[st
 EQUATIONS = ("metric", "christoffel", "gravity", "forces", "bias", "inverse_dynamics", "potential_energy")
 #: the potential of loads that is found by integration, a formula of the tree
 FOUND = "found_potential"
+#: what the loads of the tree do, formulas of the tree as well
+LOADS, LOAD_POTENTIAL = "loads", "load_potential"
 #: outputs of the program of placements and bindings that only a quantity needs
-ASKED_FOR = {"limits": "limits", FOUND: "potential_energy"}
+ASKED_FOR = {
+    "limits": ("limits",),
+    FOUND: ("potential_energy",),
+    LOADS: ("forces", "inverse_dynamics"),
+    LOAD_POTENTIAL: ("potential_energy",),
+}
 #: states that are coupled at a time: their numbers stay in the second-level cache
 BLOCK = 2048
 #: elements of dense Christoffel symbols at a time
@@ -103,11 +111,7 @@ class NumericTree:
     def _constant_program(self) -> Program:
         """Placements, gravity and bindings of the tree as one small program of its parameters."""
         outputs = {"gravity": array((3,), lambda i: self.assembly.gravity[i])}
-        if has_steady_loads(self.assembly.mounted):
-            graph = self.assembly.scope.graph
-            placed = placed_parts(over_formulas(graph), self.assembly.mounted)
-            found = found_potential(graph, placed, self.coordinates)
-            outputs[FOUND] = array((), lambda: found)
+        outputs |= self._of_places()
         limits = list(self.assembly.limits.values())
         outputs["limits"] = array((len(limits), 2), lambda k, i: limits[k][i])
         for k, m in enumerate(self.assembly.mounted):
@@ -116,6 +120,22 @@ class NumericTree:
             bound = {name: x for name, x in m.bindings.items() if not (isinstance(x, Expr) and x.op == "sym")}
             outputs |= {f"{k}:{name}": array((), lambda x=x: x) for name, x in bound.items()}
         return program(self.assembly.scope.graph, outputs, self.assembly.scope.symbols)
+
+    def _of_places(self) -> dict[str, Formulas]:
+        """Potentials and loads that need the places of bodies, as formulas."""
+        loads = self.assembly.reading.spec.loads
+        if not (loads or has_steady_loads(self.assembly.mounted)):
+            return {}
+        graph = self.assembly.scope.graph
+        placed = placed_parts(over_formulas(graph), self.assembly.mounted)
+        found = found_potential(graph, placed, self.coordinates)
+        outputs = {FOUND: array((), lambda: found)}
+        if loads:
+            acting = load_formulas(self.assembly, placed, rate_symbols(self.assembly)[0])
+            n, zero = len(self.coordinates), graph.zero
+            outputs[LOADS] = array((n,), lambda a: acting.forces.get(a, zero))
+            outputs[LOAD_POTENTIAL] = array((), lambda: acting.potential)
+        return outputs
 
     def evaluate(self, values: Mapping[str, Any], quantities: Sequence[str] = EQUATIONS) -> dict[str, Array]:
         """Outputs of the model (see :mod:`substructures.tree.model`) for values of all symbols: floats, or
@@ -152,7 +172,9 @@ class NumericTree:
     ) -> None:
         """Fills a part of the batch in the results, which are made by the first one."""
         given = {**self._rest, **values}
-        asked = [x for x in self._constants.outputs if x not in ASKED_FOR or ASKED_FOR[x] in quantities]
+        asked = [
+            x for x in self._constants.outputs if x not in ASKED_FOR or any(name in quantities for name in ASKED_FOR[x])
+        ]
         found = interpret_entries(self._constants, given, asked)
         numbers = {name: _filled(self._constants.outputs[name], x) for name, x in found.items()}
         mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
@@ -161,7 +183,8 @@ class NumericTree:
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), limits=limits)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities, False)
-        coupled = replace(coupled, potential=coupled.potential + numbers.get(FOUND, [0])[0])
+        potential = numbers.get(FOUND, [0])[0] + numbers.get(LOAD_POTENTIAL, [0])[0]
+        coupled = coupled.with_loads(dict(enumerate(numbers.get(LOADS, ()))), potential)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
         for name in quantities:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from substructures.errors import InvalidDocument, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
+from substructures.expr.syntax import RESERVED
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
 from substructures.part.definition import Placement
@@ -33,6 +34,7 @@ class Assembly:
     cuts: tuple[Cut, ...]
     inputs: dict[str, dict[str, object]]
     limits: dict[int, tuple[Expr, Expr]]  #: of coordinates by index, of those that have limits
+    reading: Reading  #: for what is read when the parts have their places
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -59,12 +61,13 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     """Read a tree. Raises InvalidDocument with a pointer to every fault."""
     scope = Scope(Graph())
     order = _order(spec, scope)
+    _name_faults(spec, scope)
     scope.finish()
     parameters = _parameters(spec, parts, scope)
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    reading = _Reading(spec, parts, scope, place, bound)
+    reading = Reading(spec, parts, scope, place, bound, frozenset(parameters))
     mounted: list[MountedPart] = []
     first = 0
     for i in order:
@@ -76,7 +79,20 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits)
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, reading)
+
+
+def _name_faults(spec: TreeSpec, scope: Scope) -> None:
+    """Names that occur twice, among loads and among inputs and what else expressions of loads may name."""
+    names = [load.name for load in spec.loads]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            scope.fault(f"/loads/{i}/name", "duplicate-name", f"duplicate load '{name}'")
+    for name in spec.inputs:
+        if name in RESERVED or name in ("world", "tau"):
+            scope.fault(f"/inputs/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions")
+        elif name in spec.parameters or any(instance.name == name for instance in spec.instances):
+            scope.fault(f"/inputs/{name}", "duplicate-name", f"'{name}' is a parameter or an instance, too")
 
 
 def _order(spec: TreeSpec, scope: Scope) -> list[int]:
@@ -137,8 +153,11 @@ def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, d
 
 
 def _inputs(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, object]]:
-    """All inputs of loads that the definitions declare."""
-    return {
+    """All inputs of loads: of the tree, and those that the definitions declare."""
+    own: dict[str, dict[str, object]] = {
+        name: {"unit": si_unit(x.unit), "description": x.description} for name, x in spec.inputs.items()
+    }
+    return own | {
         tree_name(instance.name, name): {"unit": si_unit(each.unit), "description": each.description}
         for instance in spec.instances
         for name, each in parts[instance.name].definition.inputs.items()
@@ -186,14 +205,22 @@ class _Bindings:
 
 
 @dataclass(frozen=True)
-class _Reading:
-    """What instances and closures are read with; ``place``: index of an instance, by name, hosts first."""
+class Reading:
+    """What instances, closures and loads are read with.
+
+    ``place``: index of an instance, by name, hosts first; ``known``: all parameters, bound or not.
+    """
 
     spec: TreeSpec
     parts: Mapping[str, Part]
     scope: Scope
     place: Mapping[str, int]
     bound: _Bindings
+    known: frozenset[str]
+
+    def parameter(self, name: str) -> Expr | None:
+        """A parameter by its name in the tree, with its binding put in; None of what is none."""
+        return self.bound.lookup(name) if name in self.known else None
 
     def placement(self, placement: Placement, pointer: str) -> tuple[Matrix, Vector]:
         """E and position, both constant."""

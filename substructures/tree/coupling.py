@@ -8,8 +8,8 @@ and 6, and :mod:`.inertial`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from substructures.mechanics.composite_form import Inertia, joint_momentum, pairing
 from substructures.mechanics.kinematics import (
@@ -52,7 +52,9 @@ Payload = dict[int, Inertia]
 
 @dataclass(frozen=True)
 class Coupled:
-    """The result, by indices of the tree's coordinates; ``chain``: the links from joint to joint."""
+    """The result, by indices of the tree's coordinates; ``chain``: the links from joint to joint; ``loads``: what the
+    loads of the tree add to the forces.
+    """
 
     metric: dict[tuple[int, ...], Scalar]
     christoffel: dict[tuple[int, ...], Scalar] | None
@@ -61,6 +63,12 @@ class Coupled:
     potential: Scalar
     placed: list[PlacedPart]
     chain: Sequence[Link]
+    loads: Mapping[int, Scalar] = field(default_factory=dict)
+
+    def with_loads(self, loads: Mapping[int, Scalar], potential: Scalar) -> Coupled:
+        """With the forces and the potential of the loads of the tree."""
+        forces = [Q + loads[a] if a in loads else Q for a, Q in enumerate(self.forces)]
+        return replace(self, forces=forces, potential=self.potential + potential, loads=loads)
 
 
 def couple_parts(

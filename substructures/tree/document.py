@@ -11,10 +11,10 @@ from pydantic_core import PydanticCustomError
 from substructures.documents import Document, DocumentPart, read_model
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
 from substructures.documents.schema import PATTERNS
-from substructures.part.definition import Definition, Parameter, Placement
+from substructures.part.definition import Definition, Input, Parameter, Placement
+from substructures.tree.load_document import AT, TreeLoad
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
-AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
 MAX_INSTANCES = 500
 
@@ -83,17 +83,22 @@ class Closure(DocumentPart):
 
 
 class TreeSpec(Document):
-    """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree."""
+    """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree, and
+    ``loads`` act between its frames, with ``inputs`` of their own.
+    """
 
     name: LibraryName
     gravity: NumberVector = Field((0, 0, 0), description="gravity acceleration in world axes, m/s^2")
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
+    inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree; 0 when not given")
+    loads: tuple[TreeLoad, ...] = Field((), max_length=1000)
 
     def __repr__(self) -> str:
         """Two lines: its name, and what hangs on what."""
         loops = f"; closures {', '.join(c.name for c in self.closures)}" if self.closures else ""
+        loops += f"; loads {', '.join(load.name for load in self.loads)}" if self.loads else ""
         hosts = ", ".join(f"{i.name} at {i.at}" for i in self.instances)
         return f"TreeSpec '{self.name}', {len(self.instances)} instances\n{hosts or 'empty'}{loops}"
 

@@ -23,6 +23,7 @@ from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.grouping import every, numbers
 from substructures.tree.load_potentials import found_potential
+from substructures.tree.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units, tree_warnings
@@ -163,7 +164,8 @@ def couple(
     start = perf_counter()
     _require_free_names(spec)
     assembly = assemble(spec, parts)
-    units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()})
+    definitions = {name: part.definition for name, part in parts.items()}
+    units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()}, definitions)
     units.require()
     joints_of = joint_parents(assembly.mounted)
     entries = entries_of(joints_of)
@@ -180,6 +182,9 @@ def couple(
         found = found_potential(assembly.scope.graph, coupled.placed, names)
         coupled = replace(coupled, potential=coupled.potential + found)
         rates, accelerations = rate_symbols(assembly)
+        if spec.loads:
+            acting = load_formulas(assembly, coupled.placed, rates)
+            coupled = coupled.with_loads(acting.forces, acting.potential)
         least = partial(least_forces, assembly.scope.graph, coupled, rates)
         outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
     except ZeroDivisionError:
@@ -189,13 +194,17 @@ def couple(
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
     joints = "".join(m.part.joints for m in assembly.mounted)
-    plausibility = Plausibility(spec, {name: part.definition for name, part in parts.items()})
-    warnings = [*units.warnings, *tree_warnings(spec, parts, result, bool(names)), *plausibility.at_defaults]
+    plausibility = Plausibility(spec, definitions)
+    warnings = [
+        *units.warnings,
+        *assembly.scope.notices,
+        *tree_warnings(spec, parts, result, bool(names)),
+        *plausibility.at_defaults,
+    ]
     rows = tuple(cut.rows for cut in assembly.cuts)
     names_of = (tuple(names), joints, _frame_names(assembly))
     limited = tuple(names[a] for a in sorted(assembly.limits))
     model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
-    definitions = {name: part.definition for name, part in parts.items()}
     try:
         certificate = certify_tree(spec, definitions, model.described(), result, seconds)
     except VerificationFailed as error:

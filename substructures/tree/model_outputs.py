@@ -69,6 +69,8 @@ def model_outputs(
     # by recursion, so that neither needs the Christoffel symbols
     if wanted("inverse_dynamics"):
         inverse = inverse_dynamics(placed, rates, accelerations)
+        for a, Q in coupled.loads.items():
+            inverse[a] = inverse[a] - Q
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
     if wanted("bias", "nonlinear_effects"):
         found = by_recursion(coupled, rates) if forces is None else forces()

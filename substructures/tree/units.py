@@ -6,21 +6,56 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from typing import Any
 
-from substructures.documents.units import Dimension
-from substructures.expr.dimensions import Dimensioned
+from substructures.documents.units import Dimension, read_unit
+from substructures.expr.dimensions import Dimensioned, Open
 from substructures.expr.program import Program
+from substructures.expr.syntax import measured
 from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
+from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part
-from substructures.part.units import ACCELERATION, LENGTH, parameter_places, placement_places, vector
+from substructures.part.topology import topology
+from substructures.part.units import (
+    ACCELERATION,
+    COORDINATE,
+    EFFORT,
+    ENERGY,
+    FORCE,
+    LENGTH,
+    RATE,
+    SPRING,
+    TORQUE,
+    parameter_places,
+    placement_places,
+    vector,
+)
 from substructures.tree.document import TreeSpec
+from substructures.tree.load_document import TreeJointLoad
 
+TIME = read_unit("s").dimension
+#: dimensions of the numbers of a load by its type; that of a joint load depends on the coordinate
+LOADS: dict[str, dict[str, Dimension]] = {
+    "spring": {"from_at": LENGTH, "to_at": LENGTH, **SPRING},
+    "bushing": {
+        "stiffness": SPRING["stiffness"],
+        "damping": SPRING["damping"],
+        "angular_stiffness": read_unit("N m/rad").dimension,
+        "angular_damping": read_unit("N m s/rad").dimension,
+    },
+    "force": {"at": LENGTH, "vector": FORCE},
+    "torque": {"vector": TORQUE},
+    "joint": {},
+    "potential": {"potential": ENERGY},
+}
 #: parameters of a definition by name, with their SI units
 DescribedParameters = Mapping[str, Mapping[str, Any]]
 
 
-def check_tree_units(spec: TreeSpec, parameters: Mapping[str, DescribedParameters]) -> UnitCheck:
-    """The units of a tree against their places; ``parameters``: those of the part of every instance that is known.
+def check_tree_units(
+    spec: TreeSpec, parameters: Mapping[str, DescribedParameters], definitions: Mapping[str, Definition]
+) -> UnitCheck:
+    """The units of a tree against their places; ``parameters``: those of the part of every instance that is known,
+    ``definitions``: likewise, what coordinates and inputs of loads belong to.
 
     Names are ``g`` of the tree and ``arm.l1`` of instances.
     """
@@ -33,7 +68,59 @@ def check_tree_units(spec: TreeSpec, parameters: Mapping[str, DescribedParameter
     check.check(_places(spec), True)
     dimensions = {name: x.dimension for name, x in known.items() if isinstance(x, Dimensioned)}
     check.check(_bindings(spec, dimensions), True)
+    if spec.loads:
+        kinds = _kinds(definitions)
+        moving = _moving(spec, definitions, kinds)
+        check.names = lambda name: known[name] if name in known else moving.get(name) or _measure(name)
+        check.check(_loads(spec, kinds), False)
     return check
+
+
+def _kinds(definitions: Mapping[str, Definition]) -> dict[str, int]:
+    """1 of prismatic and 0 of revolute coordinates."""
+    return {
+        f"{instance}.{joint.coordinate}": joint.s
+        for instance, definition in definitions.items()
+        for joint in topology(definition).joints
+    }
+
+
+def _moving(
+    spec: TreeSpec, definitions: Mapping[str, Definition], kinds: Mapping[str, int]
+) -> dict[str, Dimensioned | Open]:
+    """The dimensions of inputs, coordinates, velocities and the time."""
+    inputs = {name: each.unit for name, each in spec.inputs.items()}
+    inputs |= {f"{i}.{name}": each.unit for i, d in definitions.items() for name, each in d.inputs.items()}
+    result = {name: dimension_of(unit) for name, unit in inputs.items()}
+    result["t"] = Dimensioned(TIME, sure=False)
+    for name, s in kinds.items():
+        result[name] = Dimensioned(COORDINATE[s], sure=False)
+        result[f"{name}'"] = Dimensioned(RATE[s], sure=False)
+    return result
+
+
+def _measure(name: str) -> Dimensioned | Open:
+    """Of a measure of two frames."""
+    found = measured(name)
+    if found is None:
+        return "unknown"
+    dimensions = RATE if found[0].endswith("'") else COORDINATE
+    return Dimensioned(dimensions[found[0].startswith("distance")], sure=False)
+
+
+def _loads(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
+    """The numbers of loads."""
+    for i, load in enumerate(spec.loads):
+        pointer = f"/loads/{i}"
+        for name, dimension in LOADS[load.type].items():
+            value = getattr(load, name)
+            yield from (
+                vector(f"{pointer}/{name}", value, dimension)
+                if isinstance(value, tuple)
+                else ((f"{pointer}/{name}", value, dimension),)
+            )
+        if isinstance(load, TreeJointLoad) and load.coordinate in kinds:
+            yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
 
 
 def _places(spec: TreeSpec) -> Iterator[Place]:
@@ -63,6 +150,11 @@ def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, m
         if name not in used:
             message = f"no formula depends on the parameter '{name}'"
             notices.append(_notice(f"/parameters/{name}", "no-effect", message))
+    notices += [
+        _notice(f"/inputs/{name}", "no-effect", f"no formula depends on the input '{name}'")
+        for name in spec.inputs
+        if name not in used
+    ]
     for i, instance in enumerate(spec.instances):
         part = parts[instance.name]
         needed = {symbol.name for symbol in part.program.symbols} | names_in_limits(part.definition)

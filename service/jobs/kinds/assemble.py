@@ -48,8 +48,9 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
     faults += _faults(spec, found, library)
     if not is_stored:
         definitions = {each.name: _definition(each, found, library) for each in spec.instances}
-        known = {name: described(each.parameters) for name, each in definitions.items() if each is not None}
-        faults += check_tree_units(spec, known).faults
+        known = {name: each for name, each in definitions.items() if each is not None}
+        parameters = {name: described(each.parameters) for name, each in known.items()}
+        faults += check_tree_units(spec, parameters, known).faults
     if faults:
         raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)

@@ -1,0 +1,94 @@
+"""The JSON form of the loads of a tree: what acts between any two of its frames (the HTTP contract, section 3)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, RootModel
+
+from substructures.documents import DocumentPart
+from substructures.documents.fields import Name, Number, NumberVector
+
+NONE: NumberVector = (0, 0, 0)
+COORDINATE = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
+#: a frame of a tree
+AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
+FrameOfTree = Annotated[str, Field(pattern=AT)]
+
+
+class _OfTree(DocumentPart):
+    name: Name
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+
+class _Between(_OfTree):
+    from_: FrameOfTree = Field("world", alias="from", description="instance.port, instance.body or world")
+    to: FrameOfTree = Field(description="instance.port, instance.body or world")
+
+
+class TreeSpring(_Between):
+    """A spring and damper between a point of one frame and a point of another: force k (l - length) + c l'."""
+
+    type: Literal["spring"]
+    from_at: NumberVector = Field(NONE, description="m; the point in the frame 'from'")
+    to_at: NumberVector = Field(NONE, description="m; the point in the frame 'to'")
+    stiffness: Number = Field(0, description="N/m")
+    damping: Number = Field(0, description="N s/m")
+    length: Number = Field(0, description="m; unstretched")
+
+
+class Bushing(_Between):
+    """Springs and dampers along and about the three axes of the frame ``from``, between the origins of both frames.
+
+    d: from the origin of ``from`` to that of ``to``, forces -k_i d_i - c_i d_i' on ``to`` along the axes of ``from``.
+    The angular springs have the potential sum_j h_j (1 - e_j . m_j) of the axes e_j of ``from`` and m_j of ``to``, with
+    h_j = (k_1 + k_2 + k_3)/2 - k_j: moments -k_i theta_i for small angles.
+    """
+
+    type: Literal["bushing"]
+    stiffness: NumberVector = Field(NONE, description="N/m; along the three axes")
+    damping: NumberVector = Field(NONE, description="N s/m; along the three axes")
+    angular_stiffness: NumberVector = Field(NONE, description="N m/rad; about the three axes")
+    angular_damping: NumberVector = Field(NONE, description="N m s/rad; about the three axes")
+
+
+class TreeForce(_Between):
+    """A force on ``to`` at a point; the opposite force acts on ``from`` at the same place."""
+
+    type: Literal["force"]
+    at: NumberVector = Field(NONE, description="m; the point in the frame 'to'")
+    vector: NumberVector = Field(description="N")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+class TreeTorque(_Between):
+    """A free moment on ``to``; the opposite one acts on ``from``."""
+
+    type: Literal["torque"]
+    vector: NumberVector = Field(description="N m")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+class TreeJointLoad(_OfTree):
+    """A generalised force on a coordinate of an instance."""
+
+    type: Literal["joint"]
+    coordinate: Annotated[str, Field(pattern=COORDINATE)] = Field(description="instance.coordinate")
+    force: Number = Field(description="N m or N")
+
+
+class TreePotential(_OfTree):
+    """Forces by their potential V in coordinates, measures of frames, parameters, inputs and t: Q_a = -dV/dq^a."""
+
+    type: Literal["potential"]
+    potential: Number = Field(description="J")
+
+
+TreeLoad = Annotated[
+    TreeSpring | Bushing | TreeForce | TreeTorque | TreeJointLoad | TreePotential, Field(discriminator="type")
+]
+
+
+class AnyTreeLoad(RootModel[TreeLoad]):
+    """One load of a tree, by its type."""

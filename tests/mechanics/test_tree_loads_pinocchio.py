@@ -1,0 +1,54 @@
+"""Loads of trees of every type against an independent engine, with the forces put in by hand."""
+
+# ruff: noqa: N806 -- symbols of the notation
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
+from random_trees import random_states  # noqa: E402 -- the engine is optional
+from tree_loads import ByHand, random_tree, two_definitions  # noqa: E402
+
+from substructures import Definition, TreeSpec, couple, derive  # noqa: E402
+from substructures.quantities.evaluation import evaluate  # noqa: E402
+from substructures.quantities.from_parts import NumericTree  # noqa: E402
+
+TOLERANCE = 1e-10
+QUANTITIES = ["forces", "inverse_dynamics", "potential_energy"]
+
+
+def compare_tree(seed: int) -> float:
+    """The largest relative deviation of forces and inverse dynamics of one random tree at two random states."""
+    rng = np.random.default_rng(seed)
+    definitions = two_definitions(rng)
+    tree = random_tree(rng, definitions)
+    spec, parts = TreeSpec.read(tree), {name: derive(Definition.read(x)) for name, x in definitions.items()}
+    model = couple(spec, parts)
+    names = {"k": 1.7, "u": 0.6, "t": 0.8}
+    states = random_states(rng, 2, model.dof)
+    answer = evaluate(model, QUANTITIES, **states, inputs={"u": 0.6}, t=0.8)
+    values = {"u": 0.6, "t": 0.8}
+    for mark, field in (("", "q"), ("'", "qd"), ("''", "qdd")):
+        values |= {f"{c}{mark}": states[field][:, i] for i, c in enumerate(model.coordinates)}
+    numbers = NumericTree(spec, parts).evaluate(values, QUANTITIES)
+    worst = max(float(np.abs(numbers[x] - answer[x]).max()) for x in QUANTITIES)
+    assert worst < 1e-11 * max(float(np.abs(answer[x]).max()) for x in QUANTITIES)
+    for i in range(2):
+        hand = ByHand(tree, list(model.coordinates), states["q"][i], states["qd"][i], names)
+        Q = np.sum([hand.force(load) for load in tree["loads"]], axis=0)
+        a = np.zeros(model.dof)
+        a[hand.order] = states["qdd"][i]
+        weight = -pin.computeGeneralizedGravity(hand.engine.model, hand.data, hand.q)[hand.order]
+        tau = pin.rnea(hand.engine.model, hand.data, hand.q, hand.v, a)[hand.order] - Q
+        for found, expected in ((answer["forces"][i], weight + Q), (answer["inverse_dynamics"][i], tau)):
+            scale = max(float(np.abs(expected).max()), 1e-2)
+            worst = max(worst, float(np.abs(found - expected).max()) / scale)
+    return worst
+
+
+@pytest.mark.parametrize("block", range(5))
+def test_hundred_random_trees(block: int) -> None:
+    for seed in range(20 * block, 20 * block + 20):
+        assert compare_tree(seed) < TOLERANCE, f"seed {seed}"

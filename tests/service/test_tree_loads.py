@@ -1,0 +1,113 @@
+"""Loads of trees over HTTP: stored, changed by revisions, evaluated, printed, made by jobs (contract.md, section 3)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.negotiation import MEDIA_TYPES
+from service.schemas.resources import TreeView
+
+PART: dict[str, Any] = {
+    "name": "bar",
+    "bodies": [
+        {"name": "bar", "parent": "base", "joint": {"type": "revolute", "coordinate": "q"}, "mass": 1, "com": [1, 0, 0]}
+    ],
+    "inputs": {"v": {"unit": "N m"}},
+    "ports": [{"name": "end", "body": "bar", "position": [1, 0, 0]}],
+}
+SPRING = {"name": "s", "type": "spring", "from": "a.end", "to": "b.end", "stiffness": "k", "length": 0.2}
+TORQUE = {"name": "drive", "type": "torque", "from": "a.bar", "to": "b.bar", "vector": [0, 0, "u + a.v"]}
+TREE: dict[str, Any] = {
+    "name": "pair",
+    "gravity": [0, 0, 0],
+    "parameters": {"k": {"value": 3, "unit": "N/m"}},
+    "inputs": {"u": {"unit": "N m", "description": "drive"}},
+    "instances": [
+        {"name": "a", "definition": PART},
+        {"name": "b", "definition": PART, "placement": {"position": [0, 3, 0]}},
+    ],
+    "loads": [SPRING, TORQUE],
+}
+
+
+def numbers(client: TestClient, ref: str, **more: Any) -> list[float]:
+    body = {"quantities": ["forces"], "q": [[0.3, 0.4]], **more}
+    answer = client.post(f"/v1/trees/{ref}/evaluations", json=body)
+    assert answer.status_code == 200, answer.text
+    found: list[float] = answer.json()["forces"][0]
+    return found
+
+
+def test_loads_are_stored_shown_and_changed(client: TestClient) -> None:
+    made = client.post("/v1/trees", json=TREE)
+    assert made.status_code == 201, made.text
+    view = made.json()
+    TreeView.model_validate(view)
+    assert view["loads"] == [SPRING, TORQUE]
+    assert view["inputs"]["u"] == {"unit": "N m", "description": "drive"}
+    assert set(view["inputs"]) == {"u", "a.v", "b.v"}
+    both, driven = numbers(client, "pair"), numbers(client, "pair", inputs={"u": 2, "a.v": 1})
+    # the moment acts on b, and back on a
+    assert [y - x for x, y in zip(both, driven, strict=True)] == pytest.approx([-3, 3])
+    more = {"name": "j", "type": "joint", "coordinate": "a.q", "force": "5*distance'(a.end, b.end)"}
+    second = client.post("/v1/trees/pair/loads", json=more)
+    assert (second.status_code, second.headers["location"]) == (201, "/v1/trees/pair@2")
+    assert second.json()["loads"] == [SPRING, TORQUE, more]
+    third = client.delete("/v1/trees/pair/loads/drive")
+    assert (third.status_code, third.json()["loads"], third.json()["based_on"]) == (201, [SPRING, more], 2)
+    assert numbers(client, "pair@1") == both
+    assert numbers(client, "pair@3") == pytest.approx(both)
+    client.delete("/v1/trees/pair/loads/j")
+    last = client.delete("/v1/trees/pair/loads/s")
+    assert "loads" not in last.json()
+    assert numbers(client, "pair@5") == [0, 0]
+
+
+def test_faults_have_pointers(client: TestClient) -> None:
+    client.post("/v1/trees", json=TREE)
+    gone = client.delete("/v1/trees/pair/loads/none")
+    assert (gone.status_code, gone.json()["code"]) == (404, "unknown-load")
+    bad = client.post("/v1/trees/pair/loads", json={**SPRING, "name": "x", "to": "c.end"})
+    assert bad.status_code == 422
+    assert [(e["pointer"], e["code"]) for e in bad.json()["errors"]] == [("/to", "unknown-instance")]
+    again = client.post("/v1/trees/pair/loads", json=SPRING)
+    assert [(e["pointer"], e["code"]) for e in again.json()["errors"]] == [("/name", "duplicate-name")]
+    used = client.delete("/v1/trees/pair/couplings/b")
+    assert used.status_code == 422
+    assert {e["code"] for e in used.json()["errors"]} >= {"unknown-instance"}
+
+
+@pytest.mark.parametrize("name", MEDIA_TYPES)
+@pytest.mark.parametrize("quantity", ["forces", "forward_dynamics"])
+def test_loads_in_every_format(client: TestClient, name: str, quantity: str) -> None:
+    angle = {"name": "j", "type": "joint", "coordinate": "a.q", "force": "-2*angle(a.bar, b.bar)"}
+    client.post("/v1/trees", json={**TREE, "loads": [SPRING, TORQUE, angle]})
+    answer = client.get(f"/v1/trees/pair/{quantity}", params={"format": name})
+    assert answer.status_code == 200, answer.text
+
+
+def test_a_job_takes_them_and_refuses_bad_ones(client: TestClient) -> None:
+    later = {"Prefer": "respond-async"}
+    assert client.post("/v1/trees", json=TREE, headers=later).status_code == 202
+    bad = {**TREE, "loads": [{**SPRING, "length": "k"}]}
+    refused = client.post("/v1/trees", json=bad, headers=later)
+    assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/loads/0/length")
+
+
+def test_the_page_shows_them(client: TestClient) -> None:
+    client.post("/v1/trees", json=TREE)
+    page = client.get("/trees/pair").text
+    assert "Loads" in page
+    assert "drive" in page
+    assert "<polyline" in client.get("/v1/trees/pair/picture").text
+
+
+def test_the_kernel_knows_them(client: TestClient) -> None:
+    """First numbers come from the parts, later ones from a kernel of the tree's own."""
+    client.post("/v1/trees", json=TREE)
+    before = numbers(client, "pair", inputs={"u": 2}, qd=[[0.1, 0.2]])
+    assert client.post("/v1/trees/pair/kernels", json={"quantities": ["forces"]}).status_code == 200
+    assert numbers(client, "pair", inputs={"u": 2}, qd=[[0.1, 0.2]]) == pytest.approx(before)
