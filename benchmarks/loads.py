@@ -53,8 +53,10 @@ def main() -> None:
     for name, spec in trees.items():
         model = couple(spec, {"a": part, "b": part})
         verify, formulas = model.certificate["seconds"]["verify"], model.certificate["seconds"]["couple"]
-        print(f"{name:10} {1e3 * median(times[name]):7.1f} ms CPU ({formulas:.3f} s coupled, {verify:.3f} s verified), "
-              f"{model.operations['forces']} operations of Q, {model.operations['total']} of M, Gamma, Q")
+        print(
+            f"{name:10} {1e3 * median(times[name]):7.1f} ms CPU ({formulas:.3f} s coupled, {verify:.3f} s verified), "
+            f"{model.operations['forces']} operations of Q, {model.operations['total']} of M, Gamma, Q"
+        )
     print(f"with ten loads / without: {ratio:.2f} (median of {ROUNDS} pairs)")
 
 

@@ -154,14 +154,17 @@ def expanded(steps: Steps, names: Mapping[str, Ball], coordinates: Sequence[str]
         q: Expanded(n, {(tuple(int(i == j) for j in range(n)), zero.one[1]): (acb(1), Fraction(1))})
         for i, q in enumerate(coordinates)
     }
-    functions: dict[str, Callable[[Any], Any]] = {name: partial(_call, name) for name in BALL_FUNCTIONS}
+    functions: dict[str, Callable[..., Any]] = {name: partial(_call, name) for name in BALL_FUNCTIONS}
     pi = partial(named, arb.pi())
     used = {name: names[name] for name in names_of(steps)}
     return carried_out(steps, {**used, **moving}, number, named, pi, functions, Expanded.power)
 
 
-def _call(name: str, x: Expanded) -> Expanded:
-    return x.function(name)
+def _call(name: str, *args: Any) -> Expanded:
+    if name not in ("sin", "cos", "tan", "sqrt"):
+        raise NoExpansionError
+    result: Expanded = args[0].function(name)
+    return result
 
 
 def _plus(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -26,7 +26,7 @@ POSITIVE = frozenset(("parameter", "inertia"))
 ANALYTIC = frozenset(
     ("int", "rat", "sym", "add", "sub", "mul", "neg", "div", "powi", "sin", "cos", "tan", "atan", "exp")
 )
-_BRANCHING = (*(name for name in BALL_FUNCTIONS if name not in ANALYTIC), *MEASURES)
+_BRANCHING = ("sqrt", *(f"{name}(" for name in (*BALL_FUNCTIONS, *MEASURES) if name not in ANALYTIC))
 #: what may be given of a joint, and types of loads, in which no more happens (axes are constant)
 _ROW = ("type", "coordinate", "psi", "theta", "d", "sigma", "phi", "tau", "placement", "axis")
 _JOINT = {*_ROW, "stiffness", "rest", "damping", "armature", "limits"}

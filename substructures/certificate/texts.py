@@ -52,7 +52,7 @@ def summands(steps: Steps, apart: str) -> list[Steps]:
         elif step.op in ("number", "name", "pi"):
             stack.append([(step,)])
         else:
-            operands = 2 if step.op in ("mul", "div") else 1
+            operands = step.operands
             stack[-operands:] = [_apart(step, stack[-operands:], apart)]
     return stack.pop()
 
@@ -63,7 +63,7 @@ def _apart(step: Step, factors: Sequence[Sequence[Steps]], apart: str) -> list[S
     free = [[term for term in terms if apart not in names_of(term)] for terms in factors]
     if apart not in names_of(whole) or not all(free):
         return [whole]
-    is_power = step.op == "pow" and int(step.value or 0) >= 1
+    is_power = step.op == "pow" and step.exponent >= 1
     is_quotient = step.op == "div" and len(free[1]) == len(factors[1])
     if step.op != "mul" and not is_power and not is_quotient:
         return [whole]

@@ -61,9 +61,17 @@ class Inference:
             elif step.op in ("number", "pi"):
                 stack.append("number")
             elif step.op == "call":
-                stack.append(self._call(str(step.value), stack.pop(), step.column))
+                args = stack[len(stack) - step.operands :]
+                del stack[len(stack) - step.operands :]
+                stack.append(self._call(str(step.value), args, step.column))
+            elif step.op == "table":
+                stack[-1] = "unknown"
+            elif step.op == "power":
+                exponent, base = stack.pop(), stack.pop()
+                self._call("exponent", [exponent], step.column)
+                stack.append("unknown" if isinstance(base, Dimensioned) and base.dimension != NUMBER else base)
             elif step.op == "pow":
-                stack.append(_power(stack.pop(), int(step.value or 0)))
+                stack.append(_power(stack.pop(), step.exponent))
             elif step.op != "neg":
                 b, a = stack.pop(), stack.pop()
                 stack.append(self._sum(a, b, step.column) if step.op in ("add", "sub") else _product(a, b, step.op))
@@ -83,9 +91,16 @@ class Inference:
         self._contradict(f"{a} and {b} are added (column {column})", a.sure and b.sure)
         return b if b.sure else a
 
-    def _call(self, name: str, x: Inferred, column: int) -> Inferred:
+    def _call(self, name: str, args: Sequence[Inferred], column: int) -> Inferred:
+        x = args[0]
         if name == "sqrt":
             return _scaled(x, Fraction(1, 2))
+        if name in ("abs", "sign"):
+            return x if name == "abs" else "pure"
+        if len(args) > 1:
+            for other in args[1:]:
+                x = self._sum(x, other, column)
+            return x if name in ("min", "max") else "pure"
         if isinstance(x, Dimensioned) and x.dimension != NUMBER:
             self._contradict(f"{name} of {x} (column {column})", x.sure)
         return "pure"

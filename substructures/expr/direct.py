@@ -16,7 +16,8 @@ from typing import Any
 import flint
 import numpy as np
 
-from substructures.expr.syntax import ExpressionError, Step, decimal_number, read
+from substructures.expr import direct_laws
+from substructures.expr.syntax import ExpressionError, Knots, Step, decimal_number, read
 
 #: a number as documents give it: exact, or an expression
 Given = int | Decimal | Fraction | str
@@ -28,8 +29,25 @@ _ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
     "div": operator.truediv,
 }
 #: of balls, and of their power series
-BALL_FUNCTIONS = {name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "sqrt")}
-_FLOAT_FUNCTIONS: dict[str, Callable[[Any], Any]] = {"sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt}
+BALL_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **{
+        name: operator.methodcaller(name)
+        for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "asin", "acos", "atan")
+    },
+    **direct_laws.BALLS,
+}
+_FLOAT_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "sqrt": np.sqrt,
+    "exp": np.exp,
+    "log": np.log,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    **direct_laws.FLOATS,
+}
 
 
 def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
@@ -72,7 +90,7 @@ def _run(
     number: Callable[[Fraction], Any],
     named: Callable[[Any], Any],
     pi: Callable[[], Any],
-    functions: Mapping[str, Callable[[Any], Any]],
+    functions: Mapping[str, Callable[..., Any]],
     power: Callable[[Any, int], Any],
 ) -> Any:
     """A number, or the steps of a text."""
@@ -92,7 +110,7 @@ def carried_out(
     number: Callable[[Any], Any],
     named: Callable[[Any], Any],
     pi: Callable[[], Any],
-    functions: Mapping[str, Callable[[Any], Any]],
+    functions: Mapping[str, Callable[..., Any]],
     power: Callable[[Any, int], Any],
 ) -> Any:
     """The steps on a stack, over any numbers that know ``+ - * /``; the other arguments say what else they are."""
@@ -108,15 +126,23 @@ def carried_out(
             last = stack.pop()
             stack.append(_ARITHMETIC[step.op](stack.pop(), last))
         else:
-            stack.append(_unary(step, stack.pop(), functions, power))
+            args = stack[len(stack) - step.operands :]
+            del stack[len(stack) - step.operands :]
+            stack.append(_result(step, args, functions, power))
     return stack.pop()
 
 
-def _unary(step: Step, x: Any, functions: Mapping[str, Callable[[Any], Any]], power: Callable[[Any, int], Any]) -> Any:
-    """A step with one operand."""
+def _result(
+    step: Step, args: Sequence[Any], functions: Mapping[str, Callable[..., Any]], power: Callable[[Any, int], Any]
+) -> Any:
+    """A step that is no leaf and none of + - * /; powers and tables have functions of their own."""
     if step.op == "call":
-        return functions[str(step.value)](x)
-    return power(x, step.value) if isinstance(step.value, int) else -x
+        return functions[str(step.value)](*args)
+    if step.op == "power":
+        return functions["power"](*args)
+    if isinstance(step.value, Knots):
+        return functions["table"](step.value, *args)
+    return power(args[0], step.value) if isinstance(step.value, int) else -args[0]
 
 
 def _lookup(step: Step, names: Mapping[str, Any]) -> Any:

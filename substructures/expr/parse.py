@@ -7,8 +7,9 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from substructures.errors import TooLarge
+from substructures.expr import laws
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.syntax import LEAVES, ExpressionError, Step, read
+from substructures.expr.syntax import LEAVES, ExpressionError, Knots, Step, read
 from substructures.expr.trigonometry import cos, sin, tan
 
 _ARITHMETIC: dict[str, Callable[[Expr, Expr], Expr]] = {
@@ -17,7 +18,13 @@ _ARITHMETIC: dict[str, Callable[[Expr, Expr], Expr]] = {
     "mul": operator.mul,
     "div": operator.truediv,
 }
-_FUNCTIONS: dict[str, Callable[[Expr], Expr]] = {"sin": sin, "cos": cos, "tan": tan, "sqrt": lambda x: x.graph.sqrt(x)}
+_FUNCTIONS: dict[str, Callable[..., Expr]] = {
+    "sin": sin,
+    "cos": cos,
+    "tan": tan,
+    "sqrt": lambda x: x.graph.sqrt(x),
+    **laws.FUNCTIONS,
+}
 
 
 def parse(graph: Graph, text: str, lookup: Callable[[str], Expr | None]) -> Expr:
@@ -59,7 +66,7 @@ def parse_terms(graph: Graph, text: str, lookup: Callable[[str], Expr | None], a
         elif step.op in LEAVES:
             stack.append([(_leaf(graph, step, lookup), step.op == "name" and step.value == apart)])
         else:
-            count = 2 if step.op in _ARITHMETIC else 1
+            count = step.operands
             operands = stack[len(stack) - count :]
             stack[len(stack) - count :] = [_told_apart(graph, step, operands)]
     return [x for x, _ in stack.pop()]
@@ -79,7 +86,7 @@ def _told_apart(graph: Graph, step: Step, operands: list[_Terms]) -> _Terms:
         return [(whole, False)]
     without: list[_Terms] = [[(x, named) for x, named in terms if not named] for terms in operands]
     splits = step.op in ("mul", "pow") or (step.op == "div" and without[1] == operands[1])
-    if not splits or not all(without) or (step.op == "pow" and int(step.value or 0) < 1):
+    if not splits or not all(without) or (step.op == "pow" and step.exponent < 1):
         return [(whole, True)]
     pure = carried_out(without)
     return [(pure, False), (whole - pure, True)]
@@ -110,11 +117,17 @@ def _leaf(graph: Graph, step: Step, lookup: Callable[[str], Expr | None]) -> Exp
 
 def _node(step: Step, stack: list[Expr]) -> Expr:
     """The node of a step; its operands are taken from the stack."""
-    last = stack.pop()
+    args = stack[len(stack) - step.operands :]
+    del stack[len(stack) - step.operands :]
+    last = args[-1]
     if step.op == "call":
-        return _FUNCTIONS[str(step.value)](last)
+        return _FUNCTIONS[str(step.value)](*args)
+    if isinstance(step.value, Knots):
+        return laws.table(last, step.value)
+    if step.op == "power":
+        return laws.power(*args)
     if isinstance(step.value, int):
         if step.value < 0 and last.is_zero:
             raise ZeroDivisionError("division by zero")
         return last**step.value
-    return -last if step.op == "neg" else _ARITHMETIC[step.op](stack.pop(), last)
+    return -last if step.op == "neg" else _ARITHMETIC[step.op](*args)

@@ -5,13 +5,16 @@
     sum     = product { ("+" | "-") product }
     product = sign { ("*" | "/") sign }
     sign    = { "+" | "-" } power
-    power   = atom [ ("^" | "**") integer ]
-    atom    = number | name | function "(" sum ")" | measure | "(" sum ")"
+    power   = atom [ ("^" | "**") ( integer | sign number | name | "(" sum ")" ) ]
+    atom    = number | name | function "(" sum { "," sum } ")" | table | measure | "(" sum ")"
+    table   = "table" "(" sum ";" knot { "," knot } [ ";" "monotone" ] ")"
+    knot    = [ "-" ] number ":" [ "-" ] number
     measure = ("distance" | "angle") [ "'" ] "(" name "," name ")"
     name    = letter { letter | digit | "_" } { "." name } { "'" }
 
-Functions: ``sin cos tan sqrt``; constants: ``pi``. Numbers are exact decimals. A measure of two frames of a
-tree, or its rate ('), is a name to whoever reads it further: ``distance(a.tip, b.tip)``, spaced like that.
+Functions: ``sin cos tan sqrt`` and, with their numbers of arguments, :data:`LAWS`; constants: ``pi``. Numbers are exact
+decimals. A measure of two frames of a tree, or its rate ('), is a name to whoever reads it further:
+``distance(a.tip, b.tip)``, spaced like that.
 
 What was read is a list of steps in postfix order, exactly as written: nothing is simplified, so that values straight
 from the text (:mod:`substructures.expr.direct`) share nothing with the graph that formulas are built in.
@@ -24,6 +27,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 
 from substructures.expr.exact import MAX_EXPONENT
 
@@ -35,7 +39,7 @@ MAX_DIGITS = 400
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*)"
-    r"|(?P<op>\*\*|[-+*/^(),]))",
+    r"|(?P<op>\*\*|[-+*/^(),;:]))",
     re.ASCII,
 )
 FUNCTIONS = ("sin", "cos", "tan", "sqrt")
@@ -43,6 +47,12 @@ RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
 #: measures of two frames
 MEASURES = ("distance", "angle")
 _MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.-]+), ([A-Za-z0-9_.-]+)\)", re.ASCII)
+#: further functions and how many arguments they have; only names before a parenthesis, so that names stay free
+LAWS = {
+    **dict.fromkeys(("abs", "sign", "exp", "log", "tanh", "asin", "acos", "atan"), 1),
+    **dict.fromkeys(("min", "max", "atan2"), 2),
+    "step": 3,
+}
 #: operations without operands
 LEAVES = frozenset(("number", "name", "pi"))
 
@@ -56,17 +66,41 @@ class ExpressionError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
+class Knots:
+    """A table: places x, which rise, and values y. Outside it has the first or the last value; in between it is linear,
+    or ``monotone``: a cubic that rises and falls where the values do (F. N. Fritsch and J. Butland, 1984).
+    """
+
+    x: tuple[Fraction, ...]
+    y: tuple[Fraction, ...]
+    monotone: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Step:
     """One step of an expression in postfix order; operands are the results of the steps before it.
 
     ``op`` with its number of operands, and what ``value`` is: ``number`` 0 (the exact value), ``name`` 0 (the name),
-    ``pi`` 0, ``neg`` 1, ``add sub mul div`` 2, ``pow`` 1 (the integer exponent), ``call`` 1 (the function's name).
-    ``column``: where it stands in the text, from 1.
+    ``pi`` 0, ``neg`` 1, ``add sub mul div`` 2, ``pow`` 1 (the integer exponent), ``power`` 2 (any other exponent),
+    ``call`` 1 or as :data:`LAWS` say (the function's name), ``table`` 1 (the table). ``column``: where it stands in the
+    text, from 1.
     """
 
     op: str
-    value: Fraction | str | int | None
+    value: Fraction | str | int | Knots | None
     column: int
+
+    @property
+    def exponent(self) -> int:
+        """Of an integer power, else 0."""
+        return self.value if isinstance(self.value, int) else 0
+
+    @property
+    def operands(self) -> int:
+        """How many results before it are taken."""
+        if self.op == "call":
+            return LAWS.get(str(self.value), 1)
+        return 0 if self.op in LEAVES else 2 if self.op in ("add", "sub", "mul", "div", "power") else 1
 
 
 def decimal_number(text: str) -> Fraction:
@@ -114,7 +148,7 @@ class _Reader:
         found = "the end" if kind == "end" else repr(text)
         return ExpressionError(f"expected {expected}, found {found}", column)
 
-    def step(self, op: str, column: int, value: Fraction | str | int | None = None) -> None:
+    def step(self, op: str, column: int, value: Fraction | str | int | Knots | None = None) -> None:
         """One step more."""
         self.steps.append(Step(op, value, column))
 
@@ -151,13 +185,26 @@ class _Reader:
         negative = self.take("-") is not None
         kind, text, column = self.tokens[self.at]
         if kind != "number" or not text.isdigit():
-            raise self.fail("an integer exponent")
+            self.exponent(negative, column)
+            return
         self.at += 1
         if len(text) > 4 or int(text) > MAX_EXPONENT:
             raise ExpressionError(f"exponent {text[:20]} is beyond the limit of {MAX_EXPONENT}", column)
         if self.tokens[self.at][1] in ("^", "**"):
             raise ExpressionError("tower of exponents; use parentheses", self.tokens[self.at][2])
         self.step("pow", column, -int(text) if negative else int(text))
+
+    def exponent(self, negative: bool, column: int) -> None:
+        """a number, name or parenthesis as exponent"""
+        kind, text, _ = self.tokens[self.at]
+        if kind not in ("number", "name") and (kind, text) != ("op", "("):
+            raise self.fail("an exponent")
+        self.atom()
+        if self.tokens[self.at][1] in ("^", "**"):
+            raise ExpressionError("tower of exponents; use parentheses", self.tokens[self.at][2])
+        if negative:
+            self.step("neg", column)
+        self.step("power", column)
 
     def atom(self) -> None:
         """number, name, call or parenthesis"""
@@ -169,6 +216,10 @@ class _Reader:
             self.at += 1
             if text in FUNCTIONS:
                 self.call(text, column)
+            elif text in LAWS and self.take("("):
+                self.arguments(text, column)
+            elif text == "table" and self.take("("):
+                self.table(column)
             elif text.removesuffix("'") in MEASURES and self.take("("):
                 self.step("name", column, f"{text}({self.frame(',')}, {self.frame(')')})")
             elif self.tokens[self.at][1] == "(":
@@ -186,6 +237,42 @@ class _Reader:
             return decimal_number(text)
         except (ValueError, ArithmeticError):
             raise ExpressionError(f"number has more than {MAX_DIGITS} digits", column) from None
+
+    def arguments(self, name: str, column: int) -> None:
+        """'(' was passed: sum (',' sum)* ')'"""
+        for k in range(LAWS[name]):
+            self.nested("," if k + 1 < LAWS[name] else ")")
+        self.step("call", column, name)
+
+    def table(self, column: int) -> None:
+        """'(' was passed: sum ';' knots ')'"""
+        self.nested(";")
+        x, y = [self.signed(":")], [self.signed("")]
+        while self.take(","):
+            x.append(self.signed(":"))
+            y.append(self.signed(""))
+        monotone = False
+        if self.take(";"):
+            if self.tokens[self.at][1] != "monotone":
+                raise self.fail("'monotone'")
+            self.at, monotone = self.at + 1, True
+        if not self.take(")"):
+            raise self.fail("',' or ')'")
+        if len(x) < 2 or any(a >= b for a, b in pairwise(x)):
+            raise ExpressionError("a table has two places at least, which rise", column)
+        self.step("table", column, Knots(tuple(x), tuple(y), monotone))
+
+    def signed(self, end: str) -> Fraction:
+        """'-'? number, and what comes after it"""
+        minus = self.take("-") is not None
+        kind, text, column = self.tokens[self.at]
+        if kind != "number":
+            raise self.fail("a number")
+        self.at += 1
+        if end and not self.take(end):
+            raise self.fail(f"'{end}'")
+        value = self.number(text, column)
+        return -value if minus else value
 
     def frame(self, end: str) -> str:
         """A name and what comes after it: a frame of a measure"""
@@ -206,12 +293,16 @@ class _Reader:
 
     def parenthesis(self) -> None:
         """'(' was passed: sum ')'"""
+        self.nested(")")
+
+    def nested(self, end: str) -> None:
+        """sum and what comes after it"""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise ExpressionError(f"more than {MAX_DEPTH} nested parentheses", self.tokens[self.at][2])
         self.sum()
-        if not self.take(")"):
-            raise self.fail("')'")
+        if not self.take(end):
+            raise self.fail(f"'{end}'")
         self.depth -= 1
 
 

@@ -180,6 +180,15 @@ LOADS = [
     load("bushing", name="b2", from_="a.tip", to="b.v", damping=[1, 2, "k"], angular_damping=[0.1, 0.2, 0.3]),
     load("force", name="f2", from_="a.u", to="b.tip", vector=["u", 1, "b.q1'"], axes="from"),
     load("torque", name="t2", from_="a.u", to="b.tip", vector=["distance'(a.u, b.tip)", 1, "t"]),
+    load("joint", name="j1", coordinate="b.q1", force="-tanh(b.q1'/0.1) - max(0, b.q1)^1.5 + min(t, 2)*abs(a.q2)"),
+    load(
+        "spring",
+        name="s3",
+        from_="a.u",
+        to="b.u",
+        stiffness="k*step(distance(a.u, b.u), 1, 3) + exp(-t)",
+        damping="table(a.q1; -1: 0.2, 0.1: 1, 1: 4; monotone) + table(b.q1; -1: 0.2, 1: 4)",
+    ),
     load("joint", coordinate="b.q2", force="-k*angle'(a.u, b.u) + distance(a.tip, world)"),
 ]
 
@@ -210,6 +219,23 @@ def test_energy_balance_of_a_motion() -> None:
     motion = simulate(model, q=[0.1, 0.4, -0.3, 0.2], qd=[0.3, 0, 0.2, 0], span=(0, 1), inputs={"u": 2})
     assert motion.status == "finished", motion.message
     assert motion.is_right, motion.checks
+
+
+def test_regularised_friction_between_parts_is_linear_at_rest() -> None:
+    """-F tanh(v/v0) of the relative velocity: the damping F/v0 between both."""
+    loads = [
+        load("joint", name=name, coordinate=f"{name}.x", force=f"-0.3*tanh(({name}.x' - {other}.x')/0.05)")
+        for name, other in (("a", "b"), ("b", "a"))
+    ]
+    found = linearise(model_of("cart", *loads), q=[0, 0.3], qd=[0.4, 0.4])
+    assert np.allclose(found.D, 0.3 / 0.05 * np.array([[1, -1], [-1, 1]]))
+
+
+def test_corners_are_refused_where_derivatives_are_needed() -> None:
+    model = model_of("cart", load("joint", coordinate="a.x", force="-min(abs(a.x'), 2)"))
+    with pytest.raises(InvalidDocument) as raised:
+        linearise(model, q=[0, 0.3])
+    assert raised.value.faults[0].code == "not-smooth"
 
 
 def test_picture() -> None:

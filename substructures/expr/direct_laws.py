@@ -1,0 +1,166 @@
+"""Functions of force laws straight from what they mean, by cases: in floating point, in balls, and in the power series
+of balls, of which the first two coefficients are right. Nothing here is made of formulas.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_series, fmpq
+
+from substructures.expr.syntax import Knots
+
+UNKNOWN = arb("nan")
+#: a function with its partial derivatives
+Parted = tuple[Any, Sequence[Any]]
+
+
+def _power_of_floats(x: Any, y: Any) -> Any:
+    """x^y; NaN where x < 0."""
+    return np.where(np.asarray(x) < 0, np.nan, np.power(np.abs(x), y))
+
+
+def _step_of_floats(x: Any, start: Any, width: Any) -> Any:
+    u = np.clip((x - start) / width + 0.5, 0, 1)
+    return u**3 * (10 - 15 * u + 6 * u**2)
+
+
+def _table_of_floats(knots: Knots, x: Any) -> Any:
+    values = np.vectorize(lambda given: float(_in_table(knots, _exact(given))[0].mid()), otypes=[float])
+    return values(x)
+
+
+def _exact(x: float) -> Any:
+    return arb(x)
+
+
+def _abs(x: Any) -> Parted:
+    return abs(x), [x.sgn()]
+
+
+def _sign(x: Any) -> Parted:
+    return x.sgn(), [arb(0) if not x.contains(0) else UNKNOWN]
+
+
+def _tanh(x: Any) -> Parted:
+    y = x.tanh()
+    return y, [1 - y * y]
+
+
+def _max(a: Any, b: Any) -> Parted:
+    """The derivative is that of the larger one, at a corner half of both."""
+    share = ((a - b).sgn() + 1) / 2
+    return a.max(b), [share, 1 - share]
+
+
+def _min(a: Any, b: Any) -> Parted:
+    share = ((b - a).sgn() + 1) / 2
+    return a.min(b), [share, 1 - share]
+
+
+def _atan2(y: Any, x: Any) -> Parted:
+    square = x * x + y * y
+    return arb.atan2(y, x), [x / square, -y / square]
+
+
+def _step(x: Any, start: Any, width: Any) -> Parted:
+    u = (x - start) / width + arb(fmpq(1, 2))
+    if u < 0 or u > 1:
+        return (arb(0) if u < 0 else arb(1)), [arb(0)] * 3
+    slope = 30 * u * u * (1 - u) * (1 - u)
+    value = u * u * u * (10 - 15 * u + 6 * u * u)
+    if not (u >= 0 and u <= 1):
+        return UNKNOWN, [UNKNOWN] * 3
+    return value, [slope / width, -slope / width, -slope * (x - start) / (width * width)]
+
+
+def _power(x: Any, y: Any) -> Parted:
+    """exp(y log x)."""
+    if x == 0 and y > 0:
+        return arb(0), [UNKNOWN, UNKNOWN]
+    value = x**y if x > 0 else UNKNOWN
+    return value, [y * value / x, value * x.log()]
+
+
+def _in_table(knots: Knots, x: Any) -> Parted:
+    """Of the interval in which x is; at a knot the value is that of both, the derivative that of the one before."""
+    places = [_ball(each) for each in knots.x]
+    if x <= places[0] or x >= places[-1]:
+        return _ball(knots.y[0] if x <= places[0] else knots.y[-1]), [arb(0)]
+    k = next((k for k in range(len(places) - 1) if x >= places[k] and x <= places[k + 1]), None)
+    if k is None:
+        return UNKNOWN, [UNKNOWN]
+    h, rise = knots.x[k + 1] - knots.x[k], knots.y[k + 1] - knots.y[k]
+    u = (x - places[k]) / _ball(h)
+    if not knots.monotone:
+        return _ball(knots.y[k]) + _ball(rise) * u, [_ball(rise / h)]
+    # Hermite's cubic in its basis
+    s, r = (_ball(slope * h) for slope in _pchip(knots)[k : k + 2])
+    a, b = _ball(knots.y[k]), _ball(knots.y[k + 1])
+    one = 1 - u
+    value = a * one * one * (1 + 2 * u) + b * u * u * (3 - 2 * u) + s * u * one * one - r * u * u * one
+    slope = 6 * u * one * (b - a) + s * one * (1 - 3 * u) - r * u * (2 - 3 * u)
+    return value, [slope / _ball(h)]
+
+
+def _pchip(knots: Knots) -> list[Fraction]:
+    """Slopes at the knots: between intervals of one direction the harmonic mean with the weights of Fritsch and Butland
+    (1984), else 0; at the ends the parabola's, if it has the direction of the first interval, at most three times it.
+    """
+    x, y, last = knots.x, knots.y, len(knots.x) - 1
+    chord = [Fraction(y[k + 1] - y[k], x[k + 1] - x[k]) for k in range(last)]
+    if last == 1:
+        return chord * 2
+    found = [Fraction(0)] * (last + 1)
+    for k in range(1, last):
+        left, right = chord[k - 1], chord[k]
+        if left * right > 0:
+            alpha = (1 + (x[k + 1] - x[k]) / (x[k + 1] - x[k - 1])) / 3
+            found[k] = left * right / (alpha * right + (1 - alpha) * left)
+    for end, one, two in ((0, 0, 1), (last, last - 1, last - 2)):
+        h, g = x[one + 1] - x[one], x[two + 1] - x[two]
+        slope = chord[one] + (chord[one] - chord[two]) * h / (h + g)
+        if slope * chord[one] > 0:
+            bound = chord[one] * 3
+            found[end] = bound if chord[one] * chord[two] < 0 and abs(slope) > abs(bound) else slope
+    return found
+
+
+def _ball(x: Fraction) -> Any:
+    return arb(fmpq(x.numerator, x.denominator))
+
+
+def _in_balls(parted: Callable[..., Parted]) -> Callable[..., Any]:
+    """A function of balls, or of power series, from its value and its partial derivatives at balls."""
+
+    def function(*args: Any) -> Any:
+        """f(a + a1 h, ...) = f(a, ...) + f_a a1 h + ..."""
+        first = [isinstance(x, arb_series) for x in args]
+        if not any(first):
+            return parted(*args)[0]
+        value, slopes = parted(*(x[0] if is_series else x for x, is_series in zip(args, first, strict=True)))
+        terms = (d * x[1] for d, x, is_series in zip(slopes, args, first, strict=True) if is_series and x[1] != 0)
+        return arb_series([value, sum(terms, arb(0))])
+
+    return function
+
+
+BALLS: dict[str, Callable[..., Any]] = {
+    **{name: _in_balls(f) for name, f in (("abs", _abs), ("sign", _sign), ("tanh", _tanh), ("atan2", _atan2))},
+    **{name: _in_balls(f) for name, f in (("max", _max), ("min", _min), ("step", _step), ("power", _power))},
+    "table": lambda knots, x: _in_balls(lambda inner: _in_table(knots, inner))(x),
+}
+FLOATS: dict[str, Callable[..., Any]] = {
+    "abs": np.abs,
+    "sign": np.sign,
+    "tanh": np.tanh,
+    "atan2": np.arctan2,
+    "max": np.maximum,
+    "min": np.minimum,
+    "step": _step_of_floats,
+    "power": _power_of_floats,
+    "table": _table_of_floats,
+}
