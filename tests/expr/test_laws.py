@@ -144,6 +144,12 @@ def test_what_cannot_be_read(text: str, column: int) -> None:
     assert raised.value.column == column, raised.value
 
 
+def test_places_of_tables_rise() -> None:
+    for text in ("table(x; 1: 2, 1: 3)", "table(x; 1: 2, 0: 3)"):
+        with pytest.raises(ExpressionError, match="which rise"):
+            read(text)
+
+
 def test_names_stay_free() -> None:
     """What was a name before there were these functions is one still."""
     graph = Graph()
