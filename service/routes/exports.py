@@ -10,12 +10,13 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from service.analyses.exporting import ZIP, ExportRequest, Package, part_package
 from service.answers import Answer, etag
 from service.http.acting import in_time
-from service.http.requests import StoreOf, needs
+from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
 from service.operations import catalogue
 from service.references import is_pinned
 from service.routes.bodies import binary
 from service.store import Store
+from service.viewer import Viewer
 from substructures.errors import InvalidInput
 from substructures.export import TARGETS
 
@@ -47,14 +48,14 @@ ExportOf = Annotated[ExportRequest, Depends(export_of)]
 
 
 @router.get("/export", dependencies=READ, responses=EXPORTED)
-async def export(ref: str, request: Request, store: StoreOf, wanted: ExportOf) -> Response:
+async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
     """Functions of the part as it stands alone for a target, on one calling convention."""
-    return await in_time(request, lambda: _export(ref, request, store, wanted), "name fewer quantities")
+    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), "name fewer quantities")
 
 
-def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> Response:
+def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:
     with store.database.read() as connection:
-        version = catalogue.find(connection, ref)
+        version = catalogue.find(connection, viewer, ref)
         part = store.required_part(connection, version.digest)
     reference = f"{version.name}@{version.version}"
 
@@ -63,7 +64,8 @@ def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> 
         limit = store.settings.limits.program_nodes
         return package_answer(lambda: part_package(part, reference, version.digest, wanted, limit))
 
-    return conditional(request, etag(version.digest, reference, *wanted.identity), is_pinned(ref), make)
+    lasting = is_pinned(ref) and version.is_public
+    return conditional(request, etag(version.digest, reference, *wanted.identity), lasting, make)
 
 
 def package_answer(make: Callable[[], Package]) -> Answer:

@@ -10,7 +10,7 @@ from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
-from service.http.requests import StoreOf, media_type, needs
+from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import conditional
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
@@ -24,6 +24,7 @@ from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
 from service.store import Store
+from service.viewer import Viewer
 from substructures.export import interface_of_model
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
@@ -91,21 +92,20 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
 
 
 @router.get("/export", dependencies=READ, responses=EXPORTED)
-async def export(ref: str, request: Request, store: StoreOf, wanted: ExportOf) -> Response:
+async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
     """Functions of the tree for a target: C, MATLAB, Fortran, computer algebra, ..., on one calling convention.
 
     What takes longer than a request may is an item of a job of kind `export` with a `target`.
     """
     item = f'{{"tree": "{ref[:80]}", "target": "{wanted.target[:40]}", ...}}'
-    return await in_time(
-        request, lambda: _export(ref, request, store, wanted), f"submit a job of kind 'export' with the item {item}"
-    )
+    advice = f"submit a job of kind 'export' with the item {item}"
+    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), advice)
 
 
-def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> Response:
+def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:
     """The files in a thread."""
     with store.database.read() as connection:
-        tree = trees.find(connection, ref)
+        tree = trees.find(connection, viewer, ref)
         model = store.model(connection, tree)
     reference = f"{tree.name}@{tree.revision}"
 
@@ -116,7 +116,7 @@ def _export(ref: str, request: Request, store: Store, wanted: ExportRequest) -> 
             lambda: tree_package(sources_of(store, tree, model), tree.name, reference, tree.digest, wanted, limit)
         )
 
-    return conditional(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref), make)
+    return conditional(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref) and tree.is_public, make)
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

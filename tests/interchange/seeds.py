@@ -29,7 +29,8 @@ SDF = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><pose
 0 0 1 0 90 0</pose><inertial><pose>0 0 1 0.1 0.2 0</pose><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>
 </inertia></inertial></link>
 <frame name="f" attached_to="b"><pose>0 1 0 0 0 0</pose></frame><joint name="j" type="universal">
-<parent>a</parent><child>b</child><axis><xyz expressed_in="f">1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit>
+<parent>a</parent><child>b</child><axis><xyz expressed_in="f">1 0 0</xyz>
+<limit><lower>-1</lower><upper>1</upper></limit>
 </axis>
 <axis2><xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2>
 </joint></model></sdf>"""
