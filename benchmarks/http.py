@@ -1,6 +1,6 @@
 """Times of the service over HTTP on loopback, from a second process' point of view.
 
-python -m benchmarks.http [--processes] [--json FILE]
+python -m benchmarks.http [--processes | --lean] [--json FILE]
 """
 
 from __future__ import annotations
@@ -83,15 +83,19 @@ def milliseconds(work: Callable[[], Any], repeat: int) -> float:
     return median(times) * 1e3
 
 
-def in_turn(ways: dict[str, Callable[[], Any]], repeat: int) -> dict[str, float]:
-    """Median wall times, warm, measured in turn: what else the machine does then disturbs all alike."""
+def in_turn(ways: dict[str, Callable[[], Any]], repeat: int) -> tuple[dict[str, float], dict[str, float]]:
+    """Median wall times, warm, measured in turn: what else the machine does then disturbs all alike; and the medians of
+    their ratios to the last one.
+    """
     times: dict[str, list[float]] = {name: [] for name in ways}
     for _ in range(repeat + 3):
         for name, work in ways.items():
             start = perf_counter()
             work()
             times[name].append(perf_counter() - start)
-    return {name: median(some[3:]) * 1e3 for name, some in times.items()}
+    last = times[list(ways)[-1]][3:]
+    ratios = {name: median(x / y for x, y in zip(some[3:], last, strict=True)) for name, some in times.items()}
+    return {name: median(some[3:]) * 1e3 for name, some in times.items()}, ratios
 
 
 def couplings(client: Client) -> float:
@@ -137,7 +141,8 @@ def batch(client: Client, figures: dict[str, float]) -> None:
     """A batch over HTTP beside the same call in this process, kernels warm: ``http_batch_share`` is that of the rate
     of one thread, ``http_batch_share_all_threads`` that of the server's own engine, which takes all threads,
     ``http_batch_share_npz`` that of one thread which reads and writes npz as well. The bare transfer sends the same
-    number of bytes between two processes, by sockets alone.
+    number of bytes between two processes, by sockets alone: ``http_batch_over_bare`` is the time of npz over its time,
+    ``http_batch_packed_over_bare`` and ``http_batch_packed_float32_over_bare`` those of packed npz over that same time.
     """
     spec = TreeSpec.read(
         {"name": "own", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "ur5"}]}
@@ -162,19 +167,27 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         "in process, one thread": lambda: evaluate(model, **request, evaluator=one_thread),
         "in process, all threads": lambda: evaluate(model, **request, evaluator=engine),
         "npz": lambda: client.evaluate("cell0@1", quantities=quantities, q=q),
+        "npz, packed": lambda: client.evaluate("cell0@1", quantities=quantities, q=q, packed=True),
+        "npz, packed, float32": lambda: client.evaluate(
+            "cell0@1", quantities=quantities, q=q, packed=True, float32=True
+        ),
         "Arrow": lambda: list(client.evaluate_batches("cell0@1", [{"q": q}], quantities=quantities)),
     }
     with exchange(q.nbytes, 42 * 8 * STATES) as transfer:
-        times = in_turn({**ways, "npz in process": npz_in_process, "bare transfer": transfer}, 25)
+        times, ratios = in_turn({**ways, "npz in process": npz_in_process, "bare transfer": transfer}, 25)
     engine.close()
     one, every = times["in process, one thread"], times["in process, all threads"]
     figures["http_batch_share"], figures["http_batch_share_all_threads"] = one / times["npz"], every / times["npz"]
     figures["http_batch_share_npz"] = times["npz in process"] / times["npz"]
     figures["http_arrow_share"] = one / times["Arrow"]
     figures["bare_transfer_ms"] = times["bare transfer"]
+    figures["http_batch_over_bare"] = ratios["npz"]
+    figures["http_batch_packed_over_bare"] = ratios["npz, packed"]
+    figures["http_batch_packed_float32_over_bare"] = ratios["npz, packed, float32"]
     print(f"{STATES:,} states of a 6 dof arm, M and Q, arrays in and out:")
     for name, each in times.items():
-        print(f"  {name}: {each:.0f} ms ({one / each:.2f} of the rate of one thread, {every / each:.2f} of all)")
+        shares = f"{one / each:.2f} of the rate of one thread, {every / each:.2f} of all"
+        print(f"  {name}: {each:.1f} ms ({ratios[name]:.2f} times the bare transfer; {shares})")
 
 
 def processes(figures: dict[str, float]) -> None:
@@ -218,13 +231,22 @@ def main() -> None:
     """Print the table; with --json FILE write the figures."""
     parser = options(__doc__)
     parser.add_argument("--processes", action="store_true", help="only one process beside two")
+    parser.add_argument("--lean", action="store_true", help="only one state, and a batch")
     arguments = parser.parse_args()
     figures: dict[str, float] = {}
-    processes(figures)
+    if not arguments.lean:
+        processes(figures)
     if arguments.processes:
         keep(figures, arguments.json)
         return
     with tempfile.TemporaryDirectory() as folder, server(folder) as client:
+        if arguments.lean:
+            arm = {"name": "arm", "substructure": "ur5"}
+            client.create_tree({"name": "cell0", "gravity": [0, 0, "-9.81"], "instances": [arm]})
+            one_state(client, figures)
+            batch(client, figures)
+            keep(figures, arguments.json)
+            return
         figures["http_get_ms"] = milliseconds(lambda: client.substructure("puma560"), 200)
         print(f"GET a catalogue entry: {figures['http_get_ms']:.1f} ms")
         figures["http_couple_6_6_ms"] = couplings(client)

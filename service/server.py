@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import ctypes
 import gc
 import logging
 import os
@@ -11,7 +12,7 @@ import socket
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from typing import cast
 
@@ -29,7 +30,9 @@ from service.store import Store
 
 logger = logging.getLogger(__name__)
 
+MAPPED, KEPT = 32 * 2**20, 64 * 2**20  # bytes: memory that is got from the system each time, and kept when free
 TURN = 0.001  # seconds that a thread computes while others wait
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h
 TICKS = 10  # of uvicorn in a second
 AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
@@ -67,7 +70,13 @@ def _listeners(settings: Settings, claim: int | None) -> list[socket.socket]:
 
 
 def _prepare_to_answer() -> None:
-    """Let short requests pass those that compute: threads take turns more often, collections leave out what stays."""
+    """Let short requests pass those that compute: threads take turns more often, collections leave out what stays.
+    And keep memory for the next large request: pages that the system gives anew cost as much as what is done with them.
+    """
+    with suppress(AttributeError, OSError):  # of other C libraries than that of GNU; there, what large requests lead to
+        library = ctypes.CDLL(None)
+        library.mallopt(M_MMAP_THRESHOLD, MAPPED)
+        library.mallopt(M_TRIM_THRESHOLD, KEPT)
     sys.setswitchinterval(TURN)
     gc.collect()
     gc.freeze()

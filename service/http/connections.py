@@ -29,19 +29,17 @@ from typing import Any, cast
 
 import httptools
 from fastapi import Response
-from starlette.types import Message, Receive, Scope, Send
 from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
 from service.http import problems
+from service.http.chunks import AT_ONCE, Chunked
 from service.http.middleware import GUARDED
 from service.http.request_id import begin_request
 from service.refusals import Refused
 from service.settings import Limits
 
-PIECE = 2**19  # bytes of a body that are handed on together
-AT_ONCE = 2**16  # bytes of a body that leave with its head
 RATE = 500  # bytes a second that a body has to have in the long run
 _log = logging.getLogger(__name__)
 
@@ -179,17 +177,13 @@ class Connection(HttpToolsProtocol):
     def _start_asgi_task(self, cycle: RequestResponseCycle, app: Any) -> None:
         """Serve a request, with less work for the answer."""
         cycle.transport = cast(asyncio.Transport, Joined(self.loop, self.transport))
-        super()._start_asgi_task(cycle, cast(Any, Chunked(cycle, app)))
+        super()._start_asgi_task(cycle, cast(Any, Chunked(cycle, app, self.transport)))
 
     def on_body(self, body: bytes) -> None:
         """Note that a body goes on."""
         self._unused = 0
         self._received += len(body)
-        cycle = self.cycle
-        if len(cycle.body) + len(body) < PIECE and not cycle.response_complete:
-            cycle.body += body  # whoever reads is woken for more of it, or by the end
-        else:
-            super().on_body(body)
+        super().on_body(body)
 
     def on_message_complete(self) -> None:
         """Note the end of a body."""
@@ -288,32 +282,6 @@ class Joined:
         """Send, and close."""
         self._send()
         self._transport.close()
-
-
-class Chunked:
-    """An application whose large pieces of answers without a known length are not copied into their frames."""
-
-    def __init__(self, cycle: RequestResponseCycle, app: Any) -> None:
-        self._cycle, self._app = cycle, app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve a request."""
-        cycle, transport, flow = self._cycle, self._cycle.transport, self._cycle.flow
-
-        async def framed(message: Message) -> None:
-            """Send; a large piece as a chunk (RFC 9112, section 7.1) beside its length."""
-            body = message.get("body", b"")
-            if len(body) <= AT_ONCE or not cycle.chunked_encoding or not message.get("more_body"):
-                await send(message)
-                return
-            if flow.write_paused and not cycle.disconnected:
-                await flow.drain()
-            if not cycle.disconnected:
-                transport.write(b"%x\r\n" % len(body))
-                transport.write(body)
-                transport.write(b"\r\n")
-
-        await self._app(scope, receive, framed)
 
 
 def _too_long_head(limit: int) -> Refused:

@@ -12,7 +12,7 @@ from fastapi.responses import StreamingResponse
 
 from service.answers import FOR_EVER, REVALIDATE, Answer, Stream, some_of
 
-AT_ONCE = 2**20  # bytes that are handed to the connection at a time
+AT_ONCE = 2**22  # bytes that are handed to the connection at a time
 
 
 def response_of(answer: Answer | Stream) -> Response:

@@ -178,7 +178,7 @@ def write_npz(arrays: Mapping[str, Any]) -> Npz:
     The numbers start at multiples of 64 bytes, so that they can be used where they lie (:func:`view_npz`).
     """
     writer = NpzWriter()
-    pieces = [piece for name, value in arrays.items() for piece in writer.whole(name, [np.asarray(value)])]
+    pieces = [piece for name, value in arrays.items() for piece in writer.whole(name, np.asarray(value))]
     pieces.append(writer.directory())
     return Npz(writer.size, pieces)
 
@@ -220,7 +220,7 @@ def npz_parts(answers: Iterable[Mapping[str, Any]], names: Sequence[str], count:
     first = next(rest)
     columns = flat({name: first[name] for name in names})
     largest = max(columns, key=lambda name: columns[name].nbytes)
-    waiting: dict[str, list[NDArray[Any]]] = {name: [] for name in columns if name != largest}
+    waiting = {name: np.empty((count, *x.shape[1:]), x.dtype) for name, x in columns.items() if name != largest}
     notes: dict[str, list[dict[str, Any]]] = {name: [] for name in NOTES}
     writer, done = NpzWriter(), 0
     yield writer.begin(largest, (count, *columns[largest].shape[1:]), columns[largest].dtype)
@@ -228,7 +228,7 @@ def npz_parts(answers: Iterable[Mapping[str, Any]], names: Sequence[str], count:
         part = flat({name: answer[name] for name in names})
         yield writer.go_on(part[largest])
         for name, kept in waiting.items():
-            kept.append(part[name])
+            kept[done : done + answer["count"]] = part[name]
         for kind, told in notes.items():
             told += [placed(note, done) for note in answer[kind]]
         done += answer["count"]
@@ -237,8 +237,8 @@ def npz_parts(answers: Iterable[Mapping[str, Any]], names: Sequence[str], count:
     for rows in notes.values():  # as of the whole: by quantity, then by state, behind what is about no state
         rows.sort(key=lambda row: (order[row["quantity"]], row["state"]) if "state" in row else (-1, -1))
     about = {key: x for key, x in first.items() if key not in {*names, *NOTES}} | {"count": count}
-    for name, parts in (waiting | {key: [np.asarray(x)] for key, x in flat(about | parallel(notes)).items()}).items():
-        yield from writer.whole(name, parts)
+    for name, value in flat({**waiting, **about, **parallel(notes)}).items():
+        yield from writer.whole(name, np.asarray(value))
     yield writer.directory()
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import io
 import struct
 import zipfile
-from collections.abc import Iterator, Sequence
 from math import prod
 from typing import Any
 
@@ -39,16 +38,15 @@ class NpzWriter:
         self._directory, self._count = bytearray(), 0
         self._name, self._start, self._checked, self._length = b"", 0, 0, 0
 
-    def whole(self, name: str, parts: Sequence[NDArray[Any]]) -> Iterator[memoryview]:
-        """One array, which is that of its parts along the first axis."""
-        arrays = [np.asarray(part, order="C") for part in parts]
-        shape = arrays[0].shape if len(arrays) == 1 else (sum(map(len, arrays)), *arrays[0].shape[1:])
-        pieces = [memoryview(self._header(name, shape, arrays[0].dtype)), *map(_bytes, arrays)]
-        for piece in pieces:
-            self._add(piece)
-        yield memoryview(self._local(UTF_8, self._checked, self._length))
-        yield from pieces
+    def whole(self, name: str, array: NDArray[Any]) -> list[memoryview]:
+        """One array."""
+        header = memoryview(self._header(name, array.shape, array.dtype))
+        data = _bytes(np.asarray(array, order="C"))
+        self._add(header)
+        self._add(data)
+        local = self._local(UTF_8, self._checked, self._length)
         self._list(UTF_8)
+        return [memoryview(local + header), data]
 
     def begin(self, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> memoryview:
         """Begin an array whose numbers come by :meth:`go_on`, until :meth:`end`."""
