@@ -107,13 +107,15 @@ def test_parts_are_the_whole(given: tuple[Model, NumericTree]) -> None:
     assert [w for part in parts for w in part.warnings] == list(whole.warnings) != []
 
 
-def test_single_precision(given: tuple[Model, NumericTree]) -> None:
+@pytest.mark.parametrize("engine", ["interpreter", "kernel"])
+def test_single_precision(given: tuple[Model, NumericTree], engine: str) -> None:
     """Rounded once, and what has no number there is a failure."""
-    model, _ = given
+    model, numeric = given
     q = np.random.default_rng(5).uniform(-3, 3, (7, model.dof))
     tau = np.zeros(7)
     tau[4] = 1e39
     arguments: dict[str, Any] = {"q": q, "inputs": {f"tau.{model.coordinates[0]}": tau}}
+    arguments["evaluator"] = engines(model, numeric)[engine]
     double, single = (evaluate(model, ["metric", "forces"], **arguments, float32=x) for x in (False, True))
     np.testing.assert_array_equal(single["metric"], double["metric"].astype(np.float32))
     assert double.failures == ()
