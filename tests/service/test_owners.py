@@ -99,6 +99,8 @@ TABLE: dict[str, Row] = {
     ),
     "post /v1/trees/{ref}/kernels": Row(TREE + "/{tree}@1/kernels", *LET_IN, {"quantities": ["metric"]}),
     **{f"post /v1/trees/{{ref}}/{name}": Row(TREE + f"/{{tree}}@1/{name}", *LET_IN, {}) for name in ANALYSES},
+    # what a file becomes is stored as by the requests above, whose rows say who may
+    "post /v1/imports": Row("/v1/imports", (0, 0, 0), (0, 0, 0), {}),
     "get /v1/jobs": Row("/v1/jobs", *LISTED),
     "post /v1/jobs": Row("/v1/jobs", (202, 403, 422), (202, 403, 202), JOB),
     "get /v1/jobs/{job}": Row(JOBS, *READ),
