@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import sleep
 from typing import Any
 
@@ -27,6 +27,14 @@ RECENT = 30.0  # seconds over which the rate is measured
 
 
 @dataclass(frozen=True, slots=True)
+class Skipped:
+    """An item that cannot be computed and is left out: its number among those given, and why."""
+
+    item: int
+    faults: Sequence[Fault]
+
+
+@dataclass(frozen=True, slots=True)
 class JobSubmission:
     """A job ready to be queued."""
 
@@ -34,6 +42,7 @@ class JobSubmission:
     items: Sequence[NewItem]
     uploads: Sequence[str] = ()  # digests of the states that the items refer to
     shared: bool = False  # whether every key may see it
+    skipped: Sequence[Skipped] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +69,49 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
         raise InvalidDocument.at("/shared", "boolean-expected", "true or false is needed")
     with store.database.read() as connection:
         library = StoreLibrary(connection, viewer)
-        expanded = kinds.expand(kind, body, store.settings.limits, library)
-        items = _resolved(kind, expanded, library, _places(body, len(expanded)), members or {})
+        skipped: list[Skipped] = []
+        if _skips(body):
+            items, skipped = _good(kind, body, library, store.settings.limits)
+        else:
+            expanded = kinds.expand(kind, body, store.settings.limits, library)
+            items = _resolved(kind, expanded, library, _places(body, len(expanded)), members or {})
         if shared and library.private:
             private = ", ".join(f"'{name}'" for name in sorted(library.private)[:SHOWN])
             message = f"every key would see the results, and private is {private}; make it public, or do not share"
             raise InvalidDocument.at("/shared", "private-part", message)
-        return JobSubmission(kind, items, shared=shared)
+        return JobSubmission(kind, items, shared=shared, skipped=skipped)
+
+
+def _skips(body: Mapping[str, Any]) -> bool:
+    """Whether bad items are to be left out. Raises InvalidDocument."""
+    found = body.get("on_invalid", "refuse")
+    if found not in ("refuse", "skip"):
+        raise InvalidDocument.at("/on_invalid", "unknown-choice", "'refuse' (all items) or 'skip' (the bad ones)")
+    return bool(found == "skip")
+
+
+def _good(
+    kind: str, body: Mapping[str, Any], library: StoreLibrary, limits: Limits
+) -> tuple[list[NewItem], list[Skipped]]:
+    """The items that can be computed, and those that cannot. Raises InvalidDocument, Refused where none can."""
+    good: list[NewItem] = []
+    bad: list[Skipped] = []
+    for k, (_, item) in enumerate(kinds.given(body, limits.job_items)):
+        try:
+            expanded = kinds.expand(kind, {"kind": kind, "items": [item]}, limits, library)
+            good += _resolved(kind, expanded, library, iter([("", "")] * len(expanded)), {})
+        except (InvalidInput, Refused) as error:
+            if isinstance(error, Refused) and error.status >= 500:
+                raise
+            bad.append(Skipped(k, [replace(f, pointer=f.pointer.removeprefix("/items/0")) for f in error.faults]))
+        if len(good) > limits.job_items:
+            message = f"more than {limits.job_items:,} items after splitting; submit several jobs"
+            raise InvalidDocument.at("/items", "too-many-items", message)
+    if not good:
+        faults = [replace(f, pointer=f"/items/{each.item}{f.pointer}") for each in bad for f in each.faults]
+        detail = f"none of {len(bad)} items can be computed, so nothing was queued: {faults[0]}"
+        raise Refused(422, "invalid-items", detail, faults[:SHOWN], count=len(faults))
+    return good, bad
 
 
 def prepare_items(

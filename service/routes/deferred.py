@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -15,7 +15,7 @@ from service.queries.jobs import Job
 from service.schemas.jobs import JobView
 from service.store import Store
 from service.viewer import Viewer
-from service.views.jobs import job_path, job_view
+from service.views.jobs import job_path, job_view, skipped_view
 from service.views.resources import dump
 
 FRESH = {"Cache-Control": "no-store"}
@@ -28,9 +28,11 @@ def made(model: type[BaseModel]) -> dict[int | str, dict[str, Any]]:
     return {200: {"description": "It is there already", "model": model}, **ACCEPTED}
 
 
-def answer(connection: Connection, job: Job, status: int = 200) -> Answer:
-    """A job with its progress."""
+def answer(connection: Connection, job: Job, status: int = 200, skipped: Sequence[jobs.Skipped] = ()) -> Answer:
+    """A job with its progress; ``skipped``: items of the submission that were left out."""
     view = job_view(job, jobs.progress(connection, job))
+    if skipped:
+        view["skipped"] = [skipped_view(each) for each in skipped]
     headers = {**FRESH, "Location": job_path(job.id)} if status == 202 else FRESH
     return json_answer(dump(view), status, headers)
 
@@ -41,7 +43,9 @@ def committed(store: Store, viewer: Viewer, submission: jobs.JobSubmission) -> C
     def commit(connection: Connection) -> Answer:
         """Queue the job and answer it, unless there is no room for results."""
         store.usage.take(connection, "result", viewer.key, 0)
-        return answer(connection, jobs.submit(connection, viewer, submission, store.settings.limits), 202)
+        return answer(
+            connection, jobs.submit(connection, viewer, submission, store.settings.limits), 202, submission.skipped
+        )
 
     return commit
 

@@ -33,7 +33,25 @@ class JobRequest(Shape):
         default_factory=dict, description="an item that is copied for every combination of choices"
     )
     choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
-    shared: bool = Field(False, description="whether every API key may see the job, not only the one that submits it")
+    shared: bool = Field(False, description="whether every API key may see the job, not only those of its owner")
+    on_invalid: Literal["refuse", "skip"] = Field(
+        "refuse", description="one bad item: refuse all, or leave it out and tell of it in `skipped` of the answer"
+    )
+
+
+class SkippedFault(Shape):
+    """One thing wrong with an item."""
+
+    pointer: str = Field(description="RFC 6901 pointer into the item")
+    code: str
+    message: str
+
+
+class SkippedItem(Shape):
+    """An item that cannot be computed and was left out."""
+
+    item: int = Field(description="its number among those given, from 0")
+    errors: list[SkippedFault]
 
 
 class CancelRequest(Shape):
@@ -66,6 +84,7 @@ class JobView(Shape):
     started: Time | None
     finished: Time | None
     error: dict[str, Any] | None = Field(description="problem document")
+    skipped: list[SkippedItem] = Field([], description="of a submission with `on_invalid: skip`, in its answer alone")
     result: str = Field(description="where the results are, also in part while the job runs")
     links: Links
 

@@ -8,7 +8,7 @@ from typing import Any
 import orjson
 
 from service.addresses import BASE
-from service.operations.jobs import Progress
+from service.operations.jobs import Progress, Skipped
 from service.queries.job_events import JobEvent
 from service.queries.jobs import Job, JobItem
 from service.queries.results import File
@@ -49,6 +49,12 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         "result": f"{path}/result",
         "links": {"self": path} | {name: f"{path}/{name}" for name in ("items", "events", "archive", "cancel")},
     }
+
+
+def skipped_view(skipped: Skipped) -> dict[str, Any]:
+    """An item of a submission that was left out."""
+    errors = [{"pointer": f.pointer, "code": f.code, "message": f.message} for f in skipped.faults]
+    return {"item": skipped.item, "errors": errors}
 
 
 def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:

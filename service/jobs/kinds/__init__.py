@@ -22,7 +22,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
 
-__all__ = ["KINDS", "Library", "expand", "resolve", "run"]
+__all__ = ["KINDS", "Library", "expand", "given", "resolve", "run"]
 
 _KINDS: dict[str, Kind] = {
     "assemble": ASSEMBLE,
@@ -35,7 +35,7 @@ _KINDS: dict[str, Kind] = {
     "analyse": analysis_kind(),
 }
 KINDS = tuple(_KINDS)
-FIELDS = ("kind", "items", "template", "choices", "shared")
+FIELDS = ("kind", "items", "template", "choices", "shared", "on_invalid")
 _log = logging.getLogger(__name__)
 
 
@@ -48,11 +48,11 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
     if kind not in _KINDS:
         raise InvalidDocument.at("/kind", "unknown-kind", f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}")
     items: list[ItemDocument] = []
-    for pointer, given in _given(request, limits.job_items):
-        if not isinstance(given, dict):
+    for pointer, one in given(request, limits.job_items):
+        if not isinstance(one, dict):
             raise InvalidDocument.at(pointer, "object-expected", "an object is needed")
         try:
-            items += _KINDS[kind].spread(given, limits, library)
+            items += _KINDS[kind].spread(one, limits, library)
         except InvalidInput as error:
             raise error.below(pointer) from None
         if len(items) > limits.job_items:
@@ -63,7 +63,7 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
     return items
 
 
-def _given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
+def given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
     """The items as given or put together, each with the place of its faults."""
     faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key[:80]}'") for key in request if key not in FIELDS]
     if ("items" in request) == ("template" in request):
