@@ -113,3 +113,14 @@ def test_a_server_that_is_not_there(capsys: pytest.CaptureFixture[str], tmp_path
 def test_what_was_meant() -> None:
     assert meant("Metric", ["metric", "forces"]) == "; did you mean 'metric'?"
     assert meant("x" * 10_000, ["metric"]) == meant("nothing", []) == ""
+
+
+def test_angles_that_are_meant_in_degrees(client: TestClient) -> None:
+    for k, (theta, pointers) in enumerate(
+        ((90, ["/bodies/0/joint/theta"]), ("pi/2", []), ({"value": 90, "unit": "deg"}, []), (-3.2, []))
+    ):
+        part = copy.deepcopy(PENDULUM)
+        part["name"], part["bodies"][0]["joint"]["theta"] = f"turned-{k}", theta
+        warnings = client.post("/v1/substructures", json=part).json()["warnings"]
+        assert [each["pointer"] for each in warnings] == pointers
+        assert all('{"value": 90, "unit": "deg"}' in each["message"] for each in warnings)
