@@ -18,6 +18,7 @@ from substructures.export.render import LANGUAGES, definitions, text_of
 from substructures.export.software import SOFTWARE
 from substructures.export.webassembly import glue
 from substructures.export.webassembly.functions import webassembly
+from substructures.export.webassembly.selftest import selftest
 
 Files = dict[str, bytes]
 
@@ -73,6 +74,7 @@ def _javascript(exported: Exported, _: int) -> Files:
         f"{exported.name}.wasm": made.content,
         f"{exported.name}.mjs": text.encode(),
         f"{exported.name}.d.mts": declared.encode(),
+        f"{exported.name}_selftest.mjs": selftest(exported).encode(),
     }
 
 

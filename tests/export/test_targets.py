@@ -85,7 +85,7 @@ def test_self_tests_see_a_fault(cases: list[Exported], target: str, tmp_path: Pa
     exported = cases[1]
     for path in write(exported, target, tmp_path):
         data = path.read_bytes()
-        assert "selftest" in path.name or path.suffix in (".h", ".mjs", ".ts") or OLD[target] in data
+        assert "selftest" in path.name or path.suffix in (".h", ".mjs", ".mts") or OLD[target] in data
         path.write_bytes(data if "selftest" in path.name else data.replace(OLD[target], NEW[target]))
     code, text = run(exported, COMMANDS[target], tmp_path)
     assert code != 0

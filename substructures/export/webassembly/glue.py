@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
-
-import orjson
 
 _TYPES = """/** What was exported: names, order, units, shapes and defaults of everything. */
 export declare const description: Record<string, unknown>;
@@ -23,8 +22,8 @@ export declare function load(url?: URL): Promise<Functions>;
 def javascript(name: str, description: Mapping[str, Any], heap: int) -> str:
     """The text of ``NAME.mjs`` for a module ``NAME.wasm``; ``description``: the document of the target "interface"."""
     text = files(__package__).joinpath("glue.mjs").read_text(encoding="utf-8")
-    # no text of a user can end a script element of a page that the code is put into
-    embedded = orjson.dumps(description).decode().replace("<", "\\u003c")
+    # ASCII, and no text of a user can end a script element of a page that the code is put into
+    embedded = json.dumps(description).replace("<", "\\u003c")
     return text.replace('"@heap@"', str(heap)).replace("@name@", name).replace('"@description@"', embedded)
 
 
@@ -43,7 +42,7 @@ def _declared(function: Mapping[str, Any], vectors: Mapping[str, Any]) -> str:
     shapes = [f"{' x '.join(map(str, output['shape'])) or '1'}" for output in outputs]
     if len(outputs) == 1:
         return f"    /** {shapes[0]}, row-major */\n    {function['name']}({arguments}): Float64Array;"
-    told = "; ".join(f"{orjson.dumps(o['name']).decode()}: Float64Array" for o in outputs)
+    told = "; ".join(f"{json.dumps(o['name'])}: Float64Array" for o in outputs)
     return f"    /** {', '.join(shapes)}, row-major */\n    {function['name']}({arguments}): {{ {told} }};"
 
 
