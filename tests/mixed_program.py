@@ -24,7 +24,6 @@ def mixed_program() -> Program:
     ]
     vector = [
         *one,
-        *numbers,
         g.function("atan2", v, q),
         -(k + h) / (m - length),
         (k - h) ** 3,
@@ -39,6 +38,7 @@ def mixed_program() -> Program:
             (3, 3, 3), {(0, 0, 1): h, (0, 1, 1): h, (1, 0, 2): h * 2, (0, 1, 2): -k, (0, 2, 2): k}, "christoffel"
         ),
         list=Formulas((len(vector),), {(i,): e for i, e in enumerate(vector)}),
+        numbers=Formulas((len(numbers),), {(i,): e for i, e in enumerate(numbers)}),
         energy=m * v * v / 2,
         nothing=Formulas((2,), {(0,): g.zero}),
         Omega=Formulas((1, 3), {(0, 2): g.one}),
