@@ -25,13 +25,12 @@ MJCF = """<mujoco model="m"><compiler angle="radian" eulerseq="XYZ" settotalmass
 _CORPUS = [
     path.read_bytes() for path in [*urdf_files().values(), *mjcf_files().values()] if path.stat().st_size < 12000
 ]
-SDF = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><pose relative_to="a" degrees="true">
-0 0 1 0 90 0</pose><inertial><pose>0 0 1 0.1 0.2 0</pose><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>
-</inertia></inertial></link>
-<frame name="f" attached_to="b"><pose>0 1 0 0 0 0</pose></frame><joint name="j" type="universal">
-<parent>a</parent><child>b</child><axis><xyz expressed_in="f">1 0 0</xyz>
-<limit><lower>-1</lower><upper>1</upper></limit>
-</axis>
+SDF = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b">
+<pose relative_to="a" degrees="true">0 0 1 0 90 0</pose><inertial><pose>0 0 1 0.1 0.2 0</pose><mass>2</mass>
+<inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
+<frame name="f" attached_to="b"><pose>0 1 0 0 0 0</pose></frame>
+<joint name="j" type="universal"><parent>a</parent><child>b</child>
+<axis><xyz expressed_in="f">1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis>
 <axis2><xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2>
 </joint></model></sdf>"""
 DH = b"""# convention: standard

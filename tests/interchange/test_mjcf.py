@@ -49,7 +49,7 @@ FEATURES = {
     "balanced": ('<compiler balanceinertia="true"/>', '<inertial pos="1 0 0" mass="2" diaginertia="1 1 9"/>'),
     "total mass": ('<compiler settotalmass="7"/>', '<geom size=".1" pos="1 0 0"/>'),
     "hinges": ("", '<geom size=".1"/><joint name="a" pos="1 2 3" axis="1 1 0"/><joint name="b" pos="-1 0 2"/>'),
-    "ref": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" pos="1 0 0" ref="30" springref="40" stiffness="3"/>'),
+    "ref": ("", '<geom size=".1" pos="1 2 0"/><joint name="a" pos="1 0 0" ref="30" springref="40" stiffness="3"/>'),
     "slide with ref": ("", '<geom size=".1"/><joint name="a" type="slide" axis="1 2 3" ref=".3" springref=".1" '
                        'stiffness="3" damping="2" armature=".5"/>'),
     "slide, then hinge": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="slide" axis="1 0 0"/>'
