@@ -29,9 +29,10 @@ Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and act
 
 What leaves as functions of other languages is made by export, on one calling convention (export.interface). Beside
 them stands certificate: what every stored formula has to be, computed from the documents alone
-(certificate.md). Below all of them: printers (programs as text), compile (programs as machine code), mechanics (one
-recursion over any scalar), expr (formulas as graphs and programs), documents (JSON and YAML with exact numbers and
-their units). Further: catalogue (mechanisms with sources), formats (npz, Arrow), client (of the HTTP service).
+(certificate.md). Below all of them: printers (programs as text), textbook (formulas as a person writes them), compile
+(programs as machine code), mechanics (one recursion over any scalar), expr (formulas as graphs and programs),
+documents (JSON and YAML with exact numbers and their units). Further: catalogue (mechanisms with sources), formats
+(npz, Arrow), client (of the HTTP service).
 
 >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
 >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))

@@ -181,3 +181,22 @@ def test_failures_are_null(filled: TestClient) -> None:
     result = evaluate(filled, "singular", quantities=["forces", "metric"], q=[[1], [0], [2]]).json()
     assert result["forces"] == [[1], None, [0.5]]
     assert result["failures"]
+
+
+def test_formulas_for_people(filled: TestClient) -> None:
+    """The textbook form is the default of text and LaTeX, not of JSON; documents and MathML."""
+
+    def got(**query: str) -> str:
+        answer = filled.get("/v1/trees/cell/metric", params=query)
+        assert answer.status_code == 200
+        return answer.text
+
+    assert got(format="text") == got(format="text", form="textbook") != got(format="text", form="compact")
+    assert got() == got(form="compact")
+    assert got(format="latex", document="true") == got(format="latex-document")
+    assert got(format="latex-document").startswith("\\documentclass")
+    assert got(format="text", document="true") == got(format="text")
+    page = filled.get("/v1/trees/cell/metric", headers={"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"})
+    assert page.headers["content-type"] == "application/xhtml+xml; charset=utf-8"
+    assert "<math " in page.text
+    assert filled.get("/v1/trees/cell/metric", params={"form": "pretty"}).status_code == 422

@@ -252,3 +252,16 @@ def test_what_does_not_fit_is_printed_compact_with_the_reason() -> None:
     assert render(quantity("scara", "metric"), "text", "readable") == render(
         quantity("scara", "metric"), "text", "textbook"
     )
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_abbreviations_leave_the_names_of_symbols_alone(taken: bool) -> None:
+    """Where many cosines are written, c2 is cos(q2), unless a parameter is called c2."""
+    graph = Graph()
+    known = {"a": "m", "q2": "rad"} | ({"c2": "m"} if taken else {})
+    exprs = [parse(graph, f"a^{n}*cos(q2)" + "*c2" * taken, graph.symbol) for n in range(1, 31)]
+    symbols = {n: Symbol(n, "coordinate" if n == "q2" else "parameter", unit) for n, unit in known.items()}
+    program = collect(graph, {"f": Formulas((30,), {(k,): e for k, e in enumerate(exprs)})}, symbols)
+    text = render(program, "text", "textbook")
+    assert ("c2 = cos(q2)\n" in text) is not taken
+    assert ("f[3] = a^3*c2*cos(q2)\n" if taken else "f[3] = a^3*c2\n") in text
