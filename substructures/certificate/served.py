@@ -66,6 +66,20 @@ def _kinetic_energy(m: ModelAt) -> Outputs:
     return result
 
 
+def _lagrangian(m: ModelAt) -> Outputs:
+    """T - V."""
+    result = Outputs()
+    result.scalar("lagrangian", m.kinetic_energy() - m.scalar("potential_energy"))
+    return result
+
+
+def _generalised_momenta(m: ModelAt) -> Outputs:
+    """g_ab q'^b."""
+    result = Outputs()
+    vector_of(result, "generalised_momenta", m.momenta())
+    return result
+
+
 def _total_momentum(m: ModelAt) -> Outputs:
     result = Outputs()
     for kind in ("linear", "angular"):
@@ -124,6 +138,8 @@ SERVED: dict[str, Expectation] = {
     "coriolis": _coriolis,
     "inverse_dynamics": _inverse_dynamics,
     "kinetic_energy": _kinetic_energy,
+    "lagrangian": _lagrangian,
+    "generalised_momenta": _generalised_momenta,
     "total_momentum": _total_momentum,
     "inverse_dynamics_derivative": _inverse_dynamics_derivative,
     "forward_dynamics": _forward_dynamics,

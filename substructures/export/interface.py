@@ -39,7 +39,7 @@ _BY_PLACE = ("metric christoffel gravity kinematics position rotation U Omega R 
 _SIGNATURES: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(" ".join(_BY_PLACE).split(), ("q", "p")),
     **dict.fromkeys(("composite", "momentum", "linear_momentum", "angular_momentum"), ("q", "p")),
-    **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum"), ("q", "qd", "p")),
+    **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum", "generalised_momenta"), ("q", "qd", "p")),
     "limits": ("p",),
     "potential_energy": ("t", "q", "p"),
     "forces": ("t", "q", "qd", "u", "p"),

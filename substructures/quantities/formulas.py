@@ -46,6 +46,20 @@ def _kinetic_energy(model: Model, _: int) -> Program:
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
 
+def _generalised_momenta(model: Model, _: int) -> Program:
+    """p_a = g_ab q'^b = dL/dq'^a."""
+    r = Workspace(model)
+    return r.program({"generalised_momenta": Formulas((r.n,), r.times_velocity(r.elements("metric")))})
+
+
+def _lagrangian(model: Model, _: int) -> Program:
+    """L = T - V."""
+    r = Workspace(model)
+    momentum = r.times_velocity(r.elements("metric"))
+    twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
+    return r.program({"lagrangian": Formulas((), {(): twice / 2 - r.scalar("potential_energy")})})
+
+
 def _total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
     r, outputs = Workspace(model), dict[str, Formulas]()
@@ -59,12 +73,18 @@ def _total_momentum(model: Model, _: int) -> Program:
 
 
 #: outputs of the model that quantities are made of, others of the equations of motion
-NEEDS = {"coriolis": ("christoffel",), "total_momentum": ("linear_momentum", "angular_momentum")}
+NEEDS = {
+    "coriolis": ("christoffel",),
+    "lagrangian": ("metric", "potential_energy"),
+    "total_momentum": ("linear_momentum", "angular_momentum"),
+}
 _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "coriolis": _coriolis,
     "inverse_dynamics": _inverse_dynamics,
     "forward_dynamics": derivatives.forward_dynamics,
     "kinetic_energy": _kinetic_energy,
+    "lagrangian": _lagrangian,
+    "generalised_momenta": _generalised_momenta,
     "total_momentum": _total_momentum,
     "inverse_dynamics_derivative": lambda model, _: derivatives.inverse_dynamics_derivative(model),
     "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
@@ -77,6 +97,7 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
+    lagrangian (): T - V [J], of the forces that have a potential; generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a;
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
     total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;

@@ -53,6 +53,8 @@ QUANTITIES: dict[str, Quantity] = {
     **_outputs("inverse_dynamics", "inverse_dynamics", requires=("qdd",)),
     **_forward("forward_dynamics"),
     **_outputs("kinetic_energy", "kinetic_energy"),
+    **_outputs("lagrangian", "lagrangian"),
+    **_outputs("generalised_momenta", "generalised_momenta"),
     "kinematics": Quantity(MODEL, KINEMATICS, KINEMATICS),
     "momentum": Quantity("total_momentum", ("linear", "angular"), ("linear", "angular")),
     **_outputs("inverse_dynamics_derivative", "inverse_dynamics_derivative", requires=("qdd", "along")),

@@ -238,6 +238,26 @@ def test_corners_are_refused_where_derivatives_are_needed() -> None:
     assert raised.value.faults[0].code == "not-smooth"
 
 
+def test_lagrange_equations_from_the_lagrangian() -> None:
+    """d/dt dL/dq'^a - dL/dq^a = Q_a + d_a V along a motion; p_a = dL/dq'^a. All by differences."""
+    model = model_of("arm", *LOADS[1:4], parameters={"k": {"value": 7}})
+    q, qd = np.array([0.3, -0.4, 0.2, 0.9]), np.array([0.5, 0.1, -0.6, 0.4])
+    h = 1e-4
+
+    def lagrangian(x: np.ndarray, v: np.ndarray) -> float:
+        return float(evaluate(model, ["lagrangian"], q=x, qd=v)["lagrangian"])
+
+    def p(x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.asarray(evaluate(model, ["generalised_momenta"], q=x, qd=v)["generalised_momenta"])
+
+    by_rate = [(lagrangian(q, qd + h * e) - lagrangian(q, qd - h * e)) / (2 * h) for e in np.eye(4)]
+    assert np.allclose(p(q, qd), by_rate, atol=1e-7)
+    qdd = evaluate(model, ["forward_dynamics"], q=q, qd=qd)["forward_dynamics"]
+    ends = [p(q + s * qd + s * s / 2 * qdd, qd + s * qdd) for s in (h, -h)]
+    by_place = [(lagrangian(q + h * e, qd) - lagrangian(q - h * e, qd)) / (2 * h) for e in np.eye(4)]
+    assert np.allclose((ends[0] - ends[1]) / (2 * h), by_place, atol=1e-6)
+
+
 def test_picture() -> None:
     spec, parts = tree("arm", load("spring", from_="a.tip", to="b.tip", stiffness=1))
     assert "<polyline" in picture(spec, parts, couple(spec, parts))
