@@ -74,7 +74,8 @@ def render(
 
     In a language it is the function ``name_quantity`` on the calling convention of the ``interface`` that it needs
     (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output.
-    Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name or without an interface.
+    Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name, without an interface,
+    and for a quantity that depends on what its signature does not have.
     """
     if format not in FORMATS:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
@@ -86,6 +87,7 @@ def render(
     if quantity in DERIVED and quantity in program.outputs:  # without what tells whether it could be computed
         program = program.select([quantity])
     function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
+    function.require_signature()
     exported = Exported(check_name(name), interface, (function,), form)
     return text_of(exported, LANGUAGES[format], limit)
 
