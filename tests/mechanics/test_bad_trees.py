@@ -92,7 +92,7 @@ REQUESTS: list[tuple[str, Plain, str, str, str]] = [
     ("no states", {"q": None}, "/q", "missing", "q"),
     ("ragged states", {"q": [[0] * 10, [0]]}, "/q", "wrong-length", ""),
     ("text in a state", {"q": [0] * 9 + ["1"]}, "/q/9", "number-expected", "1"),
-    ("nothing in a state", {"q": [0] * 9 + [None]}, "/q/9", "number-expected", "found None"),
+    ("nothing in a state", {"q": [0] * 9 + [None]}, "/q/9", "number-expected", "found null"),
     ("truth value in a state", {"q": [0] * 9 + [True]}, "/q/9", "number-expected", "True"),
     ("not a number", {"q": [0, float("nan")] + [0] * 8}, "/q/1", "number-not-finite", ""),
     ("infinity in an array", {"qd": np.full((1, 10), np.inf)}, "/qd/0/0", "number-not-finite", ""),

@@ -22,6 +22,7 @@ from substructures.mechanics.composite_form import composites, joint_momentum
 from substructures.mechanics.evaluation_frames import InertialEntries
 from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import Link, base_functions, links, path
+from substructures.mechanics.linear3 import Planar, Rotation, Turn
 from substructures.part import formulas
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.one_piece import derive_in_one_piece
@@ -62,6 +63,17 @@ def test_all_frames_give_the_same_functions(seed: int) -> None:
         other = entries(m, any_frames(rng, chain), values)
         for name, expected in own.items():
             assert np.abs(other[name] - expected).max(initial=0) < 1e-12 * max(1.0, np.abs(expected).max(initial=0))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_matrices_are_turned_from_both_sides(axis: int) -> None:
+    """E^T t E, of a matrix that is not symmetric, about every axis and by factors."""
+    rng = np.random.default_rng(axis)
+    t = rng.uniform(-1, 1, (3, 3))
+    factors = Planar(axis, np.cos(0.7), np.sin(0.7)), Planar((axis + 2) % 3, np.cos(0.4), np.sin(0.4))
+    for rotation in (Rotation(factors[:1]), Rotation(factors), Rotation((Turn(Rotation(factors).matrix()),))):
+        back = np.array(rotation.matrix())
+        assert np.allclose(rotation.back_matrix(tuple(map(tuple, t.tolist()))), back.T @ t @ back, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -139,6 +139,9 @@ def test_wrong_options(double: TestClient, path: str, pointer: str) -> None:
 def test_unknown_quantities_are_told_what_there_is(double: TestClient) -> None:
     answer = double.get("/v1/trees/cell/first_integral")
     assert answer.status_code == 404
+    assert "first_integrals" in answer.json()["detail"]
+    answer = double.get("/v1/trees/cell/xyz")
+    assert answer.status_code == 404
     assert all(name in answer.json()["detail"] for name in ("metric", "first_integrals", "curvature"))
 
 

@@ -73,7 +73,7 @@ def test_all_others_do(
 
 
 @pytest.mark.parametrize(
-    "fault", [{"q": [0.1, 0.2]}, {"qdd": ["x"]}, {"unknown": 1}, {"parameters": {"no": 1}}, {"q": 1}]
+    "fault", [{"q": [[0.1, 0.2]]}, {"qdd": ["x"]}, {"unknown": 1}, {"parameters": {"no": 1}}, {"q": "1"}]
 )
 def test_faults_are_the_same(warm: TestClient, threads: list[object], fault: dict[str, Any]) -> None:
     slow = warm.post(URL, json=STATE | fault)

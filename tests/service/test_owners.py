@@ -54,6 +54,8 @@ LISTED = (200, 200, 200), (200, 200, 200)
 LET_IN = (0, 0, 404), (0, 0, 0)
 FORM: dict[str, Any] = {"name": "{tree}", "gravity": [0, 0, 0], "instances": [{"name": "a", "substructure": "{part}"}]}
 CAMERA = {"name": "b", "substructure": "{part}", "at": "arm.tip"}
+PULL = {"name": "pull", "type": "joint", "coordinate": "arm.q", "force": 2}
+PUSH = {"name": "push", "type": "joint", "coordinate": "arm.q", "force": 1}
 JOB = {"kind": "export", "items": [{"tree": "{tree}", "quantity": "metric", "format": "text"}]}
 PART, TREE, JOBS = "/v1/substructures", "/v1/trees", "/v1/jobs/{job}"
 TABLE: dict[str, Row] = {
@@ -94,6 +96,10 @@ TABLE: dict[str, Row] = {
     "delete /v1/trees/{ref}/couplings/{instance}": Row(
         TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403)
     ),
+    "post /v1/trees/{ref}/loads": Row(TREE + "/{tree}/loads", (201, 403, 404), (201, 403, 403), PUSH),
+    "delete /v1/trees/{ref}/loads/{load}": Row(TREE + "/{tree}/loads/pull", (201, 403, 404), (201, 403, 403)),
+    "get /v1/substructures/{ref}/export": Row(PART + "/{part}@1/export?target=c", *READ),
+    "get /v1/trees/{ref}/export": Row(TREE + "/{tree}@1/export?target=c", *READ),
     "post /v1/trees/{ref}/evaluations": Row(
         TREE + "/{tree}@1/evaluations", *READ, {"quantities": ["metric"], "q": [0.1, 0.2]}
     ),
@@ -101,6 +107,7 @@ TABLE: dict[str, Row] = {
     **{f"post /v1/trees/{{ref}}/{name}": Row(TREE + f"/{{tree}}@1/{name}", *LET_IN, {}) for name in ANALYSES},
     # what a file becomes is stored as by the requests above, whose rows say who may
     "post /v1/imports": Row("/v1/imports", (0, 0, 0), (0, 0, 0), {}),
+    "post /v1/equivalences": Row("/v1/equivalences", (200, 200, 422), (200, 200, 200), {"a": "{part}", "b": "{tree}"}),
     "get /v1/jobs": Row("/v1/jobs", *LISTED),
     "post /v1/jobs": Row("/v1/jobs", (202, 403, 422), (202, 403, 202), JOB),
     "get /v1/jobs/{job}": Row(JOBS, *READ),
@@ -153,7 +160,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> World:
                 part = {**PENDULUM, "name": name, "title": name, "visibility": visibility}
                 eye = {"name": "eye", "substructure": name, "at": "arm.tip"}
                 arm = {"name": "arm", "substructure": name}
-                tree = {"name": f"{name}-cell", "visibility": visibility, "instances": [arm, eye]}
+                tree = {"name": f"{name}-cell", "visibility": visibility, "instances": [arm, eye], "loads": [PULL]}
                 for address, body in ((PART, part), (TREE, {**tree, "gravity": [0, 0, 0]})):
                     assert client.post(address, json=body, headers=acme).status_code == 201
                 alias = client.put(f"{PART}/{name}/aliases/best", json={"version": 1}, headers=acme)
