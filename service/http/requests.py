@@ -148,9 +148,14 @@ def _too_long(limit: int) -> Refused:
 RawBody = Annotated[bytes, Depends(raw_body)]
 
 
+def declared_type(request: Request) -> str:
+    """The media type of the request body, without parameters."""
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
 def media_type(request: Request) -> str:
-    """The media type of the request body, without parameters; that of a form that brings JSON is JSON's."""
-    sent = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    """As :func:`declared_type`, but JSON's for a form that brings JSON."""
+    sent = declared_type(request)
     return JSON if sent == forms.MEDIA_TYPE and not _is_of_page(request) else sent
 
 

@@ -10,7 +10,7 @@ from service.addresses import tree_path, version_path
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
-from service.http.requests import RawBody, StoreOf, media_type, needs
+from service.http.requests import RawBody, StoreOf, declared_type, needs
 from service.operations import catalogue, imports, trees
 from service.refusals import Refused
 from service.routes.bodies import binary
@@ -46,7 +46,7 @@ def read_file(
     stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
 ) -> Response:
     """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
-    if media_type(request) not in MEDIA_TYPES:
+    if declared_type(request) not in MEDIA_TYPES:
         accepted = ", ".join(MEDIA_TYPES)
         raise Refused(415, "unsupported-media-type", f"send one of {accepted}", headers={"Accept": accepted})
     options = Options(parameters, fixed, base)

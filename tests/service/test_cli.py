@@ -94,7 +94,7 @@ def test_errors_of_the_surroundings(
     assert "nothing.json: No such file" in capsys.readouterr().err
     (tmp_path / "a.json").write_text("{}")
     assert main(["submit", str(tmp_path / "a.json"), "--server", "http://127.0.0.1:9"]) == 1
-    assert "no answer from the server" in capsys.readouterr().err
+    assert "nothing answers at http://127.0.0.1:9; start it with 'substructures serve'" in capsys.readouterr().err
     assert main(["serve", "--database", "mysql://x"]) == 1
     assert "mysql" in capsys.readouterr().err
     address = f"sqlite:///{tmp_path / 'x.db'}"

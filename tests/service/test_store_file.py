@@ -82,7 +82,7 @@ def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
     with closing(sqlite3.connect(path)) as connection:
         size = connection.execute("PRAGMA page_size").fetchone()[0]
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-        root = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'formulas'").fetchone()[0]
+        root = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'parts'").fetchone()[0]
     content = bytearray(path.read_bytes())
     content[(root - 1) * size + 8 : root * size] = os.urandom(size - 8)
     path.write_bytes(content)

@@ -190,6 +190,9 @@ def test_an_instance_may_be_called_t(filled: TestClient) -> None:
     # tau + 3 t - k x
     assert filled.post("/v1/trees/clock/evaluations", json=request).json()["forces"] == [5.0]
     text = filled.get("/v1/trees/clock/forces", params={"format": "text"}).text
+    assert "are of instance t\n" in text
+    assert "forces[1] = tau_x + 3*t - k*x\n" in text
+    text = filled.get("/v1/trees/clock/forces", params={"format": "text", "form": "compact"}).text
     assert "forces[1] = 3*t + tau.t.x - t.k*t.x" in text
     motion = {"q": [0], "span": [0, 1], "parameters": {"t.k": 0}, "inputs": {"tau.t.x": "t.x' - t.x'"}}
     found = filled.post("/v1/trees/clock/simulations", json=motion).json()
