@@ -72,7 +72,8 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
 
 
 def _upload() -> list[Html]:
-    label = "A robot file of yours (URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO): it is read, derived and stored, and every remark is told"
+    kinds = "URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO"
+    label = f"A robot file of yours ({kinds}): it is read, derived and stored, and every remark is told"
     chosen = tag("input", id="file", type="file", accept=".urdf,.xml,.mjcf,.sdf,.csv,.json,.par", aria_label=label)
     return [tag("h2", "Bring a robot"), tag("p", label, ". ", chosen), tag("ul", id="report", role="status")]
 

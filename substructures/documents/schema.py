@@ -18,6 +18,8 @@ from substructures.errors import Fault, InvalidDocument, listed, meant
 SHOWN = 80
 #: lists of lists that a value may stand alone for
 NESTED = 3
+#: values that are put into lists of one
+MOST_LISTED = 200
 
 
 class DocumentPart(BaseModel):
@@ -84,7 +86,11 @@ def read_model(model: type[M], data: Any, *, stored: bool = False, context: Mapp
 
 
 def _lists_of_one(error: ValidationError, data: Any) -> Any:
-    """The data with lists of one in the places where one is expected and a value stands alone."""
+    """The data with lists of one in the places where one is expected and a value stands alone; as they are where these
+    are more than MOST_LISTED, since every one of them is a copy.
+    """
+    if error.error_count() > MOST_LISTED:
+        return data
     for each in error.errors(include_url=False):
         if each["type"] in ("tuple_type", "list_type") and isinstance(
             each["input"], str | int | Decimal | float | Mapping
@@ -134,7 +140,7 @@ def message_of(error: Mapping[str, Any], model: type[BaseModel] | None = None) -
     if "below" in error.get("ctx", ()):
         return str(error["msg"])
     if kind == "model_type" and model is not None:
-        fields = model.model_json_schema().get("$defs", {}).get(error["ctx"]["class_name"], {}).get("properties", ())
+        fields = _schema(model).get("$defs", {}).get(error["ctx"]["class_name"], {}).get("properties", ())
         return f"an object is needed, with {listed(fields)}{_found(given)}"
     if kind in _EXPECTED:
         return f"{_EXPECTED[kind]}{_found(given)}"
@@ -156,9 +162,15 @@ PATTERNS: dict[str, Callable[[str], str]] = {}
 
 
 @cache
+def _schema(model: type[BaseModel]) -> dict[str, Any]:
+    """The JSON schema of a document, which takes milliseconds to make."""
+    return model.model_json_schema()
+
+
+@cache
 def _field_names(model: type[BaseModel]) -> tuple[str, ...]:
     """The names of all fields of a document, wherever they stand."""
-    schema = model.model_json_schema()
+    schema = _schema(model)
     parts = [schema, *schema.get("$defs", {}).values()]
     return tuple(dict.fromkeys(name for part in parts for name in part.get("properties", ())))
 

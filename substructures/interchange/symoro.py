@@ -75,7 +75,7 @@ class _Reader:
 
     def _count(self, name: str) -> int:
         text = self.lists.get(name, [""])[0]
-        if not text.isdigit() or not 1 <= int(text) <= _MOST_LINKS:
+        if not re.fullmatch("[0-9]{1,6}", text) or not 1 <= int(text) <= _MOST_LINKS:
             raise refuse(self.place(name), "bad-number", f"{name} has to be a number from 1 to {_MOST_LINKS}")
         return int(text)
 
@@ -107,9 +107,9 @@ class _Reader:
 
     def _parent(self, k: int) -> str:
         text = self.entry("ant", k, None)
-        if not text.isdigit() or not 0 <= int(text) <= k:
+        if not re.fullmatch("[0-9]{1,6}", text) or not 0 <= int(text) <= k:
             raise refuse(self.place("ant", k), "cycle", f"'{text[:20]}' is no number of a link before link {k + 1}")
-        return "base" if text == "0" else f"link{text}"
+        return f"link{int(text)}" if int(text) else "base"
 
     def _body(self, k: int) -> dict[str, Any]:
         kind = {"0": "revolute", "1": "prismatic", "2": "fixed"}.get(self.entry("sigma", k, None))

@@ -134,6 +134,7 @@ BAD = {
     "type": (MODIFIED.replace("q2,R", "q2,X", 1), "line 6: row: type 'x' is none of"),
     "loops": (SYMORO.replace("NF = 3", "NF = 4"), "line 4: NF: 4 frames of 3 links: loops are not read"),
     "ant": (SYMORO.replace("{0,1,2}", "{0,1,7}"), r"line 5: ant\[3\]: '7' is no number of a link before link 3"),
+    "digits": (SYMORO.replace("{0,1,2}", "{0,1,\u00b92}"), r"line 5: ant\[3\]: '.*2' is no number of a link"),
     "sigma": (SYMORO.replace("{0,0,1}", "{0,0,5}"), r"line 6: sigma\[3\]: sigma is 0"),
     "expression": (SYMORO.replace("0.203", "eval(1)"), r"line 16: YY\[1\]: 'eval\(1\)'"),
     "short": (SYMORO.replace("d = {0,0.05,0.4}", "d = {0,0.05}"), r"line 8: d\[3\]: the list 'd' has no entry 3"),
