@@ -22,6 +22,7 @@ from substructures.quantities.states import longest
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time
+WHOLE = 16  # parts that an npz answer may have to be made in one piece, which is quicker where there are few cores
 _KNOWN = ", ".join(MEDIA_TYPES)
 _EXTRA = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use application/x-npz"
 
@@ -83,7 +84,7 @@ class TreeEvaluation:
     def _npz(self, arguments: Mapping[str, Any]) -> Answer | Stream:
         """The answer as npz: as a whole where it is small, otherwise sent while it is computed."""
         count = longest(arguments)
-        if count <= self._size_of_part(arguments):
+        if count <= WHOLE * self._size_of_part(arguments):
             file = arrays.as_npz(self._evaluated(arguments).plain(self.digest))
             return Stream(iter(file.pieces), {"Content-Type": arrays.MEDIA_TYPE, "Content-Length": str(file.size)})
         parts = self._in_parts(arguments, told_first=True)

@@ -77,6 +77,7 @@ def test_every_reader_gets_all_in_order(tmp_path: Path, monkeypatch: pytest.Monk
 
     monkeypatch.setattr(chunks, "_pushed", noted)
     monkeypatch.setattr(exchange, "PART", 2**21)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     q = np.random.default_rng(0).uniform(-3, 3, (60_000, 1))
     body = b"".join(write_npz({"q": q, "quantities": np.array(NAMES)}).pieces)
     settings = Settings(database=f"sqlite:///{tmp_path}/store.db", catalogue=False)

@@ -72,6 +72,7 @@ def test_warnings_in_arrow_whatever_the_parts(ball: TestClient, monkeypatch: pyt
     tables = []
     for size in (10**9, 1):
         monkeypatch.setattr(exchange, "PART", size)
+        monkeypatch.setattr(exchange, "WHOLE", 1)
         tables.append(pa.ipc.open_stream(post(ball, body).content).read_all())
     whole, cut = (table["warnings"].to_pylist() for table in tables)
     assert [text is None for text in whole] == [True, False, True, True]

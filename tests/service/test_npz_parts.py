@@ -53,8 +53,10 @@ def test_every_reader_reads_it(double: TestClient, monkeypatch: pytest.MonkeyPat
     body = sent(q, **{"parameters.arm.m": np.where(np.arange(10_000) % 4000, 1.0, 1e308)})
     double.post("/v1/trees/cell/kernels", json={"quantities": NAMES})
     monkeypatch.setattr(exchange, "PART", 2**30)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     whole = post(double, body)
     monkeypatch.setattr(exchange, "PART", 2**18)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     cut = post(double, body)
     assert (whole.headers["content-length"], "content-length" in cut.headers) == (str(len(whole.content)), False)
     expected, found = (read_npz(io.BytesIO(x.content), 2**26) for x in (whole, cut))
@@ -75,6 +77,7 @@ def test_every_reader_reads_it(double: TestClient, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize("size", [2**30, 2**12])
 def test_packed_and_single_in_all_formats(double: TestClient, monkeypatch: pytest.MonkeyPatch, size: int) -> None:
     monkeypatch.setattr(exchange, "PART", size)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     q = np.random.default_rng(1).uniform(-3, 3, (50, 2))
     dense, body = read_npz(io.BytesIO(post(double, sent(q)).content), 2**26), sent(q, packed=True, float32=True)
     npz = read_npz(io.BytesIO(post(double, body).content), 2**26)
@@ -118,6 +121,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     monkeypatch.setattr(exchange, "evaluate_in_parts", counted)
     monkeypatch.setattr(exchange, "PART", 2**20)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     return counts
 
 

@@ -73,6 +73,7 @@ def test_parts_make_the_same_answer(filled: TestClient, monkeypatch: pytest.Monk
     answers = []
     for size in (10**9, 2000):
         monkeypatch.setattr(exchange, "PART", size)
+        monkeypatch.setattr(exchange, "WHOLE", 1)
         answer = post(filled, packed.getvalue(), sent="application/x-npz", accept="application/x-npz")
         tables = post(filled, packed.getvalue(), sent="application/x-npz")
         table = pa.ipc.open_stream(tables.content).read_all()
@@ -91,6 +92,7 @@ def test_parts_make_the_same_answer(filled: TestClient, monkeypatch: pytest.Monk
 
 def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(exchange, "PART", 80)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     q = np.zeros((40, 1)).tolist()
     for wrong, pointer in (
         ({"qd": q[:10]}, "/qd"),
@@ -111,6 +113,7 @@ def test_wrong_lengths_are_found_before_anything_is_cut(filled: TestClient, monk
 def test_one_position_and_many_velocities(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of states is that of the longest list in every format, also where the last part has one state."""
     monkeypatch.setattr(exchange, "PART", 10 * 8 * 2)
+    monkeypatch.setattr(exchange, "WHOLE", 1)
     qd, quantities = np.linspace(-1, 1, 41), ["metric", "kinetic_energy"]
     expected = filled.post(URL, json={"quantities": quantities, "q": [[0.3]] * 41, "qd": qd[:, None].tolist()}).json()
     found = filled.post(URL, json={"quantities": quantities, "q": [0.3], "qd": qd[:, None].tolist()}).json()

@@ -234,6 +234,7 @@ def test_warnings_of_all_batches_are_in_streams(filled: TestClient, monkeypatch:
     assert [each["code"] for each in whole] == codes
     for size in (10**9, 1):
         monkeypatch.setattr(exchange, "PART", size)
+        monkeypatch.setattr(exchange, "WHOLE", 1)
         tables = list(read_tables(BytesIO(post(filled, body).content)))
         told = [each for table in tables for each in table["warnings"]]
         assert told[0] == whole[0]  # said once
