@@ -27,9 +27,10 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
-def curl(command: str, address: str) -> str:
-    """Run one curl command of the README against another address; anything but 2xx fails."""
+def curl(command: str, address: str, folder: Path) -> str:
+    """Run one curl command of the README against another address, files go to the folder; anything but 2xx fails."""
     words = [word.replace(ADDRESS, address) for word in shlex.split(command)]
+    words = [str(folder / word) if before == "-o" else word for before, word in zip(["", *words], words, strict=False)]
     done = subprocess.run([*words, "--fail-with-body"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -49,8 +50,9 @@ def test_requests_in_order(tmp_path: Path) -> None:
     requests = [line for block in blocks("sh") for line in re.split(r"\n(?=curl)", block.strip()) if line[:4] == "curl"]
     assert len(requests) >= 6
     with background(Settings(database=f"sqlite:///{tmp_path / 'readme.db'}")) as address:
-        answers = [curl(request, address) for request in requests]
+        answers = [curl(request, address, tmp_path) for request in requests]
         shape = run(blocks("python")[0].replace(ADDRESS, address), tmp_path)
+    assert (tmp_path / "cell.zip").read_bytes()[:2] == b"PK"
     assert '"cell"' in answers[0]
     assert "metric[1, 1]" in answers[1]
     assert '"revision":2' in next(answer for answer in answers if '"arm","eye"' in answer or '"eye"' in answer)
