@@ -19,5 +19,5 @@ def unpack(content: bytes) -> bytes:
     """The canonical bytes of a packed program. Raises ValueError for what is none."""
     try:
         return zlib_ng.decompress(content)
-    except zlib_ng.error as error:  # type: ignore[misc]
+    except zlib_ng.error as error:  # type: ignore[misc]  # its stubs do not say that it is an exception
         raise ValueError(str(error)) from None

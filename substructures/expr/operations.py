@@ -76,6 +76,14 @@ def images(index: tuple[int, ...], symmetry: str) -> Sequence[tuple[tuple[int, .
     return found
 
 
+def flat(index: Sequence[int], shape: Sequence[int]) -> int:
+    """Position in row-major order."""
+    result = 0
+    for i, size in zip(index, shape, strict=True):
+        result = result * size + i
+    return result
+
+
 def operands(operation: Operation) -> tuple[int, ...]:
     """The entries an operation refers to."""
     op = operation[0]

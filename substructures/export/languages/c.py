@@ -16,7 +16,7 @@ from substructures.export.interface import ORDER
 from substructures.export.languages.code import Code, head, indented
 from substructures.export.languages.pieces import Pieces, split
 from substructures.export.reference import Reference
-from substructures.expr.program import Output
+from substructures.expr.operations import Output, flat
 from substructures.printers.language import Listing, Piece
 
 #: elements of arrays whose dependent ones are copied by loops
@@ -100,14 +100,6 @@ class C(Code):
         names = ", ".join([*self.function.arguments, *self.variables.values(), "w"])
         calls = [f"{self.called}_{k + 1}({names});" for k in range(len(pieces.bodies))]
         return [f"double w[{max(1, pieces.slots)}]; // the stack: {8 * pieces.stack} bytes at most", *calls]
-
-
-def flat(index: tuple[int, ...], shape: tuple[int, ...]) -> int:
-    """Position in row-major order."""
-    result = 0
-    for i, size in zip(index, shape, strict=True):
-        result = result * size + i
-    return result
 
 
 def _apart(v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], list[str]]:

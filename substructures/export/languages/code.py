@@ -72,7 +72,7 @@ class Code(Language):
         return [f"{cls.mark} {line}".rstrip() for line in lines]
 
     @classmethod
-    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003 -- for languages that have one
         """Files of a program that compares with reference values, prints ``ok`` or what differs; none by default."""
         return {}
 
@@ -101,7 +101,7 @@ class Code(Language):
         array, v = self.program.outputs[output], self.variables[output]
         return list(assignments(array, listing.entries[output], lambda index: self.place(v, array, index)))
 
-    def place(self, variable: str, array: Output, index: tuple[int, ...]) -> str:  # noqa: ARG002
+    def place(self, variable: str, array: Output, index: tuple[int, ...]) -> str:  # noqa: ARG002 -- for languages with flat arrays
         """An element of an output."""
         opening, closing = self.brackets
         return f"{variable}{opening}{', '.join(str(i + self.first) for i in index)}{closing}" if index else variable

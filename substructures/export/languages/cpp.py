@@ -10,9 +10,10 @@ from math import isnan, prod
 from typing import ClassVar
 
 from substructures.export.exported import Exported
-from substructures.export.languages.c import C, flat
+from substructures.export.languages.c import C
 from substructures.export.languages.code import head, indented
 from substructures.export.reference import Reference
+from substructures.expr.operations import Output, flat
 from substructures.printers.language import Listing, Piece
 
 _USING = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "sqrt", "abs", "pow")
@@ -80,9 +81,9 @@ class Cpp(C):
         opening = f"{result} {self.called}({', '.join(arguments)})"
         return [*lines, "template <class T = double>", opening, "{", *indented([*body, "return result;"]), "}"]
 
-    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:
+    def place(self, variable: str, array: Output, index: tuple[int, ...]) -> str:
         """An element of a flat array, or the number itself."""
-        return super().place(variable, array, index) if index else variable  # type: ignore[arg-type]
+        return super().place(variable, array, index) if index else variable
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:

@@ -13,11 +13,11 @@ from math import isnan, prod
 from typing import ClassVar
 
 from substructures.export.exported import Exported
-from substructures.export.languages.c import C, argument, flat
+from substructures.export.languages.c import C, argument
 from substructures.export.languages.code import head, indented
 from substructures.export.languages.pieces import LENGTH, Pieces, split
 from substructures.export.reference import Reference
-from substructures.expr.operations import Output
+from substructures.expr.operations import Output, flat
 from substructures.printers.language import Listing
 
 _USE = (
@@ -88,7 +88,7 @@ class Cuda(C):
         return "\n".join([*lines, text])
 
     @classmethod
-    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003
+    def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:  # noqa: ARG003 -- of the base
         """None: it would need a device."""
         return {}
 

@@ -17,7 +17,7 @@ from substructures.export.webassembly import encoding as wasm
 from substructures.export.webassembly.encoding import F64, I32, Body
 from substructures.export.webassembly.sincos import sincos
 from substructures.export.webassembly.straight import HOST, PART, Places, hosted, straight
-from substructures.expr.operations import Output
+from substructures.expr.operations import Output, flat
 from substructures.expr.program import Program
 
 #: address of the first byte that is used: 0 stays an address of nothing
@@ -237,12 +237,4 @@ def _dependent(output: Output) -> dict[int, list[tuple[int, int]]]:
             source = 8 * flat(index, output.shape)
         else:
             result[sign].append((8 * flat(index, output.shape), source))
-    return result
-
-
-def flat(index: Sequence[int], shape: Sequence[int]) -> int:
-    """Position in row-major order."""
-    result = 0
-    for i, size in zip(index, shape, strict=True):
-        result = result * size + i
     return result
