@@ -8,7 +8,9 @@ kinds               which format a file has, and its reader
 urdf, mjcf, sdf     readers of XML formats, all to ``robot.Robot``
 tables, symoro      readers of rows of Denavit-Hartenberg parameters, straight to definitions
 robot, merge        links on parents with motions between them; links that do not move against each other as one
+bindings            coordinates that follow others: mimic joints
 as_part, names      a robot as the definition of a substructure; names of files as names of definitions
+cut                 a robot that is cut at named links as several definitions and a tree
 equivalence         whether two models are the same; ``culprits``: which body and parameter is not
 xml, numbers        elements with their lines and exact numbers; ``rotations`` and inertias as doubles
 ==================  ================================================================================================

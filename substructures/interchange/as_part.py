@@ -95,7 +95,7 @@ class _Builder:
             self.robot.report.warning(self.robot.links[0].place, message, "topology")
         if len(self.bodies) > MAX_BODIES:
             first = list(self.bodies.values())[MAX_BODIES]
-            message = f"{len(self.bodies)} bodies; a part has at most {MAX_BODIES}: cut the mechanism into several"
+            message = f"{len(self.bodies)} bodies; a part has at most {MAX_BODIES}: cut it into several (cut=LINK)"
             raise refuse(first.place, "too-many-bodies", message)
         self.symbols = Names(self.joints.given.values())
         self.symbols_taken()
@@ -245,8 +245,7 @@ class _Builder:
         return name
 
     def _binding(self, mimic: Mimic) -> dict[str, Any]:
-        own, of = self.joints.of(mimic.joint), self.joints.of(mimic.of)
-        return {"coordinate": own, "of": of, "multiplier": mimic.multiplier, "offset": mimic.offset}
+        return mimic.plain(self.joints.of(mimic.joint), self.joints.of(mimic.of))
 
 
 def _placement(seat: Seat) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """Whether two models are the same: formulas with all parameters free, numbers at random states otherwise.
 
-Metric, gravity and velocity forces and all forces are compared; a different split of masses over links that the
-equations of motion do not see is no difference (base parameters). Where numbers differ, the culprits are looked for
+Metric, gravity and velocity forces, all forces and the equations of closures are compared, these row by row; a
+different split of masses over links that the equations of motion do not see is no difference (base parameters). Where
+numbers differ, the culprits are looked for
 
 * among the screws of the joints where all coordinates are zero (axis, place);
 * among the ten inertial numbers of the bodies that a coordinate carries, up to what Y(q, q', q'') does not see
@@ -11,6 +12,7 @@ equations of motion do not see is no difference (base parameters). Where numbers
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,12 +24,14 @@ from substructures.errors import InvalidArgument, InvalidInput, listed
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.replay import replay
 from substructures.interchange.culprits import Culprit, culprits
-from substructures.interchange.sides import Side
+from substructures.interchange.sides import CLOSURES, Side
 
 QUANTITIES = ("metric", "gravity", "bias", "forces")
 #: relative difference of numbers that are equal
 TOLERANCE = 1e-9
 STATES = 4
+#: of the largest element of the metric: forces are compared relative to no less
+_CANCELLING = 1e-4
 
 
 @dataclass(frozen=True)
@@ -61,11 +65,18 @@ def equivalence(a: Side, b: Side, coordinates: Mapping[str, str] | None = None) 
     if a.model.dof != b.model.dof:
         told = {"quantity": "coordinates", "a": list(a.names), "b": list(b.names)}
         return Equivalence(False, "values", {}, told, ())
+    rows = [[row for closure in side.model.closures for row in closure.rows] for side in (a, b)]
+    if rows[0] != rows[1]:
+        told = {"quantity": "closures", "a": rows[0], "b": rows[1]}
+        return Equivalence(False, "values", {}, told, ())
     order = _order(a, b, coordinates or {})
     formulas = _formulas(a, b, order)
     rng = np.random.default_rng(1)
     values = _open_parameters(a, b, rng)
-    found = [_Difference.of(name, *sides) for name, sides in _numbers(a, b, order, values, rng).items()]
+    numbers = _numbers(a, b, order, values, rng)
+    # what cancels has no scale of its own: rates are about 1 here, so that the metric gives one
+    least = _CANCELLING * max(float(np.abs(x).max(initial=0)) for x in numbers["metric"][:2])
+    found = [_Difference.of(name, *sides, 0 if name in CLOSURES else least) for name, sides in numbers.items()]
     quantities = {d.name: {"formulas": formulas.get(d.name), "error": d.error} for d in found}
     if all(d.error <= TOLERANCE for d in found):
         level = "formulas" if formulas and all(formulas.values()) else "values"
@@ -77,7 +88,8 @@ def equivalence(a: Side, b: Side, coordinates: Mapping[str, str] | None = None) 
 def _order(a: Side, b: Side, given: Mapping[str, str]) -> list[int]:
     """Of every coordinate of a the number of the one in b."""
     unknown = [*(x for x in given if x not in a.names), *(x for x in given.values() if x not in b.names)]
-    wanted = [given.get(name, name) for name in a.names]
+    matched = _by_last_names(a.names, b.names)
+    wanted = [given.get(name, name if name in b.names else matched.get(name, name)) for name in a.names]
     missing = [name for name in wanted if name not in b.names]
     if unknown or missing or len(set(wanted)) < len(wanted):
         message = (
@@ -86,6 +98,14 @@ def _order(a: Side, b: Side, given: Mapping[str, str]) -> list[int]:
         )
         raise InvalidArgument.at("/coordinates", "unknown-coordinate", message)
     return [b.names.index(name) for name in wanted]
+
+
+def _by_last_names(ours: Sequence[str], theirs: Sequence[str]) -> dict[str, str]:
+    """Coordinates that are called the same but for their instances, where no two of a side are: arm.q1 and q1."""
+    last = [Counter(name.rpartition(".")[2] for name in names) for names in (ours, theirs)]
+    found = {name.rpartition(".")[2]: name for name in theirs}
+    tails = {name: name.rpartition(".")[2] for name in ours}
+    return {name: found[tail] for name, tail in tails.items() if last[0][tail] == last[1][tail] == 1}
 
 
 def _formulas(a: Side, b: Side, order: list[int]) -> dict[str, bool]:
@@ -144,6 +164,9 @@ def _numbers(
         other = np.asarray(theirs[name], dtype=float)[:, order]
         other = other[:, :, order] if name == "metric" else other
         result[name] = np.asarray(ours[name], dtype=float), other, states
+    loops = a.closures(values, states["q"]), b.closures(values, states["q"][:, place])
+    for name, rows in loops[0].items():
+        result[name] = rows, loops[1][name][:, :, order] if name == "closure.jacobian" else loops[1][name], states
     return result
 
 
@@ -159,19 +182,20 @@ class _Difference:
     state: dict[str, list[float]]
 
     @classmethod
-    def of(cls, name: str, ours: Array, theirs: Array, states: dict[str, Array]) -> _Difference:
-        """Of both sides at some states. Raises InvalidInput where a number is not finite."""
+    def of(cls, name: str, ours: Array, theirs: Array, states: dict[str, Array], least: float) -> _Difference:
+        """Of both sides at some states, relative to ``least`` at least. Raises InvalidInput for what is not finite."""
         if not (np.isfinite(ours).all() and np.isfinite(theirs).all()):
             raise InvalidInput.at("", "not-finite", f"'{name}' is not finite at a random state")
         if not ours.size:
             return cls(name, 0.0, (), 0.0, 0.0, {})
         apart = np.abs(ours - theirs)
         at = tuple(int(i) for i in np.unravel_index(int(apart.argmax()), apart.shape))
-        scale = max(float(np.abs(ours).max()), float(np.abs(theirs).max()), 1e-12)
+        scale = max(float(np.abs(ours).max()), float(np.abs(theirs).max()), least, 1e-12)
         state = {key: [float(x) for x in values[at[0]]] for key, values in states.items()}
         return cls(name, float(apart[at]) / scale, at[1:], float(ours[at]), float(theirs[at]), state)
 
     def plain(self, names: Sequence[str]) -> dict[str, Any]:
         """As JSON data."""
-        index = [names[i] for i in self.index]
+        is_row = self.name.startswith("closure.")
+        index = [f"row {i}" if is_row and not k else names[i] for k, i in enumerate(self.index)]
         return {"quantity": self.name, "index": index, "a": self.a, "b": self.b, "at": self.state}

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Options, PartOfFile, as_part
+from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
+from substructures.interchange.cut_rows import cut_rows
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
-from substructures.interchange.numbers import ORIGIN
 from substructures.interchange.robot import Robot
 
 #: most characters of the name of a file that are kept
@@ -21,7 +23,8 @@ _LONGEST = 200
 class Imported:
     """A definition as plain data, and what its reader has to say.
 
-    ``tree``: where the file has loops, the definition as its instance ``robot``, closures and the file's gravity.
+    ``tree``: where the file has loops, the definition as its instance ``robot``, closures and the file's gravity; where
+    it was cut, a part for every link that was named, mounted on the others.
 
     ``report``: remarks with place and level; ``checks``: of form, topology and physics, whether there are warnings;
     ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints.
@@ -56,23 +59,44 @@ def import_file(
     file: str = "",
     license_of_file: str = "",
     included: Mapping[str, bytes] | None = None,
+    cut: Sequence[str] = (),
 ) -> Imported:
     """Read a robot file as a definition; nothing is stored.
 
     ``kind``: of the file, default by its content; ``name``: of the part, default the robot's; ``file``: its name, kept
-    with the digest in ``source``; ``included``: contents of the files that an MJCF file
-    includes, by their names there. Raises InvalidDocument with line and element for what cannot be read.
+    with the digest in ``source``; ``included``: contents of the files that an MJCF file includes, by their names there;
+    ``cut``: links that begin parts of their own in a tree. Raises InvalidDocument with line and element for what cannot
+    be read, InvalidArgument for links that are not there.
     """
     rows = read_rows(data, kind, options.parameters != "none")
     if rows is not None:
-        definition = _told(rows[1], rows[0], data, file, license_of_file)
-        definition |= {} if name is None else {"name": library_name(name)}
-        return Imported(rows[0], definition, None, rows[2].plain(), rows[2].checks(), {}, [])
+        definition = rows[1] | ({} if name is None else {"name": library_name(name)})
+        tree = cut_rows(definition, cut) if cut else None
+        for each in [] if tree is None else tree["instances"]:
+            each["definition"] = _told(each["definition"], rows[0], data, file, license_of_file)
+        definition = _told(definition, rows[0], data, file, license_of_file)
+        return Imported(rows[0], definition, tree, rows[2].plain(), rows[2].checks(), {}, [])
     found, robot = read_robot(data, kind, included)
+    if cut:
+        made = cut_robot(robot, cut, options, name)
+        for instance in made.tree["instances"]:
+            instance["definition"] = _told(instance["definition"], found, data, file, license_of_file)
+        main, report = made.tree["instances"][0]["definition"], robot.report
+        return Imported(found, main, made.tree, report.plain(), report.checks(), made.names, made.bindings)
     part = as_part(robot, options, name)
     definition = _told(part.definition, found, data, file, license_of_file)
     tree, report = _tree(robot, part, definition), robot.report
     return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings)
+
+
+def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A definition or tree as it is; of ``{"file": text, "kind": ...}`` what is read of it. Raises InvalidDocument."""
+    if "file" not in given:
+        return given
+    if set(given) - {"file", "kind"} or not isinstance(given["file"], str):
+        raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
+    read = import_file(given["file"].encode("utf-8", "replace"), kind=given.get("kind"))
+    return read.definition if read.tree is None else read.tree
 
 
 def _told(document: dict[str, Any], kind: str, data: bytes, file: str, license_of_file: str) -> dict[str, Any]:
@@ -89,12 +113,15 @@ def _tree(robot: Robot, part: PartOfFile, definition: dict[str, Any]) -> dict[st
         return None
     closures = []
     for loop, (start, end) in zip(robot.loops, part.loop_ports, strict=True):
-        closure: dict[str, Any] = {"name": part.names[f"loop {loop.name}"], "type": loop.kind, "from": f"robot.{start}"}
+        closure: dict[str, Any] = {
+            "name": part.names[f"loop {loop.name}"],
+            "type": loop.kind,
+            "from": f"{MAIN}.{start}",
+        }
         if end is None:
             closure["placement"] = {"position": list(loop.other_position), "rpy": list(loop.other_rpy)}
         else:
-            closure["to"] = f"robot.{end}"
+            closure["to"] = f"{MAIN}.{end}"
         closures.append(closure)
-    gravity = list(robot.gravity or ORIGIN)
-    instance = {"name": "robot", "definition": definition}
-    return {"name": definition["name"], "gravity": gravity, "instances": [instance], "closures": closures}
+    instance = {"name": MAIN, "definition": definition | {"name": part_name(definition["name"], MAIN)}}
+    return {"name": definition["name"], **gravity_of(robot), "instances": [instance], "closures": closures}

@@ -26,6 +26,8 @@ _ROOTS: Mapping[str, tuple[str, Reader]] = {
     "mujoco": ("mjcf", read_mjcf),
     "sdf": ("sdf", lambda root, _: read_sdf(root)),
 }
+#: most bytes of what is no XML: 200 rows with long expressions
+MAX_ROWS = 2**20
 KINDS = ("urdf", "mjcf", "sdf", "dh", "par")
 
 
@@ -51,6 +53,9 @@ def _is_table(data: bytes) -> bool:
 
 def read_rows(data: bytes, kind: str | None = None, symbolic: bool = True) -> tuple[str, dict[str, Any], Report] | None:
     """Kind, definition and report of a DH table or a SYMORO file; None for XML. Raises InvalidDocument."""
+    is_rows = kind in ("par", "dh") or (kind is None and not is_xml(data) and (is_par(data) or _is_table(data)))
+    if is_rows and len(data) > MAX_ROWS:
+        raise InvalidDocument.at("", "too-large", f"the file has {len(data):,} bytes; the limit is {MAX_ROWS:,}")
     if kind == "par" or (kind is None and is_par(data) and not is_xml(data)):
         return "par", *read_par(data)
     if kind == "dh" or (kind is None and _is_table(data)):

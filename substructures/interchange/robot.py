@@ -78,6 +78,13 @@ class Mimic:
     offset: Number
     place: Place
 
+    def plain(self, coordinate: str, of: str) -> dict[str, object]:
+        """As JSON data, with the names that both coordinates have here, and as a constraint q' - k q_of' = 0."""
+        expression = f"{coordinate}' - ({self.multiplier})*{of}'"
+        constraint = {"type": "linear", "name": coordinate.replace(".", "_"), "expression": expression}
+        told = {"coordinate": coordinate, "of": of, "multiplier": self.multiplier, "offset": self.offset}
+        return {**told, "constraint": constraint}
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -113,7 +120,13 @@ class Robot:
 def in_order(links: list[Link]) -> tuple[Link, ...]:
     """The order given, with parents before children. Raises InvalidDocument: unknown parents, duplicates, cycles."""
     by_name: dict[str, Link] = {}
+    joints: set[str] = set()
     for link in links:
+        for motion in link.motions:
+            if motion.name in joints:
+                message = f"a second joint '{motion.name}': give it another name"
+                raise refuse(motion.place, "duplicate-name", message)
+            joints.add(motion.name)
         if link.name in by_name:
             raise refuse(link.place, "duplicate-name", f"a second link '{link.name}': give it another name")
         by_name[link.name] = link

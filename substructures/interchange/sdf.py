@@ -7,15 +7,18 @@ of the joint's frame, which need not be that of the child link.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from decimal import Decimal
 
 import numpy as np
 
 from substructures.array import Array
+from substructures.interchange.bindings import mimic_of, single_coordinates
 from substructures.interchange.merge import vector
 from substructures.interchange.numbers import ZERO, Number, Triple, decimal_of, number_of, triple, value
 from substructures.interchange.report import Place, Report, refuse
-from substructures.interchange.robot import Inertial, Link, Motion, MotionType, NamedFrame, Robot, in_order
+from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
 from substructures.interchange.rotations import from_quaternion, from_rpy, six_of, tensor, to_rpy, turn
 from substructures.interchange.urdf import judge
 from substructures.interchange.xml import Node, numbers_in
@@ -109,7 +112,22 @@ class _Reader:
         frames = tuple(self._frame(name, over) for name in self.attached if (over := self._link_of(name)))
         links = in_order([*roots, *carried.values()])
         name = self.model.attributes.get("name", "")
-        return Robot(name, links, self.report, frames=frames, gravity=_gravity(world))
+        known = single_coordinates(links)
+        mimics = tuple(mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known))
+        return Robot(name, links, self.report, frames=frames, mimics=mimics, gravity=_gravity(world))
+
+    def _mimics(self, prefix: str, joint: Node, known: set[str]) -> Iterator[Mimic]:
+        """Bindings of the axes of a joint: q = multiplier (q_leader - reference) + offset."""
+        name = prefix + joint.text_of("name")
+        for tag in ("axis", "axis2"):
+            axis = joint.one(tag)
+            for node in () if axis is None else axis.all("mimic"):
+                k, reference, offset = (_number(node, each) for each in ("multiplier", "reference", "offset"))
+                exact = isinstance(k, Decimal) and isinstance(reference, Decimal) and isinstance(offset, Decimal)
+                shift = offset - k * reference if exact else ZERO  # type: ignore[operator] # decimals, as read
+                leader = prefix + node.text_of("joint") + ("_2" if node.attributes.get("axis") == "axis2" else "")
+                own = name + ("_2" if tag == "axis2" else "")
+                yield from mimic_of(own, leader, (k, shift), node.place, known, self.report)
 
     def _enter(self, model: Node, prefix: str, placed: _Framed) -> None:
         """All frames of a model: its own, and those of links, joints, frames and models in it."""
@@ -229,6 +247,8 @@ class _Reader:
         if own is None:
             # the default of the format
             return Inertial(decimal_of(1.0), inertia=(decimal_of(1.0),) * 3 + (ZERO,) * 3)
+        if own.one("fluid_added_mass") is not None:
+            self.report.warning(own.place, "the mass added by a fluid is left out: it differs from axis to axis")
         pose = _framed(own.one("pose"), "", own.place)
         if pose.relative_to:
             raise refuse(own.place, "not-read", "the pose of an <inertial> has no relative_to")

@@ -10,14 +10,19 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.expr.interpret import interpret_in_blocks
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 
+#: a tree and the parts of its instances
+Parts = tuple[TreeSpec, Mapping[str, Part]]
 INSTANCE = "x"
+CLOSURES = ("closure.residual", "closure.jacobian")
 #: of a part alone; in general position, so that nothing escapes along an axis
 GRAVITY = {"gx": "0.7", "gy": "-1.3", "gz": "-9.5"}
 
@@ -62,6 +67,20 @@ class Side:
     def evaluate(self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None) -> Any:
         """Numbers of quantities for these parameters, by their names as they are compared."""
         return evaluate(self.model, names, q, qd, parameters=self.given(parameters))
+
+    def closures(self, parameters: Mapping[str, float], q: Array) -> dict[str, Array]:
+        """Residuals phi (N, m) and Jacobians dphi/dq (N, m, n) of all closures; nothing where there are none."""
+        if not self.model.closures:
+            return {}
+        given = {"q": q, "parameters": self.given(parameters)}
+        values = symbol_values(self.model, given, read_states(self.model, given, None), CLOSURES)
+        return interpret_in_blocks(self.model.program, values, CLOSURES, len(q))
+
+
+def sides(*given: Part | Parts) -> list[Side]:
+    """Models to be compared: a part gets the gravity of the first tree among them."""
+    like = next((x[0] for x in given if not isinstance(x, Part)), None)
+    return [Side.of_part(x, like) if isinstance(x, Part) else Side.of_tree(*x) for x in given]
 
 
 def alone(definition: Definition, like: TreeSpec | None = None) -> TreeSpec:

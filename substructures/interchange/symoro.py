@@ -17,9 +17,8 @@ from substructures.interchange.names import library_name
 from substructures.interchange.report import Place, Report, refuse
 
 _MARK = re.compile(rb"\(\*|^\s*N[LJF]\s*=", re.MULTILINE)
-_LINE = re.compile(r"^\s*(\w+)\s*=\s*(.*?)\s*$")
+_WORD = re.compile(r"\w+")
 _NAME = re.compile(r"\(\*\s*Robotname\s*=\s*'([^']*)'")
-_COMMENT = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 _SYMBOL = re.compile(r"[A-Za-z]\w*", re.ASCII)
 _FUNCTIONS = {"pi", "sin", "cos", "tan", "sqrt"}
 _ROWS = {"gamma": "psi", "b": "sigma", "alpha": "theta", "d": "d"}
@@ -40,6 +39,16 @@ def read_par(data: bytes) -> tuple[dict[str, Any], Report]:
     return _Reader(text).definition()
 
 
+def _without_comments(text: str) -> str:
+    """Line breaks in the place of ``(* ... *)``; what is not closed is no comment."""
+    kept: list[str] = []
+    here = 0
+    while (start := text.find("(*", here)) >= 0 and (end := text.find("*)", start + 2)) >= 0:
+        kept += [text[here:start], "\n" * text.count("\n", start, end)]
+        here = end + 2
+    return "".join(kept) + text[here:]
+
+
 class _Reader:
     """Lists by name, each with its line."""
 
@@ -50,12 +59,11 @@ class _Reader:
         self.lines: dict[str, int] = {}
         self.report = Report()
         self.parameters: dict[str, dict[str, Any]] = {}
-        plain = _COMMENT.sub(lambda m: "\n" * m[0].count("\n"), text)
-        for number, line in enumerate(plain.splitlines(), 1):
-            match = _LINE.match(line)
-            if match:
-                self.lists[match[1]] = [x.strip() for x in match[2].strip("{}").split(",")]
-                self.lines[match[1]] = number
+        for number, line in enumerate(_without_comments(text).splitlines(), 1):
+            name, equals, entries = line.partition("=")
+            if equals and _WORD.fullmatch(name.strip()):
+                self.lists[name.strip()] = [x.strip() for x in entries.strip().strip("{}").split(",")]
+                self.lines[name.strip()] = number
 
     def definition(self) -> tuple[dict[str, Any], Report]:
         """Everything together."""

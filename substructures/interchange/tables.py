@@ -66,8 +66,11 @@ def read_csv(data: bytes, symbolic: bool = True) -> tuple[dict[str, Any], Report
     _known(Place(head_line, "head"), names)
     table = _Table(settings)
     for number, line in kept[1:]:
-        cells = next(csv.reader([line], delimiter=delimiter), [])
         place = Place(number, "row")
+        try:
+            cells = next(csv.reader([line], delimiter=delimiter), [])
+        except csv.Error as error:
+            raise refuse(place, "bad-row", f"{error}: a cell is a number or a name") from None
         if len(cells) != len(names):
             raise refuse(place, "wrong-length", f"{len(cells)} cells, the head has {len(names)}")
         table.rows.append((place, {n: c.strip() for n, c in zip(names, cells, strict=True) if c.strip()}))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from substructures.interchange.bindings import mimic_of
 from substructures.interchange.numbers import (
     ONE,
     ORIGIN,
@@ -72,9 +73,10 @@ def read_urdf(root: Node) -> Robot:
     joints = list(_joints(root, links))
     made = [_root(links, joints, report)]
     mimics: list[Mimic] = []
+    single = {joint.name for joint in joints if joint.type in _MOTION}
     for joint in joints:
         made += _links_of(joint, links[joint.child], report)
-        mimics += _mimic(joint, {j.name: j for j in joints}, report)
+        mimics += _mimic(joint, single, report)
     return Robot(root.attributes.get("name", ""), in_order(made), report, mimics=tuple(mimics))
 
 
@@ -187,22 +189,12 @@ def _limits(joint: _Joint, report: Report) -> tuple[Number, Number] | None:
     return low, high
 
 
-def _mimic(joint: _Joint, joints: dict[str, _Joint], report: Report) -> list[Mimic]:
+def _mimic(joint: _Joint, single: set[str], report: Report) -> list[Mimic]:
     node = joint.node.one("mimic")
     if node is None:
         return []
-    of = node.text_of("joint")
-    if of not in joints or joints[of].type not in _MOTION or joint.type not in _MOTION or of == joint.name:
-        message = f"mimic of '{of}', which is no other joint with one coordinate: the coordinate is free"
-        report.warning(node.place, message, "topology")
-        return []
-    found = Mimic(joint.name, of, node.number("multiplier", ONE), node.number("offset", ZERO), node.place)
-    message = (
-        f"'{found.joint}' = {found.multiplier} * '{of}' + {found.offset} is not built in: the coordinate is free. "
-        f"Bind it by a velocity constraint of the type 'linear' or by a prescribed motion"
-    )
-    report.warning(node.place, message, "topology")
-    return [found]
+    factors = node.number("multiplier", ONE), node.number("offset", ZERO)
+    return mimic_of(joint.name, node.text_of("joint"), factors, node.place, single, report)
 
 
 def _origin(node: Node) -> tuple[Triple, Triple]:

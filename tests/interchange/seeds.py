@@ -13,14 +13,19 @@ URDF = f"""<robot name="r"><link name="a"/><link name="b">{_LINK}</link><link na
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/><origin xyz="1 2 3" rpy="0 0 1"/>
 <limit lower="-1" upper="1" effort="1" velocity="1"/><dynamics damping="1" friction="1"/></joint>
 <joint name="k" type="planar"><parent link="b"/><child link="c"/><axis xyz="0 1 1"/></joint>
-<joint name="l" type="fixed"><parent link="c"/><child link="d"/><origin xyz="1 2 3"/></joint></robot>"""
+<joint name="l" type="fixed"><parent link="c"/><child link="d"/><origin xyz="1 2 3"/></joint>
+<link name="e">{_LINK}</link><joint name="m" type="continuous"><parent link="d"/><child link="e"/>
+<mimic joint="j" multiplier="2" offset="1"/></joint></robot>"""
 MJCF = """<mujoco model="m"><compiler angle="radian" eulerseq="XYZ" settotalmass="3"/><option gravity="0 0 -9"/>
 <default><joint damping="1"/><default class="x"><geom size=".1"/></default></default><worldbody>
 <body name="a" pos="0 0 1" childclass="x"><joint type="free" armature="1"/><geom type="capsule" fromto="0 0 0 1 0 0"/>
-<body name="b" euler="1 2 3"><joint name="p" axis="1 0 0" ref="1" stiffness="2" range="-1 1"/><joint type="slide"/>
+<body name="b" euler="1 2 3"><joint name="p" axis="1 0 0" ref="1" stiffness="2" range="-1 1"/>
+<joint name="p2" type="slide"/>
 <inertial pos="0 0 1" mass="2" fullinertia="1 1 1 0 0 0" quat="1 0 0 1"/><site name="s" pos="1 1 1"/>
 <frame pos="1 0 0"><body name="c"><joint type="ball" pos="0 1 0"/><geom type="box" size="1 1 1"/></body></frame></body>
-</body></worldbody><equality><connect body1="c" body2="a" anchor="0 0 1"/></equality>
+<replicate count="3" offset="1 0 0" euler="0 1 0"><body name="w"><joint/><geom size="1"/></body></replicate>
+</body></worldbody><equality><connect body1="c" body2="a" anchor="0 0 1"/>
+<joint joint1="p" joint2="p2" polycoef="1 2 0 0 0"/></equality>
 <tendon><fixed><joint joint="p" coef="1"/></fixed></tendon></mujoco>"""
 _CORPUS = [
     path.read_bytes() for path in [*urdf_files().values(), *mjcf_files().values()] if path.stat().st_size < 12000
@@ -31,7 +36,8 @@ SDF = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b">
 <frame name="f" attached_to="b"><pose>0 1 0 0 0 0</pose></frame>
 <joint name="j" type="universal"><parent>a</parent><child>b</child>
 <axis><xyz expressed_in="f">1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis>
-<axis2><xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2>
+<axis2><mimic joint="j" axis="axis"><multiplier>2</multiplier></mimic>
+<xyz>0 1 0</xyz><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis2>
 </joint></model></sdf>"""
 DH = b"""# convention: standard
 # length: mm

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from substructures import Definition, TreeSpec, derive
+from substructures import Definition, TreeSpec, catalogue, derive
 from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import Equivalence, equivalence
@@ -145,3 +145,36 @@ def test_trees_are_compared_with_parts() -> None:
     assert not found.equal
     assert found.first_difference is not None
     assert found.first_difference["quantity"] == "gravity"
+
+
+ROD = {"name": "rod", "type": "rod", "from": "x.tip", "to": "world", "length": 0.7}
+
+
+@pytest.mark.parametrize(
+    ("closures", "quantity"),
+    [
+        ([ROD], None),
+        ([], "closures"),
+        ([{**ROD, "length": 0.8}], "closure.residual"),
+        ([{**ROD, "placement": {"position": [1, 0, 0]}}], "closure.residual"),
+    ],
+)
+def test_closures_are_compared(closures: list[dict[str, Any]], quantity: str | None) -> None:
+    part = derive(Definition.read(catalogue.load("acrobot")))
+    plain = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "acrobot"}]}
+    a, b = (Side.of_tree(TreeSpec.read({**plain, "closures": c}), {"x": part}) for c in ([ROD], closures))
+    found = equivalence(a, b)
+    assert found.equal == (quantity is None)
+    assert quantity is None or (found.first_difference or {})["quantity"] == quantity
+
+
+def test_last_names_are_taken_only_where_they_are_clear() -> None:
+    part = derive(Definition.read(catalogue.load("acrobot")))
+    plain: dict[str, Any] = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": []}
+    plain["instances"] = [{"name": name, "substructure": "acrobot"} for name in ("one", "two")]
+    two = Side.of_tree(TreeSpec.read(plain), {"one": part, "two": part})
+    plain["instances"] = [{"name": name, "substructure": "acrobot"} for name in ("three", "two")]
+    other = Side.of_tree(TreeSpec.read(plain), {"three": part, "two": part})
+    with pytest.raises(InvalidArgument, match="cannot be matched by name"):
+        equivalence(two, other)
+    assert equivalence(two, other, {"one.q1": "three.q1", "one.q2": "three.q2"}).equal

@@ -11,7 +11,7 @@ import re
 
 import pytest
 
-from substructures import Definition
+from substructures import Definition, TreeSpec
 from substructures.errors import InvalidInput, TooLarge
 from substructures.interchange.as_part import Options
 from substructures.interchange.importing import import_file
@@ -24,6 +24,8 @@ WORDS = (
     b"../etc/passwd", b"\xff", b"&lt;", b"&amp;", b"9" * 80, b"-0", b"1/0", b"base", b"t", b"true",
     b"\xc3\xa9", b"[]",
 )  # fmt: skip
+#: links at which files are cut; the seeds have these names
+CUTS = ((), (), ("b",), ("c", "b"))
 TAG = re.compile(rb"<[^>]+>")
 VALUE = re.compile(rb'"([^"]*)"')
 WORD = re.compile(rb"[\w.+-]+")
@@ -76,13 +78,15 @@ def _cut(data: bytes, rng: random.Random) -> bytes:
     return data[: rng.randrange(len(data) + 1)] if rng.random() < 0.2 else data
 
 
-def survives(data: bytes, options: Options) -> bool:
-    """Whether it is read; what is read is a definition, and what is refused says where."""
+def survives(data: bytes, options: Options, cut: tuple[str, ...] = ()) -> bool:
+    """Whether it is read; what is read is a definition, or a tree, and what is refused says where."""
     try:
-        found = import_file(data, options)
+        found = import_file(data, options, cut=cut)
     except (InvalidInput, TooLarge):
         return False
     Definition.read(found.definition)
+    if found.tree is not None:
+        TreeSpec.read(found.tree)
     return True
 
 
@@ -97,7 +101,7 @@ def fuzz(cases: int, seed: int) -> int:
             rng.choice(("fixed", "floating")),
         )
         try:
-            read += survives(data, options)
+            read += survives(data, options, rng.choice(CUTS))
         except Exception as error:
             raise AssertionError(f"case {k} of seed {seed}: {type(error).__name__}: {error}\n{data!r}") from error
     return read

@@ -63,6 +63,12 @@ FEATURES = {
                       '<joint name="d"/><geom/></body></body>'),
     "frames": ("", '<frame pos="1 2 3" euler="20 30 40"><geom type="box" size=".1 .2 .3"/><joint name="a" '
                'axis="1 0 0" pos=".1 .2 .3"/><body pos="1 0 0"><joint name="b"/><geom size=".1"/></body></frame>'),
+    "copies": ("", '<replicate count="3" offset=".1 .2 .3" euler="20 30 40" sep="-"><geom type="box" size=".1 .2 .3"/>'
+               '</replicate><replicate count="11" euler="10 0 40"><body name="x" pos="1 0 0">'
+               '<joint name="j" axis="1 1 0"/><geom size=".1" pos="0 .3 0"/></body></replicate>'),
+    "copies of copies": ('<compiler angle="radian" eulerseq="XYZ"/>', '<geom size=".1"/><replicate count="2" sep="_" '
+                         'offset="1 0 0" euler=".1 .2 .3"><replicate count="2" offset="0 1 0"><body name="x"><joint '
+                         'name="j"/><geom size=".1" pos="1 0 0"/></body></replicate></replicate>'),
 }  # fmt: skip
 
 
@@ -108,11 +114,13 @@ BAD = {
     "polynomial": (one('<joint stiffness="1 2"/>'), "stiffness has to be one number"),
     "free below": (one('<body><freejoint/></body>'), "only a body of the world"),
     "free and hinge": (one('<freejoint/><joint/>'), "the only one of its body"),
-    "replicate": (one('<replicate count="3"><geom size="1"/></replicate>'), "<replicate> is not read: write"),
+    "replicate": (one('<replicate count="1.5"><geom size="1"/></replicate>'), "line 4: <replicate>: count is a whole"),
+    "copies": (one('<replicate count="1000">' * 3 + "<geom/>" + "</replicate>" * 3), "when copies are written out"),
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
     "no body": (b"<mujoco/>", "the file has no <body>"),
+    "two joints": (one('<joint name="j"/>\n<joint name="j" axis="1 0 0"/>'), "line 5: .* a second joint 'j'"),
     "two bodies": (one("<body name='b'/>"), "a second link 'b'"),
     "eulerseq": (one("", '<compiler eulerseq="abc"/>'), "three letters"),
 }  # fmt: skip
@@ -131,6 +139,15 @@ def test_files_are_included_where_they_are_given_along() -> None:
     assert [b["name"] for b in found.definition["bodies"]] == ["b"]
     with pytest.raises(InvalidDocument, match=r"'a\.xml' is not followed"):
         import_file(file, included={"a.xml": file})
+
+
+def test_what_has_no_name_gets_one_that_nothing_has() -> None:
+    inside = (
+        '<joint/><joint name="joint1" axis="1 0 0"/><geom size="1"/><body><geom size="1"/><body name="body2"/></body>'
+    )
+    found = import_file(one(inside))
+    assert [b["joint"].get("coordinate") for b in found.definition["bodies"]][:2] == ["joint1_", "joint1"]
+    assert len(found.definition["bodies"]) == 2
 
 
 def test_what_is_left_out_is_told() -> None:

@@ -100,7 +100,8 @@ def test_limits_damping_and_remarks() -> None:
     found = import_file(urdf(joint("j", "a", "b", more=more) + joint("k", "b", "c", more='<mimic joint="j"/>')))
     assert found.definition["bodies"][1]["joint"]["limits"] == [-1, 2]
     assert numbers(found, "forces", [0, 0], qd=[2, 0])[0] == pytest.approx(-1)
-    assert found.bindings == [{"coordinate": "k", "of": "j", "multiplier": 1, "offset": 0}]
+    told = {"type": "linear", "name": "k", "expression": "k' - (1)*j'"}
+    assert found.bindings == [{"coordinate": "k", "of": "j", "multiplier": 1, "offset": 0, "constraint": told}]
     assert [(r["line"], r["level"]) for r in found.report] == [(5, "warning"), (5, "warning")]
     assert found.checks["topology"] == {"passed": False, "warnings": 1}
 
@@ -151,6 +152,12 @@ def test_bad_files_are_refused_with_their_place(name: str) -> None:
     data, message = BAD[name]
     with pytest.raises(InvalidDocument, match=message):
         import_file(data)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_other_encodings_are_read(encoding: str) -> None:
+    text = urdf(joint("j", "a", "b"), "ab").decode()
+    assert import_file(text.encode(encoding)).definition["bodies"][0]["name"] == "a"
 
 
 def test_meshes_and_paths_are_never_followed() -> None:

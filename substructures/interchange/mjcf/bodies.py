@@ -22,7 +22,6 @@ _MOTION: dict[str, MotionType] = {"hinge": "revolute", "slide": "prismatic", "ba
 _REFUSED = {
     "composite": "write its bodies out",
     "flexcomp": "deformable bodies have no relative coordinates",
-    "replicate": "write the copies out",
     "attach": "put the other model here",
     "include": "put the file's content here",
 }
@@ -40,9 +39,15 @@ class Bodies:
     links: list[Link] = field(default_factory=list)
     frames: list[NamedFrame] = field(default_factory=list)
     _joints: int = 0
+    _named: set[str] = field(default_factory=set)  #: names in the file, which nothing without a name gets
 
     def world(self, node: Node) -> None:
         """The bodies on the world; what else is there does not move."""
+        left = [node]
+        while left:
+            here = left.pop()
+            left += here.children
+            self._named |= {here.attributes["name"]} if "name" in here.attributes else set()
         self._children(node, None, node.attributes.get("childclass"), Seat())
 
     def _children(self, node: Node, parent: str | None, childclass: str | None, outer: Seat) -> None:
@@ -70,7 +75,7 @@ class Bodies:
         return Seat(triple(node.numbers("pos", 3, ORIGIN)), to_rpy(orientation(node, self.compiler)))
 
     def _body(self, node: Node, parent: str | None, childclass: str | None, outer: Seat) -> None:
-        name = node.attributes.get("name", f"body{len(self.links) + 1}")
+        name = node.attributes.get("name", self._unnamed(f"body{len(self.links) + 1}"))
         childclass = node.attributes.get("childclass", childclass)
         if float(value(node.number("gravcomp", ZERO))):
             message = "gravcomp, a force against gravity, is left out: add a load for it"
@@ -88,6 +93,12 @@ class Bodies:
         self.links.append(Link(name, parent, node.place, seat.position, seat.rpy, motions, inertial))
         self._children(node, name, childclass, Seat())
 
+    def _unnamed(self, name: str) -> str:
+        """A name that is not in the file."""
+        while name in self._named:
+            name += "_"
+        return name
+
     def _inside(self, node: Node, childclass: str | None, outer: Seat) -> Iterator[tuple[Node, Seat]]:
         """Joints and geoms with their classes applied, also those in <frame>s, with what they are placed in."""
         for child in node.children:
@@ -102,7 +113,7 @@ class Bodies:
     def _motion(self, node: Node, outer: Seat) -> Motion:
         """One joint."""
         self._joints += 1
-        name = node.attributes.get("name", f"joint{self._joints}")
+        name = node.attributes.get("name", self._unnamed(f"joint{self._joints}"))
         if node.tag == "freejoint":
             return Motion(name, "free", node.place)
         kind = _MOTION[choice(node, "type", tuple(_MOTION))] if "type" in node.attributes else "revolute"

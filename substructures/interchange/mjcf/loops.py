@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from substructures.array import Array
+from substructures.interchange.bindings import mimic_of, single_coordinates
 from substructures.interchange.merge import vector
-from substructures.interchange.numbers import ORIGIN, value
+from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
-from substructures.interchange.robot import Link, Loop
+from substructures.interchange.robot import Link, Loop, Mimic
 from substructures.interchange.rotations import from_quaternion, from_rpy, to_rpy
 from substructures.interchange.xml import Node
 
@@ -24,12 +25,34 @@ def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop,
         for node in section.children:
             if node.attributes.get("active", "true") == "false":
                 report.ignored(node.place, "an equality constraint that is not active")
+            elif node.tag == "joint":
+                continue  # see bindings_of
             elif node.tag not in ("connect", "weld"):
                 message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
                 report.warning(node.place, message, "topology")
             else:
                 name = node.attributes.get("name", f"loop{len(found) + 1}")
                 found.append(_loop(node, name, poses))
+    return tuple(found)
+
+
+def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mimic, ...]:
+    """The linear <joint> constraints that are active: q1 - ref1 = c0 + c1 (q2 - ref2)."""
+    found: list[Mimic] = []
+    refs = {motion.name: value(motion.offset) for link in links for motion in link.motions}
+    known = single_coordinates(links)
+    for node in (each for section in root.all("equality") for each in section.all("joint")):
+        if node.attributes.get("active", "true") == "false":
+            continue
+        first, second = node.text_of("joint1"), node.attributes.get("joint2")
+        c = [*(value(x) for x in node.numbers("polycoef", None, (ZERO, ONE))), 0.0, 0.0, 0.0, 0.0, 0.0][:5]
+        if second is None or any(c[2:]):
+            message = "a joint held at a number, or bound by a polynomial, is left out: add a prescribed motion for it"
+            report.warning(node.place, message, "topology")
+            continue
+        shift = refs.get(first, 0.0) + c[0] - c[1] * refs.get(second, 0.0)
+        factors = decimal_of(c[1]), decimal_of(shift)
+        found += mimic_of(first, second, factors, node.place, known, report)
     return tuple(found)
 
 

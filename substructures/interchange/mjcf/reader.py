@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from substructures.interchange.mjcf.bodies import Bodies
-from substructures.interchange.mjcf.loops import loops_of
+from substructures.interchange.mjcf.loops import bindings_of, loops_of
+from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
 from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
 from substructures.interchange.report import Report, refuse
@@ -34,7 +35,7 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     report = Report()
     bodies = Bodies(Compiler.of(root), Defaults(root), report)
     for node in root.all("worldbody"):
-        bodies.world(node)
+        bodies.world(written_out(node, bodies.compiler))
     if not bodies.links:
         raise refuse(root.place, "no-links", "the file has no <body>")
     _tell_of_others(root, report)
@@ -44,6 +45,7 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         links,
         report,
         frames=tuple(bodies.frames),
+        mimics=bindings_of(root, links, report),
         loops=loops_of(root, links, report),
         gravity=_gravity(root, report),
     )

@@ -1,0 +1,125 @@
+"""Joints that follow others: in independent velocities the metric is G^T M G of another engine's M."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import Definition, Model, TreeSpec, couple, derive
+from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.velocity_constraints import Linear
+from substructures.expr.interpret import interpret
+from substructures.interchange.as_part import Options
+from substructures.interchange.importing import Imported, import_file
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+BODY = '<inertial><origin xyz=".1 .02 -.03" rpy=".1 .2 .3"/><mass value="2"/><inertia ixx=".3" iyy=".4" izz=".5" ixy=".01" ixz="0" iyz="0"/></inertial>'  # noqa: E501
+JOINT = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><origin xyz=".1 .2 .3" rpy=".3 -.2 .5"/><axis xyz="0 1 .5"/>{}</joint>'  # noqa: E501
+LIMIT = '<limit lower="-3" upper="3" effort="1" velocity="1"/>'
+URDF = "".join(
+    [
+        '<robot name="gripper"><link name="ground"/>',
+        *(f'<link name="{name}">{BODY}</link>' for name in "abc"),
+        JOINT.format("turn", "revolute", "ground", "a", LIMIT),
+        JOINT.format("left", "prismatic", "a", "b", LIMIT),
+        JOINT.format("right", "prismatic", "a", "c", LIMIT + '<mimic joint="left" multiplier="-0.75" offset="0.1"/>'),
+        "</robot>",
+    ]
+)
+MJCF = """<mujoco><compiler angle="radian"/><worldbody>
+<body name="a"><joint name="j" axis="0 1 0" ref="0.2"/><geom type="box" size=".1 .2 .3"/>
+<body name="b" pos=".3 0 0"><joint name="k" axis="1 0 0" ref="-0.4"/><geom size=".2" pos=".1 .2 0"/></body></body>
+</worldbody><equality><joint joint1="k" joint2="j" polycoef="0.3 -2 0 0 0"/></equality></mujoco>"""
+SDF = """<sdf version="1.11"><model name="m"><link name="a"/><link name="b"/>
+<joint name="j" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 1 0</xyz></axis></joint>
+<joint name="k" type="prismatic"><parent>a</parent><child>b</child><axis><xyz>0 1 0</xyz>
+<mimic joint="j"><multiplier>3</multiplier><offset>0.5</offset><reference>0.1</reference></mimic></axis></joint>
+</model></sdf>"""
+
+
+def read(text: str) -> Imported:
+    return import_file(text.encode(), Options("none"))
+
+
+def model_of(found: Imported) -> Model:
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "robot"}]})
+    return couple(spec, {"x": derive(Definition.read(found.definition))})
+
+
+def constraint(found: Imported) -> Linear:
+    (binding,) = found.bindings
+    text = binding["constraint"]["expression"]
+    for name in (binding["coordinate"], binding["of"]):
+        text = text.replace(f"{name}'", f"x.{name}'")
+    return Linear(binding["constraint"]["name"], text)
+
+
+def test_the_metric_is_that_of_the_reduced_robot(tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
+    from with_pinocchio import PinocchioTwin  # noqa: PLC0415 -- beside this file
+
+    found = read(URDF)
+    model = model_of(found)
+    path = tmp_path / "a.urdf"
+    path.write_text(URDF)
+    twin = PinocchioTwin(path, found.names, [c.removeprefix("x.") for c in model.coordinates], np.zeros(3))
+    equations = quasi_velocity_equations(model, [constraint(found)], independent=["x.turn", "x.left"])
+    q = np.array([0.3, -0.2, -0.75 * -0.2 + 0.1])
+    values = dict(zip(model.coordinates, q, strict=True)) | dict.fromkeys(equations.velocities, 0.0)
+    ours = interpret(equations.program, values, ["metric"])["metric"]
+    # dq/d(turn, left)
+    slope = np.array([[1, 0], [0, 1], [0, -0.75]])
+    free = twin.numbers(q, 0 * q, 0 * q).metric
+    np.testing.assert_allclose(ours, slope.T @ free @ slope, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (URDF, {"coordinate": "right", "of": "left", "multiplier": -0.75, "offset": 0.1}),
+        # k - ref_k = 0.3 - 2 (j - ref_j)
+        (MJCF, {"coordinate": "k", "of": "j", "multiplier": -2, "offset": -0.4 + 0.3 + 2 * 0.2}),
+        (SDF, {"coordinate": "k", "of": "j", "multiplier": 3, "offset": 0.5 - 3 * 0.1}),
+    ],
+)
+def test_bindings_of_all_formats(text: str, expected: dict[str, Any]) -> None:
+    found = read(text)
+    (binding,) = found.bindings
+    told = {key: x if isinstance(x, str) else pytest.approx(float(x)) for key, x in expected.items()}
+    assert {key: binding[key] if key in ("coordinate", "of") else float(binding[key]) for key in expected} == told
+    assert [r["level"] for r in found.report if "both coordinates are free" in r["message"]] == ["warning"]
+
+
+def test_mujoco_holds_its_joint_where_the_binding_says() -> None:
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
+    model = mujoco.MjModel.from_xml_string(MJCF)
+    data = mujoco.MjData(model)
+    (binding,) = read(MJCF).bindings
+    data.qpos[:] = 0.7, float(binding["multiplier"]) * 0.7 + float(binding["offset"])
+    mujoco.mj_fwdPosition(model, data)
+    assert abs(data.efc_pos[: data.ne]).max() < 1e-12
+    data.qpos[1] += 0.1
+    mujoco.mj_fwdPosition(model, data)
+    assert abs(data.efc_pos[: data.ne]).max() == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (URDF.replace('mimic joint="left"', 'mimic joint="right"'), "not two joints of one coordinate"),
+        (URDF.replace('mimic joint="left"', 'mimic joint="nobody"'), "not two joints of one coordinate"),
+        (MJCF.replace("-2 0 0 0", "-2 1 0 0"), "by a polynomial"),
+        (MJCF.replace('joint2="j"', ""), "held at a number"),
+        (MJCF.replace('joint2="j"', 'joint2="z"'), "not two joints of one coordinate"),
+        (SDF.replace('mimic joint="j"', 'mimic joint="z"'), "not two joints of one coordinate"),
+    ],
+)
+def test_what_cannot_be_bound_is_told(text: str, said: str) -> None:
+    found = read(text)
+    assert found.bindings == []
+    assert any(said in r["message"] and r["level"] == "warning" and r["line"] for r in found.report)

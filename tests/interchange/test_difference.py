@@ -1,0 +1,151 @@
+"""How two parts or trees differ: fields, formulas by fingerprint, numbers at the defaults, and the words about them."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive, evaluate
+from substructures.interchange.difference.difference import Difference, of_parts, of_trees
+from substructures.interchange.difference.documents import applied, changes
+
+PUMA = catalogue.load("puma560")
+ARM = derive(Definition.read(PUMA))
+
+
+def changed(**values: Any) -> dict[str, Any]:
+    """Puma 560 with other default values."""
+    document = copy.deepcopy(PUMA)
+    for name, value in values.items():
+        document["parameters"][name]["value"] = value
+    return document
+
+
+def difference(document: dict[str, Any]) -> Difference:
+    return of_parts(ARM, derive(Definition.read(document)))
+
+
+def quantity(found: Difference, name: str) -> dict[str, Any]:
+    told: dict[str, Any] = found.plain()["quantities"][name]
+    return told
+
+
+def metric(part: Part, q: Any) -> Any:
+    tree = TreeSpec.read({"name": "x", "instances": [{"name": "x", "substructure": "puma560"}]})
+    return np.asarray(evaluate(couple(tree, {"x": part}), "metric", q=q)["metric"])
+
+
+def test_another_default_changes_numbers_and_no_formula() -> None:
+    """Which entries, and by how much at most, is found once more by evaluating both."""
+    found = difference(changed(m3=5.1))
+    told = quantity(found, "metric")
+    heavy = derive(Definition.read(changed(m3=5.1)))
+    q = np.random.default_rng(0).uniform(-1.5, 1.5, (400, 6))
+    a, b = metric(ARM, q), metric(heavy, q)
+    scale = np.maximum(np.abs(a).max(axis=0), 1e-6 * np.abs(a).max())
+    apart = np.tril(np.abs(b - a).max(axis=0) / scale)
+    assert (told["entries"], told["equal"], told["changed"]) == (21, 21, 0)
+    assert told["moved"] == (apart > 1e-12).sum()
+    assert told["change"] == pytest.approx(apart.max(), rel=0.3)
+    assert {tuple(sorted(each["place"])) for each in told["differing"]} == {
+        tuple(sorted((f"q{i + 1}", f"q{j + 1}"))) for i, j in zip(*np.nonzero(apart > 1e-12), strict=True)
+    }
+    assert found.words == (
+        f"parameter m3 4.8 -> 5.1 kg: changes {told['moved']} of 21 entries of M, at most 3 %; "
+        f"{quantity(found, 'christoffel')['moved']} of 70 entries of Gamma, at most 2.9 %",
+    )
+
+
+def test_each_change_is_told_with_what_it_does_alone() -> None:
+    document = changed(m3=5.1)
+    document |= {"title": "another"}
+    document["bodies"][1]["mass"] = "2*m2"
+    document["ports"][0]["position"] = [0, 0, 0.3]
+    words = difference(document).words
+    assert [line.partition(":")[0] for line in words] == [
+        "mass of link2 m2 -> 2*m2",
+        "parameter m3 4.8 -> 5.1 kg",
+        "position of port elbow [a2, 0, 0] -> [0, 0, 0.3]",
+        "title Unimation Puma 560 -> another",
+        "together",
+    ]
+    alone = difference(changed(m3=5.1)).words[0]
+    assert words[1] == alone
+    assert words[2].endswith("changes no numbers of the equations of motion at the defaults")
+
+
+def test_formulas_by_fingerprint() -> None:
+    """The same function, written in another way, is equal; one that is not is told by the names of its place."""
+    document = copy.deepcopy(PUMA)
+    document["bodies"][1]["mass"] = "2*m2 - m2*(sin(0.3)^2 + cos(0.3)^2)"
+    found = difference(document)
+    assert all(not each.differing for each in found.quantities)
+    assert found.words[0].startswith("mass of link2 m2 -> ")
+    document["bodies"][1]["mass"] = "m2 + m3"
+    told = quantity(difference(document), "metric")
+    assert 0 < told["changed"] == told["moved"] < 21
+    assert {"place": ["q1", "q1"], "state": "changed"}.items() <= told["differing"][0].items()
+
+
+def test_a_joint_more_does_not_shift_the_others() -> None:
+    document = copy.deepcopy(PUMA)
+    joint = {"type": "revolute", "coordinate": "q0"}
+    document["bodies"].insert(0, {"name": "turntable", "parent": "base", "joint": {"type": "fixed"}, "mass": 3})
+    found = difference(document)
+    assert quantity(found, "metric")["equal"] == 21
+    document["bodies"].append(
+        {"name": "more", "parent": "turntable", "joint": joint, "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.2}}
+    )
+    told = quantity(difference(document), "metric")
+    assert [(each["place"], each["state"]) for each in told["differing"]] == [(["q0", "q0"], "new")]
+
+
+def test_nothing_differs() -> None:
+    found = difference(copy.deepcopy(PUMA))
+    assert (found.is_none, found.words) == (True, ("nothing differs",))
+    same = changed(m3={"value": 4800, "unit": "g"})
+    assert all(not each.differing for each in difference(same).quantities)
+
+
+def tree(**parameters: Any) -> tuple[TreeSpec, Model]:
+    hand = {"name": "hand", "substructure": "parallel-gripper", "at": "arm.flange", "parameters": parameters}
+    spec = TreeSpec.read(
+        {"name": "cell", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "puma560"}, hand]}
+    )
+    return spec, couple(spec, PARTS)
+
+
+PARTS = {"arm": ARM, "hand": derive(Definition.read(catalogue.load("parallel-gripper")))}
+
+
+def test_trees() -> None:
+    found = of_trees(tree(mp=0.4), tree(mp=0.5), [])
+    (words,) = found.words
+    assert words.startswith("parameters mp of instance hand 0.4 -> 0.5: changes ")
+    told = quantity(found, "forces")
+    assert 0 < told["moved"] <= told["entries"] == 8
+    (bound,) = of_trees(tree(), tree(mp=0.5), []).words
+    assert bound.startswith("parameters mp of instance hand is new: 0.5: changes ")
+    heavy = derive(Definition.read(changed(m3=5.1)))
+    nested = of_trees(tree(mp=0.4), tree(mp=0.4), [("arm", ARM, heavy)])
+    assert nested.definition[0].place == "/instances/arm/definition/parameters/m3/value"
+
+
+def test_changes_lead_from_one_document_to_the_other() -> None:
+    """Made one after the other they make the second document of the first, for whatever was changed."""
+    rng = np.random.default_rng(4)
+    for _ in range(40):
+        document = copy.deepcopy(PUMA)
+        for body in rng.choice(6, 2, replace=False):
+            document["bodies"][body]["mass"] = float(rng.integers(1, 9))
+            document["bodies"][body]["com"] = [0, float(rng.integers(0, 3)), "a2"]
+        document["parameters"].pop(str(rng.choice(list(document["parameters"]))))
+        document["tags"] = ["other"]
+        document["ports"] = document["ports"][: rng.integers(0, 3)]
+        made: dict[str, Any] = copy.deepcopy(PUMA)
+        for change in changes(PUMA, document):
+            made = applied(made, change)
+        assert changes(made, document) == []
