@@ -85,6 +85,18 @@ class LimitStop(DocumentPart):
     damping: Number = Field(0, description="N m s/rad^2 or N s/m^2; of a rate of 1, for 1 rad or 1 m beyond the limit")
 
 
+class JointFriction(DocumentPart):
+    """Dry friction of a coordinate, against its rate v: (F_c + (F_s - F_c) exp(-(v/v_s)^2)) tanh(v/v_0).
+
+    Without ``stribeck`` it is F_c tanh(v/v_0), and ``static`` is that of rest alone, in simulations that stick exactly.
+    """
+
+    coulomb: Number = Field(description="F_c; N m or N")
+    static: Number | None = Field(None, description="F_s, at rest, default as coulomb; N m or N")
+    stribeck: Number | None = Field(None, description="v_s, over which it falls from static to coulomb; rad/s or m/s")
+    velocity: Number = Field(description="v_0, over which the direction changes; rad/s or m/s")
+
+
 class Joint(DocumentPart):
     """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg), or a placement."""
 
@@ -104,6 +116,7 @@ class Joint(DocumentPart):
     armature: Number | tuple[Number, ...] = Field(0, description="kg m^2 or kg; rotor inertia seen at the joint")
     limits: tuple[Number, Number] | tuple[tuple[Number, Number], ...] | None = Field(None, description="rad or m")
     limits_act: LimitStop | tuple[LimitStop, ...] | None = Field(None, description="end stops at the limits")
+    friction: JointFriction | tuple[JointFriction | None, ...] | None = Field(None, description="dry friction")
 
 
 class InertiaTensor(DocumentPart):

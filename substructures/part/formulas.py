@@ -34,6 +34,7 @@ christoffel, kappa, F and N.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from substructures.expr.program import Formulas, array
@@ -89,6 +90,18 @@ class Kinematics:
     poses: dict[int, Pose]
 
 
+@dataclass(frozen=True)
+class Coupled:
+    """What is known of a part that was coupled of others: links, own columns by carrier, the inertia of everything that
+    a carrier carries (of the interface without what is fixed to it), and the outputs metric and christoffel.
+    """
+
+    chain: tuple[Link, ...]
+    columns: dict[int, Columns]
+    carried: Mapping[int, Inertia]
+    equations: Mapping[str, Formulas]
+
+
 def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinematics:
     """R_c and r_c beside the base functions."""
     poses = {INTERFACE: Pose(IDENTITY, ZERO)}
@@ -97,16 +110,21 @@ def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinemati
     return Kinematics(chain, columns, poses)
 
 
-def formulas(m: Mechanism, loads: Loads, large: bool = False) -> dict[str, Formulas]:
-    """All outputs of the table above; of a ``large`` part without christoffel, kappa, F and N.
+def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled | None = None) -> dict[str, Formulas]:
+    """All outputs of the table above; of a ``large`` part without christoffel, kappa, F and N. What is known of a
+    ``coupled`` part is not derived again.
 
     Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
     """
-    chain = links(m.joints)
-    columns = base_functions(chain)
-    carried = composites(m.joints, inertia_symbols(m))
+    if coupled is None:
+        chain = links(m.joints)
+        columns = base_functions(chain)
+        carried: Mapping[int, Inertia] = composites(m.joints, inertia_symbols(m))
+    else:
+        chain, columns, carried = coupled.chain, coupled.columns, coupled.carried
     momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
-    outputs = own_dynamics(m, chain, columns, momenta, large)
+    equations = own_dynamics(m, chain, columns, momenta, large) if coupled is None else coupled.equations
+    outputs = dict(equations)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])

@@ -9,7 +9,7 @@ from substructures.documents.fields import in_si
 from substructures.expr.graph import Expr
 from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
-from substructures.expr.syntax import read
+from substructures.expr.syntax import ExpressionError, read
 from substructures.part.definition import Definition
 from substructures.part.parameters import si_unit
 from substructures.part.scope import Lookup, Scope
@@ -49,9 +49,12 @@ def load_names(scope: Scope, definition: Definition, topology: Topology) -> Look
 
 
 def names_in(value: Any) -> frozenset[str]:
-    """The names in a number or expression of a definition that was read before."""
+    """The names in a number or expression; none in one that cannot be read, which is told where it is evaluated."""
     text = in_si(value)
-    return frozenset(str(step.value) for step in read(text) if step.op == "name") if isinstance(text, str) else NONE
+    try:
+        return frozenset(str(step.value) for step in read(text) if step.op == "name") if isinstance(text, str) else NONE
+    except ExpressionError:
+        return NONE
 
 
 def velocities(topology: Topology) -> frozenset[str]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from substructures.expr.graph import Expr
+from substructures.expr.laws import tanh
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.definition import (
@@ -23,7 +24,7 @@ from substructures.part.definition import (
 )
 from substructures.part.frames import Frame
 from substructures.part.load_names import depends_on_state, load_names, names_in, velocity_in
-from substructures.part.mechanism import Mechanism, Stops
+from substructures.part.mechanism import Friction, Mechanism, Stops
 from substructures.part.potentials import found_potential, gradient_forces, spring_potential
 from substructures.part.scope import Lookup
 
@@ -228,6 +229,8 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
     forces[a] = forces[a] - law.stiffness * stretch
     if not law.damping.is_zero:
         forces[a] = forces[a] - law.damping * velocity(m, a)
+    if law.friction is not None:
+        forces[a] = forces[a] - _friction_force(m, a, law.friction)
     energy = m.graph.zero
     if depends_on_state(m.topology, law.stiffness, law.rest):
         k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
@@ -255,6 +258,17 @@ def _stop_force(m: Mechanism, a: int, stops: Stops, forces: list[Expr]) -> Expr:
             push = push + stops.damping * (velocity(m, a) * sign) * p
         forces[a] = forces[a] - push * sign
     return potential
+
+
+def _friction_force(m: Mechanism, a: int, law: Friction) -> Expr:
+    """(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0), which changes its direction over some v_0.
+
+    The first factor: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994.
+    """
+    rate, size = velocity(m, a), law.coulomb
+    if law.stribeck is not None:
+        size = size + (law.static - law.coulomb) * m.graph.function("exp", -((rate / law.stribeck) ** 2))
+    return size * tanh(rate / law.velocity)
 
 
 def _spring_force(

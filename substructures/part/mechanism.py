@@ -44,8 +44,20 @@ class Stops:
 
 
 @dataclass(frozen=True)
+class Friction:
+    """Dry friction of a coordinate; expressions in parameters. ``stribeck``: None where it does not fall with speed."""
+
+    coulomb: Expr
+    static: Expr
+    stribeck: Expr | None
+    velocity: Expr
+
+
+@dataclass(frozen=True)
 class JointLaw:
-    """Spring, damper, rotor and end stops of a coordinate; expressions. ``given``: stiffness and rest as written."""
+    """Spring, damper, rotor, end stops and friction of a coordinate; expressions. ``given``: stiffness and rest as
+    written.
+    """
 
     stiffness: Expr
     rest: Expr
@@ -53,6 +65,7 @@ class JointLaw:
     armature: Expr
     given: tuple[Any, Any]
     stops: Stops | None = None
+    friction: Friction | None = None
 
 
 @dataclass(frozen=True)
@@ -166,7 +179,7 @@ class _Builder:
 
     def _fixed(self, frame: Frame, body: Body, pointer: str) -> Frame:
         """Rz(phi) Tz(tau), both constant; nothing moves that could have a spring, a damper, a rotor or limits."""
-        for name in ("stiffness", "rest", "damping", "armature", "limits", "limits_act"):
+        for name in ("stiffness", "rest", "damping", "armature", "limits", "limits_act", "friction"):
             if getattr(body.joint, name) not in (0, None):
                 self.scope.fault(f"{pointer}/{name}", "law-of-fixed", f"a fixed joint has no {name}")
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
@@ -214,7 +227,8 @@ class _Builder:
             # a spring or damper may depend on the state, as a load; a rotor is a constant
             values[name] = self.scope.read(given, place, None if name == "armature" else self.names)
         given = givens["stiffness"], givens["rest"]
-        return JointLaw(**values, given=given, stops=self._stops(entry, body, limits, pointer))
+        stops, friction = self._stops(entry, body, limits, pointer), self._friction(entry, body, pointer)
+        return JointLaw(**values, given=given, stops=stops, friction=friction)
 
     def _of_step(self, entry: JointEntry, given: Any, place: str, what: str, rest: Any) -> tuple[Any, str]:
         """What is given for one coordinate of a joint, for all of them or in a list, with its place."""
@@ -250,6 +264,26 @@ class _Builder:
             )
             return None
         return Stops(*limits, *(self.scope.read(getattr(given, x), f"{place}/{x}") for x in ("stiffness", "damping")))
+
+    def _friction(self, entry: JointEntry, body: Body, pointer: str) -> Friction | None:
+        """The dry friction of a coordinate, if it has some."""
+        given, place = self._of_step(entry, body.joint.friction, f"{pointer}/friction", "friction", None)
+        if given is None:
+            return None
+        read = {
+            name: self.scope.read(value, f"{place}/{name}")
+            for name in ("coulomb", "static", "stribeck", "velocity")
+            if (value := getattr(given, name)) is not None
+        }
+        for name, x in read.items():
+            is_speed = name in ("stribeck", "velocity")
+            if x.is_number and (x.negative or (is_speed and x.is_zero)) and not self.scope.faults:
+                what = "positive" if is_speed else "not negative"
+                self.scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is {what}")
+                return None
+        if self.scope.faults:
+            return None
+        return Friction(read["coulomb"], read.get("static", read["coulomb"]), read.get("stribeck"), read["velocity"])
 
     def _inertia(self, frame: Frame, i: int, body: Body, pointer: str) -> None:
         scope, tensor = self.scope, body.inertia

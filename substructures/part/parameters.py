@@ -9,7 +9,7 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.expr.unit_check import Notice, steps_of
-from substructures.part.definition import Definition, Parameter
+from substructures.part.definition import Definition, JointFriction, Parameter
 
 
 def si_unit(unit: str) -> str:
@@ -75,11 +75,14 @@ def without_effect(definition: Definition, used: Collection[str]) -> list[Notice
 
 
 def names_in_limits(definition: Definition) -> set[str]:
-    """The parameters that limits of joints depend on."""
-    limits = [x for body in definition.bodies for x in _flat(body.joint.limits) if isinstance(x, str)]
-    return {str(step.value) for text in limits for step in steps_of(text) if step.op == "name"}
+    """The parameters that limits and friction of joints depend on."""
+    given = [(body.joint.limits, body.joint.friction) for body in definition.bodies]
+    return {str(step.value) for x in _flat(given) if isinstance(x, str) for step in steps_of(x) if step.op == "name"}
 
 
 def _flat(given: Any) -> Iterator[Any]:
     for x in given or ():
-        yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)
+        if isinstance(x, JointFriction):
+            yield from (in_si(each) for _, each in x)
+        else:
+            yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)

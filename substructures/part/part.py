@@ -15,7 +15,7 @@ from substructures.expr.program import Program, program
 from substructures.expr.unit_check import UnitCheck
 from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
-from substructures.part.formulas import formulas
+from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
@@ -204,13 +204,35 @@ def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
 
 
 @without_collections
-def derive(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[int], None] | None = None) -> Part:
+def derive(
+    definition: Definition,
+    max_nodes: int = MAX_NODES,
+    admit: Callable[[int], None] | None = None,
+    coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
-    ``admit`` is told how many operations to expect before the work begins, and may raise instead.
+    ``admit`` is told how many operations to expect before the work begins, and may raise instead. ``coupled``: what is
+    known of a part that was coupled of others, given how it is read and whether it is large.
     Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
+    m, units, result = _derived(definition, max_nodes, admit, coupled)
+    return Part(definition, result, _certificate(m, result, units, perf_counter() - start))
+
+
+@without_collections
+def draft(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[int], None] | None = None) -> Part:
+    """The formulas of a substructure to look at, not to keep: nothing of them is verified. Raises as :func:`derive`."""
+    return Part(definition, _derived(definition, max_nodes, admit)[2], {})
+
+
+def _derived(
+    definition: Definition,
+    max_nodes: int,
+    admit: Callable[[int], None] | None,
+    coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+) -> tuple[Mechanism, UnitCheck, Program]:
     m = mechanism(definition)
     units = check_units(definition, m.topology)
     units.require()
@@ -222,14 +244,14 @@ def derive(definition: Definition, max_nodes: int = MAX_NODES, admit: Callable[[
         admit(expected_operations(joints))
     loads = read_loads(m)
     try:
-        outputs = formulas(m, loads, entries.is_large)
+        known = None if coupled is None else coupled(m, entries.is_large)
+        outputs = formulas(m, loads, entries.is_large, known)
     except ZeroDivisionError:
         raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
     result = program(m.graph, outputs, m.scope.symbols)
     if len(result) > max_nodes:
         raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
-    seconds = perf_counter() - start
-    return Part(definition, result, _certificate(m, result, units, seconds))
+    return m, units, result
 
 
 def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float) -> dict[str, Any]:

@@ -48,6 +48,11 @@ JOINT: dict[str, tuple[Dimension, Dimension]] = {
     "rest": COORDINATE,
     "limits": COORDINATE,
 }
+#: of dry friction
+FRICTION: dict[str, tuple[Dimension, Dimension]] = {
+    **dict.fromkeys(("coulomb", "static"), EFFORT),
+    **dict.fromkeys(("stribeck", "velocity"), RATE),
+}
 #: of end stops: stiffness, and damping of a rate for a depth
 STOP: dict[str, tuple[Dimension, Dimension]] = {
     "stiffness": JOINT["stiffness"],
@@ -133,13 +138,22 @@ def _joint(pointer: str, joint: Joint, kinds: Sequence[int]) -> Iterator[Place]:
     yield from vector(f"{pointer}/axis", joint.axis or (), None)
     for name, dimensions in JOINT.items():
         yield from _by_coordinate(f"{pointer}/{name}", getattr(joint, name), dimensions, kinds, name == "limits")
+    yield from _laws(f"{pointer}/limits_act", joint.limits_act, STOP, kinds)
+    yield from _laws(f"{pointer}/friction", joint.friction, FRICTION, kinds)
+
+
+def _laws(
+    pointer: str, given: Any, fields: Mapping[str, tuple[Dimension, Dimension]], kinds: Sequence[int]
+) -> Iterator[Place]:
+    """What has several numbers by name, one for all coordinates of a joint, or one for each."""
     for step, s in enumerate(kinds):
-        stops, place = joint.limits_act, f"{pointer}/limits_act"
-        if isinstance(stops, tuple):
-            stops, place = (stops[step], f"{place}/{step}") if step < len(stops) else (None, place)
-        if stops is not None:
-            for name, dimensions in STOP.items():
-                yield f"{place}/{name}", getattr(stops, name), dimensions[s]
+        law, place = given, pointer
+        if isinstance(given, tuple):
+            law, place = (given[step], f"{pointer}/{step}") if step < len(given) else (None, pointer)
+        if law is not None:
+            for name, dimensions in fields.items():
+                if getattr(law, name) is not None:
+                    yield f"{place}/{name}", getattr(law, name), dimensions[s]
 
 
 def _by_coordinate(

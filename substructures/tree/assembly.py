@@ -34,6 +34,7 @@ class Assembly:
     cuts: tuple[Cut, ...]
     inputs: dict[str, dict[str, object]]
     limits: dict[int, tuple[Expr, Expr]]  #: of coordinates by index, of those that have limits
+    friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 by coordinate
     reading: Reading  #: for what is read when the parts have their places
 
 
@@ -76,10 +77,13 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
     cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
     limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
+    friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i).items()}
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, reading)
+    return Assembly(
+        scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, friction, reading
+    )
 
 
 def _name_faults(spec: TreeSpec, scope: Scope) -> None:
@@ -276,6 +280,21 @@ class Reading:
                     for x in (low, high)
                 ]
                 found[c] = read[0], read[1]
+        return found
+
+    def friction(self, i: int) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
+        """F_c, F_s, v_s (0 where there is none) and v_0 of the coordinates of an instance that have dry friction."""
+        instance, found = self.spec.instances[i], {}
+        for c, entry in enumerate(self.parts[instance.name].topology.joints):
+            given = self.parts[instance.name].definition.bodies[entry.body].joint.friction
+            law = given[entry.step] if isinstance(given, tuple) else given
+            if law is not None:
+                static = law.coulomb if law.static is None else law.static
+                F, S, v, w = (
+                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
+                    for x in (law.coulomb, static, law.stribeck or 0, law.velocity)
+                )
+                found[c] = F, S, v, w
         return found
 
     def cut(self, i: int) -> Cut:

@@ -132,11 +132,11 @@ def evaluate_parts(
         if m.host == WORLD:
             total = total + whole.in_parent(constant_rotation(m.E), m.position)
         else:
-            _load(run, mounted[m.host], payloads[m.host], m, whole)
+            add_payload(run, mounted[m.host], payloads[m.host], m, whole)
     return evaluated, total
 
 
-def _load(run: Run, host: MountedPart, payload: Payload, m: MountedPart, whole: Inertia) -> None:
+def add_payload(run: Run, host: MountedPart, payload: Payload, m: MountedPart, whole: Inertia) -> None:
     """Add the whole of a part to what the carrier of its frame in the host has to carry."""
     frames = run(host.part, host.bindings, FRAMES)
     E, position = frames.matrix("frame.E", m.frame), frames.vector("frame.position", m.frame)

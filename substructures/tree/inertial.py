@@ -110,13 +110,13 @@ def _tree_links(placed: Sequence[PlacedPart]) -> list[Link]:
         for link in here.links:
             part, whole = here, link
             while whole.parent == INTERFACE and part.host is not None:
-                part, whole = part.host, _joined(part.seat, whole)
+                part, whole = part.host, joined(part.seat, whole)
             index = INTERFACE if whole.parent == INTERFACE else part.first + whole.parent
             result.append(Link(index, whole.s, whole.rotation, whole.Z, whole.tau))
     return result
 
 
-def _joined(outer: Link, inner: Link) -> Link:
+def joined(outer: Link, inner: Link) -> Link:
     """One link after the other: E = E_inner E_outer, Z = Z_outer + E_outer^T Z_inner; the outer one is constant."""
     Z = add(outer.Z, outer.rotation.back(inner.Z))
     return Link(outer.parent, inner.s, _after(outer.rotation, inner.rotation), Z, inner.tau)

@@ -21,7 +21,7 @@ WrenchesByCarrier = dict[int, Wrench]
 def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar]) -> list[Scalar]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
     loads = _inertial_loads(placed, body_motions(placed, rates))
-    return _pass_back(placed, loads, len(rates))
+    return pass_back(placed, loads, len(rates))
 
 
 def inverse_dynamics(
@@ -37,7 +37,7 @@ def inverse_dynamics(
         for carrier, wrench in here.applied_wrenches():
             # a force that acts is one that the joints need not transmit
             own[carrier] += Wrench(negate(wrench.f), negate(wrench.n))
-    result = _pass_back(placed, loads, len(rates))
+    result = pass_back(placed, loads, len(rates))
     for here in placed:
         for c in range(len(here.links)):
             a = here.first + c
@@ -87,8 +87,11 @@ def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) ->
     ]
 
 
-def _pass_back(placed: Sequence[PlacedPart], loads: list[WrenchesByCarrier], n: int) -> list[Scalar]:
-    """The component along or about its axis of what every joint has to transmit, from the leaves to the root."""
+def pass_back(placed: Sequence[PlacedPart], loads: list[WrenchesByCarrier], n: int) -> list[Scalar]:
+    """The component along or about its axis of what every joint has to transmit, from the leaves to the root.
+
+    Afterwards ``loads`` are of everything that hangs on a carrier, about its body frame origin in its axes.
+    """
     result: list[Scalar] = [0] * n
     for here, own in zip(reversed(placed), reversed(loads), strict=True):
         for c in reversed(range(len(here.links))):

@@ -25,7 +25,7 @@ from substructures.part.parameters import si_unit
 from substructures.part.scope import Lookup
 from substructures.tree.assembly import Assembly
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import Pair, Place, place, rate, scaled
+from substructures.tree.places import Pair, Place, Reach, place, rate, scaled
 
 #: of a revolute and of a prismatic coordinate
 UNITS = ("rad", "m")
@@ -36,7 +36,7 @@ class Measure:
     """Value of a measure of two frames, and its derivatives by the coordinates that change it."""
 
     value: Expr
-    slopes: dict[int, Expr]
+    slopes: Reach
 
 
 @dataclass

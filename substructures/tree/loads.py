@@ -43,7 +43,7 @@ from substructures.tree.load_document import (
 )
 from substructures.tree.load_names import LoadNames
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import Pair, added, axes_in_world, rate, scaled
+from substructures.tree.places import Pair, Reach, added, axes_in_world, rate, scaled
 
 HALF = Fraction(1, 2)
 LEFT_OUT = "the potential energy is without it, and energy balances count its work"
@@ -51,9 +51,12 @@ LEFT_OUT = "the potential energy is without it, and energy balances count its wo
 
 @dataclass(frozen=True)
 class LoadFormulas:
-    """What a load does: ``forces`` Q_a by coordinate of the tree, ``potential`` V with -d_a V a part of them."""
+    """What a load does: ``forces`` Q_a by coordinate of the tree, ``potential`` V with -d_a V a part of them.
 
-    forces: Mapping[int, Expr]
+    ``forces.acting``: the forces and moments between frames that they are of.
+    """
+
+    forces: Reach
     potential: Expr
 
 
@@ -89,7 +92,14 @@ def _spring(names: LoadNames, load: TreeSpring, pointer: str) -> LoadFormulas:
     if length2.is_zero:
         message = f"the ends of the spring '{load.name}' are one and the same point"
         names.assembly.scope.fault(pointer, "coincident-ends", message)
-        return LoadFormulas({}, graph.zero)
+        return LoadFormulas(Reach({}), graph.zero)
+    forces, energy = spring_forces(pair, length2, (k, c, l0), names.rates)
+    return LoadFormulas(forces, _kept(names, energy, pointer, load.stiffness, load.length))
+
+
+def spring_forces(pair: Pair, length2: Expr, law: tuple[Expr, Expr, Expr], rates: Sequence[Expr]) -> tuple[Reach, Expr]:
+    """Q_a and k/2 (l - l0)^2 of a spring between two places, l^2 apart; ``law``: stiffness, damping, rest length."""
+    (k, c, l0), graph = law, pair.graph
     # w_a = d . (u_Ba - u_Aa),   l l' = w_a q'^a
     reach = pair.reach(F=pair.d)
     factor, energy = k, k * length2 * HALF
@@ -97,8 +107,8 @@ def _spring(names: LoadNames, load: TreeSpring, pointer: str) -> LoadFormulas:
         length = graph.sqrt(length2)
         factor, energy = k - k * l0 / length, k * (length - l0) ** 2 * HALF
     if not c.is_zero:
-        factor = factor + c * rate(graph, reach, names.rates) / length2
-    return LoadFormulas(scaled(reach, -factor), _kept(names, energy, pointer, load.stiffness, load.length))
+        factor = factor + c * rate(graph, reach, rates) / length2
+    return scaled(reach, -factor), energy
 
 
 def _kept(names: LoadNames, energy: Expr, pointer: str, *values: object) -> Expr:
@@ -167,8 +177,8 @@ def _joint_force(names: LoadNames, load: TreeJointLoad, pointer: str) -> LoadFor
         known = ", ".join(names.coordinates) or "none"
         message = f"unknown coordinate '{load.coordinate}'; there are {known}"
         names.assembly.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", message)
-        return LoadFormulas({}, names.graph.zero)
-    return LoadFormulas({a: _read(names, load.force, f"{pointer}/force")}, names.graph.zero)
+        return LoadFormulas(Reach({}), names.graph.zero)
+    return LoadFormulas(Reach({a: _read(names, load.force, f"{pointer}/force")}), names.graph.zero)
 
 
 def _potential(names: LoadNames, load: TreePotential, pointer: str) -> LoadFormulas:
@@ -182,14 +192,14 @@ def _potential(names: LoadNames, load: TreePotential, pointer: str) -> LoadFormu
             scope.fault(place, "velocity-in-potential", message)
     measures = {name: names.measure(name, place) for name in used if measured(name) is not None}
     if scope.faults:
-        return LoadFormulas({}, graph.zero)
+        return LoadFormulas(Reach({}), graph.zero)
     try:
         slopes = [derivative(energy, name) for name in used]
     except ZeroDivisionError:
         scope.fault(place, "division-by-zero", "the derivative of this potential has no value anywhere")
-        return LoadFormulas({}, graph.zero)
+        return LoadFormulas(Reach({}), graph.zero)
     bound = {name: each.value for name, each in measures.items() if each is not None}
-    forces = []
+    forces: list[Mapping[int, Expr]] = []
     for name, slope in zip(used, transfer(slopes, graph, bound), strict=True):
         measure = measures.get(name)
         forces.append({names.coordinates[name]: -slope} if measure is None else scaled(measure.slopes, -slope))

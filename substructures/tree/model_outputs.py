@@ -18,6 +18,7 @@ rotation               frames 3 3   from the axes of the frame to those of the w
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
 limits                 n 2          lowest and highest value of the coordinates that have limits
+friction               n 4          F_c, F_s, v_s (0: none) and v_0 of the coordinates that have dry friction
 =====================  ===========  ==========================================================================
 
 A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
@@ -82,6 +83,11 @@ def model_outputs(
             (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
         }
         outputs["limits"] = Formulas((n, 2), rows)
+    if assembly.friction and wanted("friction"):
+        laws: dict[tuple[int, ...], Scalar] = {
+            (a, i): x for a, law in assembly.friction.items() for i, x in enumerate(law)
+        }
+        outputs["friction"] = Formulas((n, 4), laws)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})

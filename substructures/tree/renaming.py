@@ -1,0 +1,111 @@
+"""Names of a tree as names of one part, and expressions with other names in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.documents.fields import Quantity, in_si
+from substructures.documents.units import read_unit
+from substructures.errors import InvalidDocument
+from substructures.expr.syntax import LAWS, MAX_LENGTH, MEASURES, RESERVED, tokens
+
+#: longest name
+LONGEST = 64
+#: what a name stands for: another name, a number, or an expression
+Value = Any
+
+
+@dataclass
+class Names:
+    """Names that are taken, each once: ``arm.q1`` is ``arm_q1``, or ``arm_q1_2`` where that is taken."""
+
+    taken: set[str] = field(default_factory=lambda: {*RESERVED, "base"})
+
+    def new(self, *words: str) -> str:
+        """A free name out of words."""
+        whole = "_".join(words)
+        for number in range(1, len(self.taken) + 2):
+            ending = "" if number == 1 else f"_{number}"
+            name = whole[: LONGEST - len(ending)] + ending
+            if name not in self.taken:
+                self.taken.add(name)
+                return name
+        raise AssertionError("of n + 1 names one is free where n are taken")
+
+
+def names_of(text: str) -> Iterator[str]:
+    """The names in an expression, without the marks of rates; of what cannot be read none."""
+    return (token for is_name, token in _pieces(text) if is_name)
+
+
+def renamed(value: Value, lookup: Callable[[str], Value], pointer: str) -> Value:
+    """A number or expression with other names, or with what names stand for, in it.
+
+    ``lookup``: of a name, without the mark of a rate. Raises InvalidDocument for what no part can have: measures of two
+    frames, and expressions that become too long.
+
+    >>> renamed("2*l + q'", {"l": "arm_l", "q": "arm_q"}.__getitem__, "")
+    "2*arm_l + arm_q'"
+    >>> renamed("l", {"l": 3}.__getitem__, ""), renamed("l^2", {"l": "a + b"}.__getitem__, "")
+    (3, '(a + b)^2')
+    """
+    if isinstance(value, Quantity):
+        return value.model_dump()
+    if isinstance(value, Mapping) or not isinstance(value, str):
+        return value
+    pieces = list(_pieces(value))
+    if len(pieces) == 1 and pieces[0][0]:
+        return lookup(pieces[0][1])
+    text = "".join(_put_in(lookup(piece)) if is_name else piece for is_name, piece in pieces)
+    if any(not is_name and piece.removesuffix("'") in MEASURES for is_name, piece in pieces):
+        message = (
+            f"'{value[:80]}' measures frames of the tree, which no part can: leave this load to the trees of the part"
+        )
+        raise InvalidDocument.at(pointer, "no-load-of-part", message)
+    if len(text) > MAX_LENGTH:
+        message = f"with what its names are bound to, '{value[:80]}' has more than {MAX_LENGTH:,} characters"
+        raise InvalidDocument.at(pointer, "too-long", message)
+    return text
+
+
+def _put_in(value: Value) -> str:
+    """What a name stands for as a part of an expression."""
+    plain = number_text(value)
+    return plain if plain.isidentifier() or plain.replace(".", "", 1).isdigit() else f"({plain})"
+
+
+def number_text(value: Value) -> str:
+    """A number or expression as text, in SI."""
+    if isinstance(value, Mapping):
+        value = read_unit(value["unit"]).in_si(value["value"])
+    value = in_si(value)
+    return value if isinstance(value, str) else format(value, "f") if hasattr(value, "as_tuple") else str(value)
+
+
+def _pieces(text: str) -> Iterator[tuple[bool, str]]:
+    """An expression in pieces: (whether it is a name of a value, the piece)."""
+    found, end = tokens(text), 0
+    for k, (kind, token, column) in enumerate(found[:-1]):
+        start = column - 1
+        yield from _space(text[end:start])
+        end = start + len(token)
+        following = found[k + 1][1]
+        if kind == "name" and not _has_meaning(token, following, found[k - 1][1] if k else ""):
+            name = token.rstrip("'")
+            yield True, name
+            yield from _space(token[len(name) :])
+        else:
+            yield False, token
+    yield from _space(text[end:])
+
+
+def _space(text: str) -> Iterable[tuple[bool, str]]:
+    return [(False, text)] if text else []
+
+
+def _has_meaning(word: str, following: str, before: str) -> bool:
+    """Whether a name stands for a function, a constant or a word of the grammar."""
+    is_called = following == "(" and (word in (*LAWS, "table") or word.removesuffix("'") in MEASURES)
+    return word in RESERVED or is_called or (word == "monotone" and before == ";")
