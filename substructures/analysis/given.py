@@ -8,7 +8,7 @@ from typing import Any
 from substructures.analysis.arguments import real
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument, listed
+from substructures.errors import Fault, InvalidArgument, among
 
 #: coordinates, velocities or accelerations: (n,), (N, n), or a number or column (N,) for each coordinate by name
 StateArray = Sequence[float] | Sequence[Sequence[float]] | Array | Mapping[str, Any]
@@ -17,10 +17,10 @@ StateArray = Sequence[float] | Sequence[Sequence[float]] | Array | Mapping[str, 
 def unknown(field: str, kind: str, given: Mapping[str, Any] | Sequence[str], known: Collection[str]) -> list[Fault]:
     """Faults ``unknown-<kind>``: at ``/field/i`` of a sequence of names, at ``/field/name`` of values by name."""
     places = zip(map(escape, given), given, strict=True) if isinstance(given, Mapping) else enumerate(given)
+    missing = [(place, str(name)) for place, name in places if name not in known]
     return [
-        Fault(f"/{field}/{place}", f"unknown-{kind}", f"unknown {kind} '{str(name)[:80]}'; there are {listed(known)}")
-        for place, name in places
-        if name not in known
+        Fault(f"/{field}/{place}", f"unknown-{kind}", f"unknown {kind} '{name[:80]}'{among(name, known, k)}")
+        for k, (place, name) in enumerate(missing)
     ]
 
 

@@ -26,9 +26,11 @@ from substructures.analysis.motion.problem import IntegratorChoice, Start, State
 from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
 from substructures.analysis.motion.signals import Signal, Table
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import FrictionMode, TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.transmitted import with_reactions
 from substructures.errors import Fault, InvalidArgument
+from substructures.quantities.reactions import ReactionModel
 from substructures.tree.model import Model
 
 __all__ = ["Closed", "Event", "FixedStep", "KnifeEdge", "Linear", "Rolling", "Table", "simulate"]
@@ -50,6 +52,7 @@ def simulate(
     series: Mapping[str, NumberOrExpression] | None = None,
     method: str = "DOP853",
     fixed_step: FixedStep | None = None,
+    friction: FrictionMode = "regularised",
     prescribed: Mapping[str, Signal] | None = None,
     fixed: Sequence[str] = (),
     reduction: Literal["projection", "partitioning"] = "projection",
@@ -62,6 +65,7 @@ def simulate(
     max_step: float | None = None,
     max_steps: int = 1_000_000,
     drift_limit: float = 1e-7,
+    reactions: ReactionModel | None = None,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
 ) -> Trajectory:
@@ -83,6 +87,11 @@ def simulate(
     the start, (p,) or by name, in place of ``qd``; ``velocities``, ``independent``: see quasi_velocity_equations;
     ``form`` of the equations.
 
+    ``friction`` of joints that have some: by the smooth law of the formulas, or ``exact``, set-valued at rest, with
+    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``. Of trees alone.
+
+    ``reactions``: those that are wanted at the results, as further series (not with ``constraints``).
+
     ``progress`` is told the finished share of the span and stops by False; ``folder``: where compiled kernels are kept.
     The series of the result: see simulate_tree, simulate_closed, simulate_rolling. What goes wrong on the way is a
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (pointers start with
@@ -99,19 +108,22 @@ def simulate(
     }
     rolling: dict[str, Any] = {"v": v, "velocities": velocities, "independent": independent}
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
+    exact = friction if friction == "exact" else None
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
-        _refuse("velocity constraints", fixed_step=fixed_step, **closed)
+        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, reactions=reactions, **closed)
         rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
         return with_limits(model, parameters, simulate_rolling(rolled, progress, folder))
     if model.closures or prescribed:
-        _refuse("closures or prescribed coordinates", fixed_step=fixed_step, **rolling)
+        _refuse("closures or prescribed coordinates", fixed_step=fixed_step, friction=exact, **rolling)
         closed["prescribed"] = prescribed or {}
         loops = ClosedProblem(**given, reduction=reduction, **closed)
-        return with_limits(model, parameters, simulate_closed(loops, progress, folder))
-    _refuse("neither closures nor velocity constraints", **rolling, **closed)
-    motion = simulate_tree(TreeProblem(**given, fixed_step=fixed_step), progress, folder)
-    return with_limits(model, parameters, motion)
+        motion = simulate_closed(loops, progress, folder)
+    else:
+        _refuse("neither closures nor velocity constraints", **rolling, **closed)
+        motion = simulate_tree(TreeProblem(**given, fixed_step=fixed_step, friction=friction), progress, folder)
+    found = with_limits(model, parameters, motion)
+    return found if reactions is None else with_reactions(model, reactions, found, given["start"])
 
 
 def _refuse(kind: str, **arguments: Any) -> None:

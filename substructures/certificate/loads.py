@@ -114,7 +114,19 @@ def _joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
     else:
         found.potential += k * stretch * stretch * arb(fmpq(1, 2))
         _add(found.slopes, {a: -k * stretch})
+    _friction(found, a, of_step(joint.get("friction"), step))
     _stops(found, a, numbers.names[name], of_step(joint.get("limits_act"), step), limits_of(joint, step))
+
+
+def _friction(found: Forces, a: int, law: Plain | None) -> None:
+    """-(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0)."""
+    if law is None:
+        return
+    F, speed = found.numbers.read(law["coulomb"]), found.rate(a)
+    if law.get("stribeck") is not None:
+        ratio = speed / found.numbers.read(law["stribeck"])
+        F += (found.numbers.read(law.get("static", law["coulomb"])) - F) * (-ratio * ratio).exp()
+    _add(found.applied, {a: -F * (speed / found.numbers.read(law["velocity"])).tanh()})
 
 
 def _stops(found: Forces, a: int, q: Ball, stop: Plain | None, limits: Sequence[Any] | None) -> None:

@@ -13,7 +13,7 @@ from functools import partial
 from flint import arb
 
 from substructures.certificate.linear import Ball, Matrix
-from substructures.certificate.model_at import ModelAt, total
+from substructures.certificate.model_at import ModelAt, dot, times, total
 from substructures.certificate.outputs import Outputs
 
 #: what one quantity has to be at a state
@@ -107,9 +107,14 @@ def _forward_dynamics(m: ModelAt) -> Outputs:
     """g q'' = Q - Gamma q' q', pivots D_k of g = L^T D L as parts of |g_kk|."""
     result, g = Outputs(), m.matrix("metric")
     vector_of(result, "forward_dynamics", m.accelerations())
-    vector_of(result, "pivots", [D / abs(g[k, k]) for k, D in enumerate(pivots(g))])
+    vector_of(result, "pivots", relative_pivots(g))
     vector_of(result, "inertias", [abs(g[k, k]) for k in range(m.n)])
     return result
+
+
+def relative_pivots(g: Matrix) -> list[Ball]:
+    """D_k as parts of |g_kk|."""
+    return [D / abs(g[k, k]) for k, D in enumerate(pivots(g))]
 
 
 def pivots(g: Matrix) -> list[Ball]:
@@ -133,6 +138,58 @@ def _forward_dynamics_derivative(m: ModelAt) -> Outputs:
     return result
 
 
+def _power(m: ModelAt) -> Outputs:
+    result = Outputs()
+    vector_of(result, "power", [Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)])
+    return result
+
+
+def _inverse_metric(m: ModelAt) -> Outputs:
+    """g x = e_b."""
+    result, g = Outputs(), m.matrix("metric")
+    columns = [m.solved([arb(a == b) for a in range(m.n)]) for b in range(m.n)]
+    entries = result.array("inverse_metric", (m.n, m.n), "symmetric")
+    entries |= {(a, b): columns[b][a] for b in range(m.n) for a in range(b + 1)}
+    vector_of(result, "pivots", relative_pivots(g))
+    return result
+
+
+def _christoffel_second_kind(m: ModelAt) -> Outputs:
+    """g x = Gamma_.bc."""
+    result, gamma = Outputs(), m.elements("christoffel")
+    entries = result.array("christoffel_second_kind", (m.n,) * 3)
+    for b in range(m.n):
+        for c in range(m.n):
+            column = m.solved([gamma.get((d, b, c), arb(0)) for d in range(m.n)])
+            entries |= {(a, b, c): x for a, x in enumerate(column)}
+    vector_of(result, "pivots", relative_pivots(m.matrix("metric")))
+    return result
+
+
+def _hamiltonian(m: ModelAt) -> Outputs:
+    """T + V at g q' = p."""
+    result, p = Outputs(), _momentum_symbols(m)
+    result.scalar("hamiltonian", dot(p, m.solved(p)) / 2 + m.scalar("potential_energy"))
+    vector_of(result, "pivots", relative_pivots(m.matrix("metric")))
+    return result
+
+
+def _canonical_equations(m: ModelAt) -> Outputs:
+    """p'_a = Q_a + 1/2 d_a g_bc q'^b q'^c at g q' = p."""
+    result = Outputs()
+    rates = m.solved(_momentum_symbols(m))
+    here = m.at({f"{name}'": x for name, x in zip(m.coordinates, rates, strict=True)})
+    slopes = [dot(times(here.by(name).matrix("metric"), rates), rates) / 2 for name in m.coordinates]
+    vector_of(result, "coordinate_rates", rates)
+    vector_of(result, "momentum_rates", [Q + x for Q, x in zip(here.vector("forces"), slopes, strict=True)])
+    vector_of(result, "pivots", relative_pivots(m.matrix("metric")))
+    return result
+
+
+def _momentum_symbols(m: ModelAt) -> list[Ball]:
+    return [m.values[f"p.{name}"] for name in m.coordinates]
+
+
 #: by name of the quantity
 SERVED: dict[str, Expectation] = {
     "coriolis": _coriolis,
@@ -140,7 +197,12 @@ SERVED: dict[str, Expectation] = {
     "kinetic_energy": _kinetic_energy,
     "lagrangian": _lagrangian,
     "generalised_momenta": _generalised_momenta,
+    "power": _power,
     "total_momentum": _total_momentum,
+    "inverse_metric": _inverse_metric,
+    "christoffel_second_kind": _christoffel_second_kind,
+    "hamiltonian": _hamiltonian,
+    "canonical_equations": _canonical_equations,
     "inverse_dynamics_derivative": _inverse_dynamics_derivative,
     "forward_dynamics": _forward_dynamics,
     "forward_dynamics_derivative": _forward_dynamics_derivative,

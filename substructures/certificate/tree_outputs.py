@@ -19,6 +19,7 @@ from substructures.certificate.bodies import (
     laws_of,
     limits_of,
     massless,
+    of_step,
 )
 from substructures.certificate.closures import ROWS, closure_outputs
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
@@ -57,22 +58,23 @@ def tree_outputs(
     result = Outputs()
     numbers, bodies, loads, acting = built(tree, definitions, values)
     rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
-    gravity, beside = numbers.vector(tree.get("gravity", NONE)), _beside(tree, definitions, bodies, numbers)
+    gravity, others = numbers.vector(tree.get("gravity", NONE)), beside(tree, definitions, bodies, numbers)
     carried = carried_by_joints(bodies, bodies.own)
     equations(result, bodies, carried, stored)
-    forces_of = [*(x for f in acting for x in (f.applied, f.wrenches)), beside.applied]
+    forces_of = [*(x for f in acting for x in (f.applied, f.wrenches)), others.applied]
     _forces(result, bodies, carried, gravity, _sums(forces_of), rates, second)
     for each in acting:
         each.bent += each.steady
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
-        known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes)), beside.slopes])
+        known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes)), others.slopes])
         some, start, _, there = built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
-        begin = _potential_energy(start, gravity, there) + _beside(tree, definitions, start, some).potential
+        begin = _potential_energy(start, gravity, there) + beside(tree, definitions, start, some).potential
         gradient_instead(result, "potential_energy", acting, known, begin)
     else:
-        result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + beside.potential)
+        result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
     _limits(result, bodies, definitions, loads)
+    _friction(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
         closure_outputs(result, bodies, tree["closures"], numbers, rates)
@@ -99,7 +101,7 @@ def built(
     return numbers, bodies, loads, acting
 
 
-def _beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, numbers: Numbers) -> TreeForces:
+def beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, numbers: Numbers) -> TreeForces:
     """What the loads of the tree do beside those of its parts."""
     inside = (f"{name}.{p}" for name, definition in definitions.items() for p in definition.get("parameters", ()))
     return TreeForces(tree, bodies, numbers, frozenset((*tree.get("parameters", ()), *inside)))
@@ -222,6 +224,23 @@ def _limits(
         for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
             for i, limit in enumerate(limits_of(joint, step) or ()):
                 result.array("limits", (n, 2))[a, i] = inside.read(limit)
+
+
+def _friction(
+    result: Outputs,
+    bodies: Bodies,
+    definitions: Mapping[str, Plain],
+    loads: list[tuple[str, Numbers, range]],
+) -> None:
+    """F_c, F_s, v_s (0: none) and v_0 of coordinates that have friction, of trees in which one has some."""
+    n = len(bodies.joints)
+    for name, inside, joints in loads:
+        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
+            law = of_step(joint.get("friction"), step)
+            for i, field in enumerate(("coulomb", "static", "stribeck", "velocity") if law is not None else ()):
+                given = law.get(field)
+                given = law["coulomb"] if given is None and field == "static" else given
+                result.array("friction", (n, 4))[a, i] = arb(0) if given is None else inside.read(given)
 
 
 def _kinematics(result: Outputs, bodies: Bodies) -> None:

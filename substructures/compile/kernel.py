@@ -273,7 +273,8 @@ class InterpretedKernel(Kernel):
 
 def elements(dense: Array, places: NDArray[np.int64], axes: int = 1) -> Array:
     """The elements at places of an array with so many axes of the batch, along one axis."""
-    return dense.reshape(*dense.shape[:axes], prod(dense.shape[axes:]))[..., places]
+    chosen: Array = dense.reshape(*dense.shape[:axes], prod(dense.shape[axes:]))[..., places]
+    return np.ascontiguousarray(chosen)  # NumPy puts chosen elements outside of all other axes, which JSON cannot write
 
 
 def with_elements(found: Mapping[str, Array], places: Places) -> dict[str, Array]:

@@ -306,6 +306,15 @@ class _Reader:
         self.depth -= 1
 
 
+def tokens(text: str) -> list[tuple[str, str, int]]:
+    """(kind, text, column) of all tokens of an expression, with an end mark. Raises ExpressionError.
+
+    >>> [token for _, token, _ in tokens("2*l'")]
+    ['2', '*', "l'", '']
+    """
+    return _Reader(text).tokens
+
+
 def measured(name: str) -> tuple[str, str, str] | None:
     """The measure with its mark, and the frames, of the name of a measure; None of any other name.
 

@@ -11,7 +11,7 @@ from substructures.array import Array
 from substructures.compile.kernel import Places
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
-from substructures.mechanics.closure_rows import POSITIONS, row_sizes
+from substructures.mechanics.closure_rows import POSITIONS, RowSizes, row_sizes
 from substructures.quantities.derivatives import FD
 from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.table import CONDITION
@@ -75,15 +75,7 @@ def _closed_block(
 ) -> tuple[Array, Array]:
     # g q'' = Q - Gamma q' q' + G^T lambda and G q'' + G' q' = 0; closure.acceleration is G' q'
     outputs = evaluator(program, values, [*DYNAMICS, *CLOSED], count)
-    residual, jacobian, acceleration = CLOSED
-
-    def look(places: Array) -> tuple[Array, Array]:
-        """G and phi at other positions."""
-        times = len(places) // count
-        given = {name: np.tile(x, times) if np.shape(x) == (count,) else x for name, x in values.items()}
-        given |= {name: places[:, a] for a, name in enumerate(model.coordinates)}
-        there = evaluator(program, given, [jacobian, residual], len(places))
-        return there[jacobian], there[residual]
+    acceleration = CLOSED[2]
 
     def second(velocities: Array) -> Array:
         """G' q' at other velocities."""
@@ -94,4 +86,22 @@ def _closed_block(
         np.stack([np.broadcast_to(values[f"{name}{prime}"], (count,)) for name in model.coordinates], axis=1)
         for prime in ("", "'")
     )
-    return closed_solve(outputs, q, qd, row_sizes(model.joints, q, look), second)
+    return closed_solve(outputs, q, qd, closure_sizes(model, program, values, evaluator, q), second)
+
+
+def closure_sizes(
+    model: Model, program: Program, values: Mapping[str, Any], evaluator: Evaluator, q: Array
+) -> RowSizes:
+    """The sizes beside which the rows of closures are judged, at q (N, n)."""
+    residual, jacobian, _ = CLOSED
+    count = len(q)
+
+    def look(places: Array) -> tuple[Array, Array]:
+        """G and phi at other positions."""
+        times = len(places) // count
+        given = {name: np.tile(x, times) if np.shape(x) == (count,) else x for name, x in values.items()}
+        given |= {name: places[:, a] for a, name in enumerate(model.coordinates)}
+        there = evaluator(program, given, [jacobian, residual], len(places))
+        return there[jacobian], there[residual]
+
+    return row_sizes(model.joints, q, look)

@@ -93,7 +93,7 @@ def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
     """
     require_open(model.closures, BY_STATE)
     r = Workspace(model)
-    factors, told = _factors(r, max_nodes)
+    factors, told = factors_of(r, max_nodes)
     return r.program({FD: vector(_accelerations(r, factors)), **told})
 
 
@@ -105,7 +105,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     """
     require_open(model.closures, "use linearisations")
     r = Workspace(model)
-    factors, told = _factors(r, max_nodes)
+    factors, told = factors_of(r, max_nodes)
     found = _accelerations(r, factors)
     # dID at the symbols q'' with dq'' = 0, then at q'' = FD
     slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
@@ -116,7 +116,7 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     return r.program({FD: vector(found), **told, f"{FD}_derivative": vector(result)})
 
 
-def _factors(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], dict[str, Formulas]]:
+def factors_of(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], dict[str, Formulas]]:
     """L and D of the metric, and the outputs ``pivots`` and ``inertias``."""
     size = factor_operations(r.n, r.model.program.outputs["metric"].index)
     if size > max_nodes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,12 @@ from substructures.quantities.accelerations import (
     accelerations_on_closures,
     conditions,
 )
-from substructures.quantities.conditioning import Doubt, Look, closed_doubts, doubts, is_usable, solved_anew
+from substructures.quantities.canonical import MOMENTA, momentum
+from substructures.quantities.conditioning import Look, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.derivatives import FD
+from substructures.quantities.doubtful import advice, result_of, state_warnings, told_of
+from substructures.quantities.reaction_numbers import reaction_numbers
 from substructures.quantities.result import Evaluation, Failure, ParameterColumns, failures_of, without_axis
 from substructures.quantities.states import (
     ArgumentsByName,
@@ -36,12 +39,13 @@ from substructures.quantities.states import (
     require,
 )
 from substructures.quantities.table import (
+    AXES,
     CONDITION,
     MODEL,
     PARTS,
     QUANTITIES,
+    REACTIONS,
     REGRESSOR,
-    Quantity,
     Sources,
     cost,
     numbers_per_state,
@@ -53,6 +57,7 @@ from substructures.tree.model import Model
 
 __all__ = [
     "QUANTITIES",
+    "REACTIONS",
     "REGRESSOR",
     "Direction",
     "Evaluation",
@@ -68,13 +73,6 @@ __all__ = [
     "read_quantities",
     "steps",
 ]
-
-_OPEN = (
-    "the state does not meet the closures (also their velocities), or they lose rank there, or the metric is singular: "
-    "take consistent states from loop states"
-)
-_ENDLESS = "the metric is singular to rounding, or not positive definite, or not finite: it has no condition number"
-_NOT_FINITE = "the result is not finite: numbers overflow, or a formula divides by zero in this state"
 
 
 def interpreted(
@@ -97,6 +95,7 @@ def evaluate(
     along: Direction | None = None,
     packed: bool = False,
     float32: bool = False,
+    joints: Sequence[str] | None = None,
     limit: int | None = None,
     evaluator: Evaluator = interpreted,
     sources: Sources | None = None,
@@ -113,7 +112,7 @@ def evaluate(
     (:func:`substructures.mechanics.accelerations.closed_solve`); other quantities are those of the tree without them.
 
     ``packed``: of metric and Christoffel symbols the independent elements alone
-    (:mod:`substructures.formats.packing`); ``float32``: results in single precision.
+    (:mod:`substructures.formats.packing`); ``float32``: results in single precision; ``joints``: rows of ``reactions``.
 
     ``limit``: most states; ``evaluator``: what computes outputs of programs; ``sources``: the programs (default: formed
     when they are first needed, and kept); ``first``: the number of the first state in warnings, if they are part of
@@ -130,6 +129,7 @@ def evaluate(
       metric (2, 1, 1), forces (2, 1)
     """
     given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t, "along": along}
+    given["joints"] = joints
     form = _Form(packed, float32)
     asked = _asked(sources or Sources(model), quantities, given, form, limit, evaluator)
     states, values = asked.states, asked.values
@@ -207,10 +207,33 @@ def _asked(
     evaluator: Evaluator,
 ) -> _Asked:
     names = read_quantities(quantities)
+    sources = _of_joints(sources, names, given.get("joints"))
     states = read_states(sources.model, given, limit)
     values = _values(sources, given, given.get("along"), states, names)
+    if any(name in MOMENTA for name in names):
+        values |= _momenta(sources, evaluator, values, states.count)
     chosen, inputs = (tuple(given.get(field) or ()) for field in ("parameters", "inputs"))
     return _Asked(sources, names, form, evaluator, states, values, chosen, inputs)
+
+
+def _of_joints(sources: Sources, names: Sequence[str], joints: Sequence[str] | None) -> Sources:
+    """The sources with the rows of reactions that are wanted. Raises InvalidArgument for unknown ones."""
+    if joints is None:
+        return sources
+    if REACTIONS not in names:
+        raise InvalidArgument.at("/joints", "not-supported", "'joints' goes with the quantity 'reactions'")
+    found = replace(sources, joints=(joints,) if isinstance(joints, str) else tuple(joints))
+    found.transmitted()
+    return found
+
+
+def _momenta(sources: Sources, evaluator: Evaluator, values: Mapping[str, Any], count: int) -> dict[str, Any]:
+    """p_a = g_ab q'^b of the states, by their symbols."""
+    name, coordinates = "generalised_momenta", sources.model.coordinates
+    program = sources.program(name)
+    require(program, [name], values)
+    found = evaluator(program, values, [name], count)[name]
+    return {momentum(c): found[:, a] for a, c in enumerate(coordinates)}
 
 
 def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[Evaluation]:
@@ -238,17 +261,15 @@ def _answered(
     """The numbers of some states; ``warnings`` about their values."""
     sources, names, model = asked.sources, asked.names, asked.sources.model
     found = _computed(asked, values, states.count)
-    results = {name: _result(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
-    told = _told(names, found, results, _looking(model, values, states.count))
+    results = {name: result_of(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
+    told = told_of(names, found, results, _looking(model, values, states.count))
     columns = sources.columns() if REGRESSOR in found else None
     shown = {name: asked.form.shown(result) for name, result in results.items()}
     failures: tuple[Failure, ...] = ()
     if asked.form.float32 or not _is_finite(names, found):
         failures = failures_of(
             shown,
-            lambda name, state: _advice(
-                name, told.get(name, {}).get(state), asked.form.is_beyond(results[name], state)
-            ),
+            lambda name, state: advice(name, told.get(name, {}).get(state), asked.form.is_beyond(results[name], state)),
         )
     return Evaluation(
         model.coordinates,
@@ -259,7 +280,8 @@ def _answered(
         model.frames if "kinematics" in results else None,
         None if columns is None else ParameterColumns(columns.names, columns.units),
         states.single,
-        (*warnings, *_warnings(results, told, states.single)),
+        (*warnings, *state_warnings(results, told, states.single)),
+        sources.transmitted().rows if REACTIONS in found else None,
     )
 
 
@@ -280,6 +302,7 @@ def check(
     parameters: ValueInput | None = None,
     t: ArrayLike | None = 0.0,
     along: Direction | None = None,
+    joints: Sequence[str] | None = None,
     **_form: bool,
 ) -> States:
     """The states, when :func:`evaluate` would accept the arguments; nothing is computed.
@@ -287,13 +310,14 @@ def check(
     Raises as :func:`evaluate`, but for formulas that are too large to be made here.
     """
     names = read_quantities(quantities)
+    sources = _of_joints(sources, names, joints)
     given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
     states = read_states(sources.model, given, None)
     with suppress(TooLarge):
         values = _values(sources, given, along, states, names)
-        for _, program, outputs in steps(sources, names):
-            if program is not None:
-                require(program, outputs, values)
+        for source, program, outputs in steps(sources, names):
+            if program is not None and source != REACTIONS:
+                require(program, outputs, values | dict.fromkeys(map(momentum, sources.model.coordinates), 0.0))
     return states
 
 
@@ -308,8 +332,12 @@ def _computed(asked: _Asked, values: Mapping[str, Any], count: int) -> dict[str,
             found[MODEL] = with_elements(sources.numbers(values, names, count), places)
             continue
         if program is None:
-            nothing = {name: np.full((count, model.dof), np.nan) for name in names}
+            nothing = {name: np.full((count, *(model.dof,) * AXES.get(name, 1)), np.nan) for name in names}
             found[source] = nothing | {"pivots": np.zeros((count, model.dof))}
+            continue
+        if source == REACTIONS:
+            motion = result_of(QUANTITIES[FD], found[FD]) if FD in found else None
+            found[source] = reaction_numbers(model, sources.program, values, motion, evaluator, count)
             continue
         require(program, names, values)
         if source == CONDITION:
@@ -349,60 +377,12 @@ def _values(
     needed = {field: name for name in reversed(quantities) for field in QUANTITIES[name].requires}
     if "qdd" in needed and states.qdd is None and model.dof:
         raise InvalidArgument.at("/qdd", "missing", f"{needed['qdd']} needs accelerations 'qdd'")
+    if "reactions" in quantities and states.qdd is not None and model.closures:
+        message = "reactions of a tree with closures are those of its own motion: leave 'qdd' out"
+        raise InvalidArgument.at("/qdd", "not-supported", message)
     parameters = sources.parameters(quantities)
     defaults = sources.defaults if parameters is model.parameters else None
     values = known_values(model, given, states, parameters, defaults)
     if "along" in needed:
         values |= direction_values(model, along, states)
     return values
-
-
-def _result(quantity: Quantity, found: Mapping[str, Array]) -> Any:
-    """The arrays of a quantity; NaN where the metric could not be inverted."""
-    if quantity.fields:
-        return {field: found[name] for field, name in zip(quantity.fields, quantity.outputs, strict=True)}
-    result = found[quantity.outputs[0]]
-    if "pivots" in quantity.pivots and "pivots" in found:
-        usable = is_usable(found["pivots"])
-        result = result if usable.all() else np.where(usable[:, None], result, np.nan)
-    return result
-
-
-def _told(
-    names: Sequence[str],
-    found: Mapping[str, Mapping[str, Array]],
-    results: Mapping[str, Any],
-    look: Look,
-) -> dict[str, dict[int, Doubt]]:
-    """What is to be said of accelerations and their derivatives, by quantity and state."""
-    told = {}
-    for name in names:
-        outputs = found[QUANTITIES[name].source]
-        if not QUANTITIES[name].pivots:
-            continue
-        if CONDITION in outputs:
-            told[name] = closed_doubts(results[name], outputs[CONDITION], _OPEN)
-        elif "pivots" in outputs:
-            told[name] = doubts(results[name], outputs["pivots"], look)
-    return told
-
-
-def _advice(name: str, doubt: Doubt | None, is_beyond: bool) -> tuple[str, str]:
-    """Code and message of a failure. ``is_beyond``: only in the precision wanted."""
-    if is_beyond:
-        return "overflow", "the result is beyond 3.4e38, the largest number of single precision"
-    if doubt is not None:
-        return doubt.code, doubt.message
-    return "not-finite", _ENDLESS if name == CONDITION else _NOT_FINITE
-
-
-def _warnings(
-    results: Mapping[str, Any], told: Mapping[str, Mapping[int, Doubt]], single: bool
-) -> Iterator[dict[str, Any]]:
-    """A warning for every state with results that are doubtful."""
-    for name, by_state in told.items():
-        for state, doubt in by_state.items():
-            if np.isfinite(results[name][state]).all():
-                place = "/q" if single else f"/q/{state}"
-                told_of = {"pointer": place, "code": doubt.code, "message": doubt.message}
-                yield {**told_of, "state": state, "quantity": name}

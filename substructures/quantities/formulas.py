@@ -9,7 +9,8 @@ from substructures.errors import TooLarge
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
-from substructures.quantities import derivatives
+from substructures.quantities import canonical, derivatives
+from substructures.quantities.canonical import momentum
 from substructures.quantities.certificate import certified
 from substructures.quantities.memo import ProgramCache
 from substructures.quantities.workspace import ID, Workspace, vector
@@ -60,6 +61,12 @@ def _lagrangian(model: Model, _: int) -> Program:
     return r.program({"lagrangian": Formulas((), {(): twice / 2 - r.scalar("potential_energy")})})
 
 
+def _power(model: Model, _: int) -> Program:
+    """Q_a q'^a, not summed."""
+    r = Workspace(model)
+    return r.program({"power": vector([Q * r.velocity_symbol(a) for a, Q in enumerate(r.vector("forces"))])})
+
+
 def _total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
     r, outputs = Workspace(model), dict[str, Formulas]()
@@ -77,6 +84,8 @@ NEEDS = {
     "coriolis": ("christoffel",),
     "lagrangian": ("metric", "potential_energy"),
     "total_momentum": ("linear_momentum", "angular_momentum"),
+    "christoffel_second_kind": ("metric", "christoffel"),
+    "hamiltonian": ("metric", "potential_energy"),
 }
 _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "coriolis": _coriolis,
@@ -85,7 +94,12 @@ _FORMULAS: dict[str, Callable[[Model, int], Program]] = {
     "kinetic_energy": _kinetic_energy,
     "lagrangian": _lagrangian,
     "generalised_momenta": _generalised_momenta,
+    "power": _power,
     "total_momentum": _total_momentum,
+    "inverse_metric": canonical.inverse_metric,
+    "christoffel_second_kind": canonical.christoffel_second_kind,
+    "hamiltonian": canonical.hamiltonian,
+    "canonical_equations": canonical.canonical_equations,
     "inverse_dynamics_derivative": lambda model, _: derivatives.inverse_dynamics_derivative(model),
     "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
 }
@@ -100,6 +114,8 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     lagrangian (): T - V [J], of the forces that have a potential; generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a;
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
+    power (n,): Q_a q'^a of every coordinate [W], whose sum is dT/dt;
+    inverse_metric, christoffel_second_kind, hamiltonian, canonical_equations: :mod:`.canonical`;
     total_momentum: outputs ``linear`` (3,) [kg m/s] and ``angular`` (3,) [kg m^2/s] about the world's origin;
     inverse_dynamics_derivative, forward_dynamics_derivative (n,) beside the quantity itself: along the symbols ``d.*``,
     see :mod:`substructures.quantities.derivatives`;
@@ -113,7 +129,8 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     result = _FORMULAS[quantity](model, max_nodes)
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
-    return certified(result, model, SERVED[quantity], quantity, needs=NEEDS.get(quantity, DYNAMICS))
+    more = dict.fromkeys(map(momentum, model.coordinates), "parameter")
+    return certified(result, model, SERVED[quantity], quantity, needs=NEEDS.get(quantity, DYNAMICS), more=more)
 
 
 _programs = ProgramCache()

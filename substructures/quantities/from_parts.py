@@ -45,6 +45,7 @@ LOADS, LOAD_POTENTIAL = "loads", "load_potential"
 #: outputs of the program of placements and bindings that only a quantity needs
 ASKED_FOR = {
     "limits": ("limits",),
+    "friction": ("friction",),
     FOUND: ("potential_energy",),
     LOADS: ("forces", "inverse_dynamics"),
     LOAD_POTENTIAL: ("potential_energy",),
@@ -114,6 +115,8 @@ class NumericTree:
         outputs |= self._of_places()
         limits = list(self.assembly.limits.values())
         outputs["limits"] = array((len(limits), 2), lambda k, i: limits[k][i])
+        laws = list(self.assembly.friction.values())
+        outputs["friction"] = array((len(laws), 4), lambda k, i: laws[k][i])
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
@@ -180,7 +183,11 @@ class NumericTree:
         mounted = tuple(_numeric(m, k, numbers, given) for k, m in enumerate(self.assembly.mounted))
         pairs = numbers.get("limits", [])
         limits = dict(zip(self.assembly.limits, zip(pairs[::2], pairs[1::2], strict=True), strict=False))
-        assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), limits=limits)
+        rows = numbers.get("friction", [])
+        laws = zip(rows[::4], rows[1::4], rows[2::4], rows[3::4], strict=True)
+        friction = dict(zip(self.assembly.friction, laws, strict=False))
+        constants: dict[str, Any] = {"limits": limits, "friction": friction}
+        assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), **constants)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities, False)
         potential = numbers.get(FOUND, [0])[0] + numbers.get(LOAD_POTENTIAL, [0])[0]

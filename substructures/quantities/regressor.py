@@ -186,7 +186,7 @@ def _regrouping(assembly: Assembly) -> Program:
     graph = assembly.scope.graph
     # nothing that is constant depends on where the joints are
     resting = [replace(m, bindings={**m.bindings, **dict.fromkeys(m.part.coordinates, 0)}) for m in assembly.mounted]
-    run = _bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
+    run = bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
     rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed)
     entries: dict[tuple[int, ...], Scalar] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
     return program(graph, {"relations": Formulas((len(rows), columns), entries)}, assembly.scope.symbols)
@@ -208,7 +208,7 @@ def _columns(link: _Link) -> Iterator[tuple[int, list[tuple[int, Scalar]]]]:
 
 def _links(run: Run, assembly: Assembly) -> list[_Link]:
     """All links, and their motion in one pass outwards."""
-    placed = couple_parts(_bare(run), assembly.mounted, assembly.gravity).placed
+    placed = couple_parts(bare(run), assembly.mounted, assembly.gravity).placed
     motions = body_motions(placed, *rate_symbols(assembly))
     result: list[_Link] = []
     for (instance, m), here, own_motions in zip(_pairs(assembly), placed, motions, strict=True):
@@ -232,7 +232,7 @@ def _link(name: str, here: PlacedPart, frame: int, own: PartOutputs, motions: Ma
     return _Link(name, inertia, motions[link.parent].at(from_body(here.links, link), link.rotation), columns)
 
 
-def _bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
+def bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
     """Parts without these outputs: without masses and loads coupling gives the kinematics, the rest is zero at once."""
 
     def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:

@@ -41,7 +41,8 @@ class Evaluation:
     ``result["kinematics"]`` a mapping of arrays: ``position`` (N, frames, 3), ``rotation`` (N, frames, 3, 3), ``U`` and
     ``Omega`` (N, frames, n, 3); ``result["momentum"]`` one of ``linear`` and ``angular`` (N, 3).
 
-    ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor. ``count`` = N;
+    ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor,
+    ``joints`` the rows of reactions. ``count`` = N;
     ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states;
     ``warnings`` (pointer, code, message; state and quantity of some): parameters that no body can have, limits that
     states leave, accelerations that are doubtful, and more.
@@ -56,6 +57,7 @@ class Evaluation:
     columns: ParameterColumns | None = None
     single: bool = False
     warnings: tuple[Mapping[str, Any], ...] = ()
+    joints: tuple[str, ...] | None = None
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
@@ -79,6 +81,8 @@ class Evaluation:
             about["frames"] = list(self.frames)
         if self.columns is not None:
             about["columns"] = {"names": list(self.columns.names), "units": list(self.columns.units)}
+        if self.joints is not None:
+            about["joints"] = list(self.joints)
         about["warnings"] = [dict(warning) for warning in self.warnings]
         return {**about, **self.quantities, "failures": [asdict(failure) for failure in self.failures]}
 

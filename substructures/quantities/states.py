@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.documents.fields import in_si
-from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, listed
+from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, among
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
@@ -128,11 +128,14 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
 
 
 def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
-    unknown = f"unknown coordinate '{{}}'; there are {listed(model.coordinates)}"
+    unknown = [str(key) for key in given if key not in model.coordinates]
     faults = [
-        Fault(f"/{name}/{escape(key)}", "unknown-coordinate", unknown.format(str(key)[:80]))
-        for key in given
-        if key not in model.coordinates
+        Fault(
+            f"/{name}/{escape(key)}",
+            "unknown-coordinate",
+            f"unknown coordinate '{key[:80]}'{among(key, model.coordinates, k)}",
+        )
+        for k, key in enumerate(unknown)
     ]
     faults += [
         Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in model.coordinates if c not in given
@@ -213,7 +216,7 @@ def given_values(
     for name, value in given.items():
         pointer = f"{place}/{escape(name)}"
         if name not in known:
-            message = f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(known)}"
+            message = f"unknown {field[:-1]} '{str(name)[:80]}'{among(name, known)}"
             raise InvalidArgument.at(pointer, f"unknown-{field[:-1]}", message)
         result[name] = _per_state(numeric(si_values(value, units.get(name, ""), pointer), pointer), count, pointer)
     return result

@@ -9,18 +9,22 @@ from math import prod
 from typing import Any
 
 from substructures.array import Array
-from substructures.errors import Fault, InvalidArgument, TooLarge
+from substructures.errors import SOUGHT, Fault, InvalidArgument, TooLarge, meant
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
+from substructures.quantities.canonical import PIVOTS
 from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
+from substructures.quantities.reactions import FIELDS as REACTION_FIELDS
+from substructures.quantities.reactions import OUTPUTS as REACTION_OUTPUTS
+from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.quantities.states import default_numbers
 from substructures.tree.model import Model, require_stored
 from substructures.tree.model_outputs import KINEMATICS
 from substructures.tree.plausibility import Plausibility
 
-MODEL, REGRESSOR, CONDITION = "model", "regressor", "condition"
+MODEL, REGRESSOR, CONDITION, REACTIONS = "model", "regressor", "condition", "reactions"
 #: outputs that a large model does not have as formulas, in numbers from the parts of the tree
 PARTS = "parts"
 #: about what an element of them takes
@@ -37,6 +41,12 @@ class Quantity:
     requires: tuple[str, ...] = ()  #: arguments that it needs
     pivots: tuple[str, ...] = ()  #: the outputs that tell whether the metric could be inverted
 
+    def of(self, found: Mapping[str, Array]) -> Any:
+        """Its arrays among the outputs of its program: one, or several by field."""
+        if self.fields:
+            return {field: found[name] for field, name in zip(self.fields, self.outputs, strict=True)}
+        return found[self.outputs[0]]
+
 
 def _outputs(source: str, *names: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
     return {name: Quantity(source, (name,), requires=requires) for name in names}
@@ -44,6 +54,10 @@ def _outputs(source: str, *names: str, requires: tuple[str, ...] = ()) -> dict[s
 
 def _forward(name: str, requires: tuple[str, ...] = ()) -> dict[str, Quantity]:
     return {name: Quantity(name, (name,), requires=requires, pivots=("pivots", "inertias"))}
+
+
+def _by_inverse(name: str, *fields: str) -> dict[str, Quantity]:
+    return {name: Quantity(name, fields or (name,), fields, pivots=(PIVOTS,))}
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -55,13 +69,21 @@ QUANTITIES: dict[str, Quantity] = {
     **_outputs("kinetic_energy", "kinetic_energy"),
     **_outputs("lagrangian", "lagrangian"),
     **_outputs("generalised_momenta", "generalised_momenta"),
+    **_outputs("power", "power"),
+    **_by_inverse("inverse_metric"),
+    **_by_inverse("christoffel_second_kind"),
+    **_by_inverse("hamiltonian"),
+    **_by_inverse("canonical_equations", "coordinate_rates", "momentum_rates"),
     "kinematics": Quantity(MODEL, KINEMATICS, KINEMATICS),
     "momentum": Quantity("total_momentum", ("linear", "angular"), ("linear", "angular")),
     **_outputs("inverse_dynamics_derivative", "inverse_dynamics_derivative", requires=("qdd", "along")),
     **_forward("forward_dynamics_derivative", requires=("along",)),
     **_outputs(REGRESSOR, "regressor", requires=("qdd",)),
     **_outputs(REGRESSOR, "inertial_parameters"),
+    "reactions": Quantity(REACTIONS, REACTION_OUTPUTS, REACTION_FIELDS),
 }
+#: axes of n of what has no result in any state, where that is not one
+AXES = {"hamiltonian": 0, "inverse_metric": 2, "christoffel_second_kind": 3}
 _KNOWN = ", ".join(QUANTITIES)
 
 
@@ -72,7 +94,8 @@ class Sources:
     ``derive``: a program of :data:`substructures.quantities.formulas.DERIVED`; ``regressor``: for the quantities
     ``regressor`` and ``inertial_parameters``, which need the parts of the tree; ``plausibility``: of values, from the
     definitions of these; ``numbers``: outputs of the model that it does not have as formulas, for (values, names,
-    number of states).
+    number of states); ``reactions``: for the quantity of this name, which needs the parts, too; ``joints``: the rows of
+    it that are wanted (default: all).
     """
 
     model: Model
@@ -80,6 +103,8 @@ class Sources:
     regressor: Callable[[], RegressorModel] | None = None
     plausibility: Callable[[], Plausibility] | None = None
     numbers: Callable[[Mapping[str, Any], list[str], int], dict[str, Array]] | None = None
+    reactions: Callable[[], ReactionModel] | None = None
+    joints: tuple[str, ...] | None = None
 
     @property
     def judge(self) -> Plausibility | None:
@@ -95,6 +120,8 @@ class Sources:
         """The program of this name. Raises TooLarge, and InvalidInput for closures and trees without their parts."""
         if source == MODEL:
             return self.model.program
+        if source == REACTIONS:
+            return self.transmitted().program
         return self.columns().program if source == REGRESSOR else self.derive(self.model, source)
 
     def columns(self) -> RegressorModel:
@@ -103,11 +130,22 @@ class Sources:
             raise InvalidArgument.at("/quantities", "needs-parts", "the regressor needs the parts of the tree")
         return self.regressor()
 
+    def transmitted(self) -> ReactionModel:
+        """The reactions of the joints that are wanted. Raises InvalidArgument."""
+        if self.reactions is None:
+            raise InvalidArgument.at("/quantities", "needs-parts", "reactions need the parts of the tree")
+        return self.reactions().of(self.joints)
+
     def parameters(self, names: Sequence[str]) -> Mapping[str, Mapping[str, Any]]:
         """The parameters that quantities may depend on."""
         if REGRESSOR in {QUANTITIES[name].source for name in names}:
             return {**self.columns().parameters, **self.model.parameters}
         return self.model.parameters
+
+
+def _like(name: object, number: int) -> str:
+    """What may have been meant, or else all there are."""
+    return (meant(str(name), QUANTITIES) if number < SOUGHT else "") or f"; there are {_KNOWN}"
 
 
 def read_quantities(quantities: str | Sequence[str]) -> list[str]:
@@ -116,7 +154,7 @@ def read_quantities(quantities: str | Sequence[str]) -> list[str]:
     if not isinstance(names, (list, tuple)) or not names:
         raise InvalidArgument.at("/quantities", "missing", "a list of quantities is needed")
     faults = [
-        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}; there are {_KNOWN}")
+        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity {str(name)[:80]!r}{_like(name, i)}")
         for i, name in enumerate(names)
         if not isinstance(name, str) or name not in QUANTITIES
     ]
@@ -149,6 +187,8 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     # position 3 and rotation 9 of every frame, U and Omega 3 each for every frame and coordinate; ten parameters a link
     several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
     several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6, "condition": 1}
+    several |= {"reactions": 12 * (n + frames), "canonical_equations": 2 * n}
+    several |= {"inverse_metric": n * n, "christoffel_second_kind": n**3}
     return sum(several.get(name, n) for name in quantities)
 
 
@@ -163,6 +203,11 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
         quantity = QUANTITIES[name]
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     yield from _numbers(sources, wanted)
+    if REACTIONS in wanted:
+        # of the motion that the state has by itself, last
+        forward = QUANTITIES[FD]
+        wanted.setdefault(FD, set()).update(forward.outputs + forward.pivots)
+        wanted[REACTIONS] = wanted.pop(REACTIONS)
     for source, names in wanted.items():
         if source == CONDITION:
             yield source, sources.program(MODEL), ["metric"]

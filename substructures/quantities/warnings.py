@@ -20,12 +20,12 @@ def value_warnings(
     sources: Sources,
     parameters: Mapping[str, Any],
     inputs: Collection[str],
-    q: Array,
+    q: Array | None,
     others: Collection[str] = (),
     first: int = 0,
 ) -> list[Notice]:
     """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
-    limits left by ``q`` (N, n); gravity that nobody gave.
+    limits left by ``q`` (N, n), if given; gravity that nobody gave.
     ``others``: parameters that other formulas than those of the model depend on; ``first``: what states are counted
     from.
 
@@ -44,7 +44,7 @@ def value_warnings(
     effective = model.effective.union(others) if judge is None else model.effective.union(others, judge.limiting)
     notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
-    if judge is not None:
+    if judge is not None and q is not None:
         notices += judge.left(model.coordinates, q, parameters, first)
     return notices
 

@@ -46,6 +46,27 @@ def test_a_mass_bounces_back() -> None:
     np.testing.assert_allclose(motion.events[0].q, 3 + 2 * np.sqrt(2 / 50), atol=1e-7)
 
 
+def test_how_high_a_ball_bounces() -> None:
+    """m v dv/dp = -(k + c v) p in contact, so that with b = c/k the function v/b - ln(1 + b v)/b^2 + k p^2/(2 m) is
+    constant: it is the same of the speed in and minus the speed out, whatever the stiffness (Hunt and Crossley 1975).
+    """
+    k, c, speed = 400.0, 300.0, 1.5
+    events = [Event("leaves", "x.x", 3, "falling", "stop")]
+    motion = simulate(slide({"stiffness": 400, "damping": 300}), [2.7], (0, 5), qd=[speed], events=events)
+    assert motion.is_right, motion.checks
+    out, b = -float(motion.qd[-1, 0]), c / k
+
+    def kept(v: float) -> float:
+        return float(v / b - np.log1p(b * v) / b**2)
+
+    assert 0.3 * speed < out < 0.7 * speed
+    np.testing.assert_allclose(kept(-out), kept(speed), rtol=1e-8)
+    # what is lost is the work of the stop
+    lost = 2 * (out**2 - speed**2) / 2
+    np.testing.assert_allclose(motion.series["work"][-1], lost, rtol=1e-8)
+    np.testing.assert_allclose(np.diff(motion.series["energy"][[0, -1]]), lost, rtol=1e-8)
+
+
 def test_damping_takes_energy_and_never_feeds_it_in() -> None:
     """A ball between two stops with gravity: the energy falls, and it comes to rest on the lower one at m g/k."""
     model = slide({"stiffness": 500, "damping": 2000}, 9.81)

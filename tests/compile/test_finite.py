@@ -10,6 +10,7 @@ import pytest
 from machine_code import NEEDS_MACHINE_CODE
 
 from substructures.compile import compile_program
+from substructures.compile.kernel import with_elements
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program
 
@@ -57,4 +58,7 @@ def test_elements_in_an_order_of_the_caller(program: Program) -> None:
     found = kernel.evaluate(values, places={"symmetric": places})
     dense = kernel.evaluate(values)
     np.testing.assert_array_equal(found["symmetric"], dense["symmetric"].reshape(13, 9)[:, places])
+    chosen = with_elements(dense, {"symmetric": places})["symmetric"]  # as engines without places have it
+    np.testing.assert_array_equal(chosen, found["symmetric"])
+    assert chosen.flags.c_contiguous  # otherwise it cannot be written as JSON
     np.testing.assert_array_equal(found["quotient"], dense["quotient"])

@@ -9,7 +9,9 @@ import pytest
 from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good, pointer_of, request
 
 from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
+from substructures.documents.fields import LONGEST
 from substructures.errors import InvalidArgument
+from substructures.expr.syntax import MAX_LENGTH
 from substructures.quantities.evaluation import Sources, check, evaluate
 from substructures.quantities.regressor import regressor
 
@@ -97,7 +99,7 @@ REQUESTS: list[tuple[str, Plain, str, str, str]] = [
     ("not a number", {"q": [0, float("nan")] + [0] * 8}, "/q/1", "number-not-finite", ""),
     ("infinity in an array", {"qd": np.full((1, 10), np.inf)}, "/qd/0/0", "number-not-finite", ""),
     ("an integer beyond all doubles", {"q": [10**400] + [0] * 9}, "/q", "", ""),
-    ("unknown coordinate", {"q": {"one.q9": [0]}}, "/q/one.q9", "unknown-coordinate", "'one.q9'; there are one."),
+    ("unknown coordinate", {"q": {"one.q9": [0]}}, "/q/one.q9", "unknown-coordinate", "'one.q9'; did you mean 'one.q"),
     ("unknown parameter", {"parameters": {"one.l9": 1}}, "/parameters/one.l9", "unknown-parameter", "one.l9"),
     ("bound parameter", {"parameters": {"two.l": 1}}, "/parameters/two.l", "unknown-parameter", "two.l"),
     ("infinite parameter", {"parameters": {"one.l": float("inf")}}, "/parameters/one.l", "number-not-finite", ""),
@@ -170,3 +172,20 @@ def test_a_singular_metric_is_a_failure_with_advice() -> None:
     answer = evaluate(couple(spec, {"x": part}), ["forward_dynamics"], q=[0])
     assert answer.failures[0].state == 0
     assert "singular" in answer.failures[0].message
+
+
+def rod(stiffness: str) -> Plain:
+    ends = {"from": "world", "to": "two.tip", "to_at": [1, 0, 0]}
+    return {**TREE, "loads": [{"name": "rod", "type": "spring", **ends, "stiffness": stiffness}]}
+
+
+@pytest.mark.parametrize("stiffness", ["\u00c7", "k +", "2*("])
+def test_a_spring_law_that_cannot_be_read_is_told(stiffness: str) -> None:
+    with pytest.raises(InvalidDocument, match="/loads/0/stiffness: "):
+        coupled(rod(stiffness))
+
+
+def test_expressions_are_as_long_as_their_reader_takes() -> None:
+    assert LONGEST == MAX_LENGTH
+    with pytest.raises(InvalidDocument, match="an expression has at most 10000 characters"):
+        TreeSpec.read(rod("1" * (MAX_LENGTH + 1)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from substructures.quantities.evaluation import (
     interpreted,
     numbers_per_state,
 )
+from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 
 N = 5
@@ -36,9 +38,15 @@ def compiled(program: Program, values: Mapping[str, Any], names: list[str], _sta
     return compile_program(program, names).evaluate(values)
 
 
+def random_sources(seed: int = 77) -> Sources:
+    definition = random_definition(np.random.default_rng(seed), Kind(3, joints=("revolute", "prismatic"), massive=True))
+    spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
+    model, transmitted = couple(spec, parts), cache(lambda: reactions(spec, parts))
+    return Sources(model, regressor=lambda: regressor(spec, parts), reactions=transmitted)
+
+
 def random_model() -> Model:
-    rng = np.random.default_rng(77)
-    return model_of(random_definition(rng, Kind(3, joints=("revolute", "prismatic"), massive=True)))
+    return random_sources().model
 
 
 def leaves(answer: Evaluation) -> dict[str, Any]:
@@ -53,10 +61,11 @@ def leaves(answer: Evaluation) -> dict[str, Any]:
 @pytest.mark.parametrize("engine", [interpreted, compiled])
 @pytest.mark.parametrize("batched", ["qd qdd", "qdd", "qd", "t", "inputs"])
 def test_one_position_stands_for_all(engine: Evaluator, batched: str) -> None:
-    model = random_model()
+    sources = random_sources()
+    model = sources.model
     x = random_states(np.random.default_rng(1), N, model.dof)
     given = {"t": np.arange(N) / 7, "inputs": {f"tau.{model.coordinates[0]}": np.arange(N) - 2.0}}
-    one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES}
+    one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES, "sources": sources}
     one["along"] = Direction(q=x["qd"][1], inputs={f"tau.{model.coordinates[0]}": 1.0})
     one |= {name: (x | given)[name] for name in batched.split()}
     found = evaluate(model, **one, evaluator=engine)
@@ -79,10 +88,8 @@ def test_the_axis_of_states_is_dropped_for_one_state_only() -> None:
 
 def test_the_size_of_an_answer_is_known_before() -> None:
     """The numbers of every quantity exactly, and at most so many without any formulas."""
-    definition = random_definition(np.random.default_rng(78), Kind(3, joints=("revolute", "prismatic"), massive=True))
-    spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
-    model = couple(spec, parts)
-    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    sources = random_sources(78)
+    model = sources.model
     x = random_states(np.random.default_rng(1), 1, model.dof)
     state: dict[str, Any] = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
     for name in QUANTITIES:

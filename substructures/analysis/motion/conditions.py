@@ -17,16 +17,17 @@ from substructures.analysis.motion.signals import Curve, Signal, Table, require_
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument, listed
+from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
+from substructures.quantities.reactions import OUTPUTS as REACTIONS
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: names of series and arrays that trajectories have by themselves
 RESERVED = frozenset(
     ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
-) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps"}
+) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction", *REACTIONS}
 
 
 @dataclass(frozen=True)
@@ -162,9 +163,7 @@ def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]
     for name, one in given.items():
         pointer = f"/inputs/{escape(name)}"
         if name not in known:
-            raise InvalidArgument.at(
-                pointer, "unknown-input", f"unknown input '{name[:80]}'; there are {listed(known)}"
-            )
+            raise InvalidArgument.at(pointer, "unknown-input", f"unknown input '{name[:80]}'{among(name, known)}")
         if isinstance(one, Table):
             require_covered(one, span, pointer)
             curves[name] = Curve(one)
@@ -172,11 +171,14 @@ def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]
 
 
 def _check_names(model: Model, parameters: Mapping[str, float], series: Mapping[str, object]) -> None:
-    unknown = f"unknown parameter '{{}}'; there are {listed(model.parameters)}"
+    unknown = [name for name in parameters if name not in model.parameters]
     faults = [
-        Fault(f"/parameters/{escape(name)}", "unknown-parameter", unknown.format(name[:80]))
-        for name in parameters
-        if name not in model.parameters
+        Fault(
+            f"/parameters/{escape(name)}",
+            "unknown-parameter",
+            f"unknown parameter '{name[:80]}'{among(name, model.parameters, k)}",
+        )
+        for k, name in enumerate(unknown)
     ]
     faults += [
         Fault(f"/series/{name}", "reserved-name", f"'{name}' is a series of every trajectory: take another name")

@@ -34,7 +34,7 @@ from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.certificate.perturbed import by_parameters, varied
-from substructures.errors import Fault, InvalidArgument, listed
+from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
@@ -79,7 +79,7 @@ def _require_parameters(model: Model, names: Sequence[str], argument: str) -> No
         Fault(
             f"/{argument}/{i}",
             "unknown-parameter",
-            f"unknown parameter '{str(name)[:80]}'; there are {listed(model.parameters)}",
+            f"unknown parameter '{str(name)[:80]}'{among(name, model.parameters)}",
         )
         for i, name in enumerate(names)
         if name not in model.parameters

@@ -6,12 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
+from typing import Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
+from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.fixed_step import FixedStep, march
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
@@ -32,6 +36,7 @@ from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
 from substructures.quantities.limits import reached
 
+FrictionMode = Literal["regularised", "exact"]
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
@@ -41,9 +46,19 @@ SINGULAR = (
 
 @dataclass(frozen=True, kw_only=True)
 class TreeProblem(MotionProblem):
-    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q'); ``fixed_step``: in real-time mode."""
+    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q'); ``fixed_step``: in real-time mode;
+    ``friction``: by the smooth law of the formulas, or set-valued at rest.
+    """
 
     fixed_step: FixedStep | None = None
+    friction: FrictionMode = "regularised"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        one_of(self.friction, "friction", ("regularised", "exact"))
+        if self.friction == "exact" and (self.fixed_step is not None or self.integrator.method == TAYLOR):
+            message = "joints that stick exactly need steps of any size: leave 'fixed_step' and the method Taylor out"
+            raise InvalidArgument.at("/friction", "not-supported", message)
 
 
 def simulate_tree(
@@ -132,9 +147,17 @@ def _moved(
     else:
         settings = IntegratorSettings(_stepper(conditions, problem, f), most)
         watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)
-        motion = integrate(f, x, span, outputs, settings, watches, conditions.breaks(span), told, f.enter)
+        breaks = conditions.breaks(span)
+        if problem.friction == "exact":
+            motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
+        else:
+            motion = integrate(f, x, span, outputs, settings, watches, breaks, told, f.enter)
         f.leave()
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
+
+
+def _dry(conditions: Conditions, f: RightHandSide) -> DryMotion:
+    return DryMotion(f, conditions, friction_laws(conditions.model, conditions.values))
 
 
 def _stepper(conditions: Conditions, problem: TreeProblem, f: RightHandSide) -> Stepper:
@@ -158,6 +181,14 @@ def _judged(
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
     series = integral_series(model, integrals, states)
+    more: tuple[Check, ...] = ()
+    if isinstance(motion, DryRun):
+        dry = _dry(conditions, f)
+        second, force = motion.forces(dry, t, x)
+        if "power" in series:
+            series["power"] = series["power"] + dry.instead(force, x)
+        series |= {"qdd": second, "friction": force}
+        more = (sticking(dry, motion, t, force, problem.drift_limit),)
     checks = judge(model, integrals, states, series, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
@@ -170,7 +201,7 @@ def _judged(
         x[:, : f.n],
         x[:, f.n :],
         {name: values[results] for name, values in series.items()} | conditions.series_at(t, x),
-        checks,
+        (*checks, *more),
         motion.status,
         motion.message,
         motion.steps,

@@ -20,14 +20,18 @@ def to_npz(trajectory: Trajectory) -> bytes:
 
 
 def to_csv(trajectory: Trajectory) -> str:
-    """One row for every time: t, coordinates, velocities (q'), series (components numbered from 1); 17 digits."""
+    """One row for every time: t, coordinates, velocities (q'), series (components numbered from 1, those of reactions
+    named by joint and axis); 17 digits.
+    """
     columns: list[tuple[str, Array]] = [("t", trajectory.t)]
     columns += [(name, trajectory.q[:, a]) for a, name in enumerate(trajectory.coordinates)]
     columns += [(f"{name}'", trajectory.qd[:, a]) for a, name in enumerate(trajectory.coordinates)]
     for name, values in trajectory.series.items():
-        flat = values.reshape(len(trajectory.t), -1)
-        many = values.ndim > 1
-        columns += [(f"{name}.{k + 1}" if many else name, flat[:, k]) for k in range(flat.shape[1])]
+        flat, many = values.reshape(len(trajectory.t), -1), values.ndim > 1
+        labels = [str(k + 1) for k in range(flat.shape[1])]
+        if values.ndim == 3 and values.shape[1] == len(trajectory.joints):
+            labels = [f"{joint}.{axis}" for joint in trajectory.joints for axis in "xyz"]
+        columns += [(f"{name}.{label}" if many else name, x) for label, x in zip(labels, flat.T, strict=True)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(name for name, _ in columns)

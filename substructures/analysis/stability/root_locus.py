@@ -14,7 +14,7 @@ from substructures.analysis.arguments import Numbers, reals
 from substructures.analysis.given import StateArray, numbers
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
-from substructures.errors import InvalidArgument, listed
+from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model
@@ -67,7 +67,7 @@ def root_locus(
         raise InvalidArgument.at("/values", "too-short" if not at else "too-long", message)
     others, constant = numbers(parameters, "parameters"), numbers(inputs, "inputs")
     if parameter not in model.parameters:
-        message = f"unknown parameter '{str(parameter)[:80]}'; there are {listed(model.parameters)}"
+        message = f"unknown parameter '{str(parameter)[:80]}'{among(parameter, model.parameters)}"
         raise InvalidArgument.at("/parameter", "unknown-parameter", message)
     near = _start(model, q)
     rows: list[tuple[Array, ComplexArray, str]] = []

@@ -1,0 +1,178 @@
+"""Dry friction that sticks exactly: set-valued at rest, found anew wherever a joint stops or breaks away.
+
+A joint that slips has the force -s (F_c + (F_s - F_c) exp(-(v/v_s)^2)), s the sign of its rate v, in place of the
+smooth law of the formulas. One that sticks keeps v = 0 by what that needs, f, with |f| <= F_s. Which ones stick when
+some are at rest is told by Gauss's principle: of all accelerations a those with the least
+
+    1/2 (a - a_free)^T g (a - a_free) + sum_i F_s,i |a_i|      (sum over the joints at rest)
+
+This is strictly convex, so there is one answer; its dual, least 1/2 f^T W f + a_free^T f with |f_i| <= F_s,i and
+W = (g^-1) of the joints at rest, is a linear complementarity problem (P. Loetstedt, SIAM J. Appl. Math. 42, 1982),
+solved as bounded least squares by an active set (P. B. Stark and R. L. Parker, Computational Statistics 10, 1995).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.motion.conditions import Conditions
+from substructures.analysis.motion.right_hand_side import RightHandSide
+from substructures.analysis.motion.zeros import Watch
+from substructures.array import Array
+from substructures.errors import InvalidArgument
+from substructures.expr.interpret import interpret
+from substructures.quantities.states import require
+from substructures.tree.model import Model
+
+#: of the rate v_0 of the smooth law: what counts as rest
+REST = 1e-9
+#: of F_s: so near to it a joint breaks away, and so far beyond it one that sticks is watched
+EDGE = 1e-9
+#: by joint with friction: 1 and -1 slip that way, 0 sticks
+Signs = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class FrictionLaws:
+    """Of the coordinates ``places`` (k,): F_c, F_s [N m, N], v_s (0: none) and v_0 [rad/s, m/s], (k,) each."""
+
+    places: NDArray[np.int64]
+    coulomb: Array
+    static: Array
+    stribeck: Array
+    velocity: Array
+
+    def slipping(self, rates: Array) -> Array:
+        """The size of the force of joints that slip, (..., k)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(self.stribeck > 0, rates / self.stribeck, np.inf)
+        # F_c + (F_s - F_c) exp(-(v/v_s)^2)
+        return np.asarray(self.coulomb + (self.static - self.coulomb) * np.exp(-(ratio**2)))
+
+    def smooth(self, rates: Array) -> Array:
+        """What the formulas of the model have, (..., k)."""
+        return np.asarray(-self.slipping(rates) * np.tanh(rates / self.velocity))
+
+
+def friction_laws(model: Model, values: dict[str, float]) -> FrictionLaws:
+    """The friction of a model in numbers. Raises InvalidArgument (``/friction``) where there is none."""
+    if "friction" not in model.program.outputs:
+        message = "no joint of the tree has 'friction': leave it out, or give some joint a friction"
+        raise InvalidArgument.at("/friction", "no-friction", message)
+    output = model.program.outputs["friction"]
+    require(model.program, ["friction"], values)
+    rows = interpret(model.program, values, ["friction"])["friction"]
+    places = np.array(sorted({index[0] for index in output.index}), dtype=np.int64)
+    found = np.asarray(rows, dtype=np.float64)[places]
+    if not ((found[:, :3] >= 0).all() and (found[:, 3] > 0).all()):
+        message = "with these parameters a joint has a negative friction, or one over a rate that is not positive"
+        raise InvalidArgument.at("/parameters", "bad-friction", message)
+    return FrictionLaws(places, *found.T)
+
+
+class DryMotion:
+    """x' = f(t, x), x = (q, q', W), while the joints with friction slip or stick as ``signs`` say. Not for several
+    threads at a time.
+    """
+
+    def __init__(self, f: RightHandSide, conditions: Conditions, laws: FrictionLaws) -> None:
+        self.f, self.laws, self.n = f, laws, f.n
+        self.signs: Signs = np.zeros(len(laws.places), dtype=np.int64)
+        self._q, self._g = np.zeros((1, f.n)), np.zeros((1, f.n, f.n))
+        kernel = program_kernel(conditions.model.program.select(["metric"]))
+        columns = [(list(conditions.model.coordinates), self._q)]
+        self._metric = kernel.bind({"metric": self._g}, conditions.values, columns=columns)
+
+    def __call__(self, t: float, x: Array) -> Array:
+        """x' at (t, x)."""
+        n, result = self.n, np.empty(len(x))
+        result[:n] = x[n : 2 * n]
+        result[n : 2 * n], _, power = self.moved(t, x, self.signs)
+        if self.f.has_power:
+            result[2 * n] = power
+        return result
+
+    def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
+        """q'' (n,), the friction of the joints that have some (k,), and the power of all forces without potential."""
+        places, v = self.laws.places, x[self.n + self.laws.places]
+        free, W, power = self._freed(t, x)
+        force = -signs * self.laws.slipping(v)
+        second = free + W @ force
+        stuck = np.flatnonzero(signs == 0)
+        if len(stuck):
+            # W_SS f_S = -a_S
+            force[stuck] = np.linalg.solve(W[np.ix_(places[stuck], stuck)], -second[places[stuck]])
+            second = second + W[:, stuck] @ force[stuck]
+            second[places[stuck]] = 0.0
+        return second, force, power + float(force @ v)
+
+    def decided(self, t: float, x: Array) -> tuple[Signs, Array]:
+        """Who slips and who sticks at a state, and the state with those at rest at rest."""
+        laws = self.laws
+        x = x.copy()
+        v = x[self.n + laws.places]
+        rest = np.flatnonzero(np.abs(v) <= 2 * REST * laws.velocity)
+        x[self.n + laws.places[rest]] = 0.0
+        signs = np.sign(v).astype(np.int64)
+        signs[rest] = 0
+        # at rest the smooth law is zero
+        free, W, _ = self._freed(t, x)
+        # those that break away have the force of slipping, which may be less, so that others may follow
+        while len(rest):
+            second = free - W @ (signs * laws.slipping(x[self.n + laws.places]))
+            f = _least(W[np.ix_(laws.places[rest], rest)], second[laws.places[rest]], laws.static[rest])
+            away = np.abs(f) >= (1 - EDGE) * laws.static[rest]
+            if not away.any():
+                break
+            signs[rest[away]] = -np.sign(f[away]).astype(np.int64)
+            rest = rest[~away]
+        return signs, x
+
+    def watches(self) -> list[Watch]:
+        """A joint that slips comes to rest; one that sticks needs more than it can have."""
+
+        def stops(k: int) -> Watch:
+            """Its rate against its way; a start the wrong way counts, too."""
+            place, sign, least = self.n + int(self.laws.places[k]), int(self.signs[k]), REST * self.laws.velocity[k]
+            return Watch("rest", lambda _, x: float(sign * x[place] + least), -1)
+
+        def breaks_away(k: int) -> Watch:
+            """What is left of its static friction."""
+            most = (1 + EDGE) * self.laws.static[k]
+            return Watch("slip", lambda t, x: float(most - abs(self.moved(t, x, self.signs)[1][k])), -1)
+
+        return [breaks_away(k) if sign == 0 else stops(k) for k, sign in enumerate(self.signs)]
+
+    def instead(self, force: Array, x: Array) -> Array:
+        """What the power (K,) of these forces (K, n) is more than that of the smooth law, at states x (K, ...)."""
+        v = x[:, self.n + self.laws.places]
+        return np.asarray(((force[:, self.laws.places] - self.laws.smooth(v)) * v).sum(axis=1))
+
+    def _freed(self, t: float, x: Array) -> tuple[Array, Array, float]:
+        """q'' without friction (n,), the columns (n, k) of g^-1 for the joints with friction, and the power."""
+        acceleration, _, power = self.f.evaluate(t, x)
+        self._q[0] = x[: self.n]
+        self._metric()
+        unit = np.zeros((self.n, len(self.laws.places)))
+        unit[self.laws.places, np.arange(len(self.laws.places))] = 1.0
+        W = np.linalg.solve(self._g[0], unit)
+        v = x[self.n + self.laws.places]
+        smooth = self.laws.smooth(v)
+        # the smooth law, which the formulas have, taken off
+        return acceleration - W @ smooth, W, power - float(smooth @ v)
+
+
+def _least(W: Array, free: Array, most: Array) -> Array:
+    """f with the least 1/2 f^T W f + free^T f and |f| <= most."""
+    bound = np.maximum(most, 1e-300)
+    # W = L L^T: least |L^T f + L^-1 free|
+    L = np.linalg.cholesky(W)
+    right = -scipy.linalg.solve_triangular(L, free, lower=True)
+    found: Any = scipy.optimize.lsq_linear(L.T, right, bounds=(-bound, bound), method="bvls", tol=1e-14)
+    return np.asarray(found.x, dtype=np.float64)

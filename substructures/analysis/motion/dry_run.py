@@ -1,0 +1,93 @@
+"""A motion with dry friction as pieces, from where a joint stops or breaks away to where the next one does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from substructures.analysis.motion.dry_friction import DryMotion, Signs
+from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, TimeReport, integrate
+from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.verdict import About, Check
+from substructures.array import Array
+
+#: so many pieces, one after the other, of less than this share of the span mean that the motion is stuck
+STUCK, LEAST = 50, 1e-9
+ADVICE = "joints stop and break away without end: raise 'max_steps', or take the smooth law of friction ('regularised')"
+
+
+@dataclass
+class DryRun(IntegratedMotion):
+    """With the times from which on joints slip and stick as ``signs`` say."""
+
+    since: list[float] = field(default_factory=list)
+    signs: list[Signs] = field(default_factory=list)
+
+    def at(self, t: float) -> Signs:
+        """Who slips and who sticks at a time; of two that meet there the later one."""
+        return self.signs[max(0, int(np.searchsorted(self.since, t, side="right")) - 1)]
+
+    def forces(self, f: DryMotion, t: Array, x: Array) -> tuple[Array, Array]:
+        """q'' (K, n) and the friction on all coordinates (K, n)."""
+        second, force = np.zeros((len(t), f.n)), np.zeros((len(t), f.n))
+        for i, (at, state) in enumerate(zip(t.tolist(), x, strict=True)):
+            second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
+        return second, force
+
+    def add(self, piece: IntegratedMotion, outputs: Array, events: int) -> None:
+        """One more piece; what it has at its own end is no result, unless the motion ends there."""
+        ends = piece.status != "stopped" or piece.cancelled or piece.found[-1][0] < events
+        for t, x in zip(piece.t, piece.x, strict=True):
+            if ends or t in outputs:
+                self.t.append(t)
+                self.x.append(x)
+        self.step_t += piece.step_t
+        self.step_x += piece.step_x
+        self.found += [each for each in piece.found if each[0] < events]
+        self.steps, self.evaluations = self.steps + piece.steps, self.evaluations + piece.evaluations
+        self.stride, self.cancelled = max(self.stride, piece.stride), piece.cancelled
+        if ends:
+            self.status, self.message = piece.status, piece.message
+
+
+def integrate_dry(
+    f: DryMotion,
+    x: Array,
+    span: tuple[float, float],
+    outputs: Array,
+    settings: IntegratorSettings,
+    watches: Sequence[Watch],
+    breaks: Sequence[float],
+    progress: TimeReport | None,
+) -> DryRun:
+    """As :func:`substructures.analysis.motion.integration.integrate`; joints slip and stick as friction lets them."""
+    run, t, still = DryRun(), span[0], 0
+    while True:
+        f.signs, x = f.decided(t, x)
+        run.since.append(t)
+        run.signs.append(f.signs)
+        left = replace(settings, max_steps=max(1, settings.max_steps - run.steps))
+        wanted = outputs if t == span[0] else outputs[outputs > t]
+        pieces = (t, span[1]), wanted, left, [*watches, *f.watches()], [b for b in breaks if b > t]
+        piece = integrate(f, x, *pieces, progress, f.f.enter)
+        run.add(piece, outputs, len(watches))
+        if piece.status != "stopped" or piece.cancelled or piece.found[-1][0] < len(watches):
+            return run
+        _, end, x = piece.found[-1]
+        still = still + 1 if end - t <= LEAST * (span[1] - span[0]) else 0
+        if end >= span[1]:
+            return run
+        if still > STUCK or run.steps >= settings.max_steps:
+            run.end("failed", f"at t = {end:.9g} s {ADVICE}")
+            return run
+        t = end
+
+
+def sticking(f: DryMotion, run: DryRun, t: Array, force: Array, limit: float) -> Check:
+    """No joint sticks with more than its static friction; ``force``: on all coordinates (K, n)."""
+    about: About = "friction", "zero", "no joint that sticks needs more than its static friction F_s", "1"
+    stuck = np.array([run.at(at) == 0 for at in t.tolist()]).reshape(len(t), -1)
+    beyond = np.abs(force[:, f.laws.places]) / np.maximum(f.laws.static, 1e-300) - 1
+    return Check.of(about, np.where(stuck, np.maximum(beyond, 0), 0).max(axis=1, initial=0), t, 1.0, limit)

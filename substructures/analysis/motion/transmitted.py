@@ -1,0 +1,52 @@
+"""Reactions along a motion: what every joint transmits at the times of a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.array import Array
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.mechanics.accelerations import definite_solve
+from substructures.quantities.formulas import DYNAMICS
+from substructures.quantities.reactions import OUTPUTS, ReactionModel
+from substructures.tree.model import Model
+
+
+def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory, start: Start) -> Trajectory:
+    """The trajectory with the series ``reaction_force`` [N], ``reaction_moment`` [N m] (K, rows, 3) in the frames of
+    the joints, ``..._world`` in the axes of the world; ``joints`` names the rows.
+
+    ``start``: what the motion began with. Accelerations and multipliers are those of the motion: of closures the series
+    ``qdd`` and ``multipliers``, else q'' = g^-1 (Q - Gamma q' q').
+    """
+    span = float(motion.t[0]), float(motion.t[-1])
+    conditions = read_conditions(model, start, span, ())
+    values: dict[str, Any] = {**conditions.values, **_states(model, motion)}
+    values |= conditions.inputs_at(motion.t, np.concatenate([motion.q, motion.qd], axis=1))
+    seconds = _accelerations(model, motion, values)
+    values |= {f"{name}''": seconds[:, a] for a, name in enumerate(model.coordinates)}
+    rows = [f"lambda.{closure.name}.{row}" for closure in model.closures for row in closure.rows]
+    values |= {name: motion.series["multipliers"][:, k] for k, name in enumerate(rows)}
+    found = interpret_in_blocks(transmitted.program, values, list(OUTPUTS), len(motion.t))
+    return replace(motion, series={**motion.series, **found}, joints=transmitted.rows)
+
+
+def _states(model: Model, motion: Trajectory) -> dict[str, Array]:
+    found = {"t": motion.t} | {name: motion.q[:, a] for a, name in enumerate(model.coordinates)}
+    return found | {f"{name}'": motion.qd[:, a] for a, name in enumerate(model.coordinates)}
+
+
+def _accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any]) -> Array:
+    """q'' (K, n) of the motion."""
+    if "qdd" in motion.series:
+        return motion.series["qdd"]
+    known = {symbol.name: 0.0 for symbol in model.program.symbols if symbol.kind == "input"} | dict(values)
+    found = interpret_in_blocks(model.program, known, list(DYNAMICS), len(motion.t))
+    return definite_solve(found["metric"], found["forces"] - found["bias"])[0]

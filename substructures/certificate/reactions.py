@@ -1,0 +1,129 @@
+"""Reactions by virtual power: every joint is released in all six directions, in which what it exerts does work.
+
+In the documents a massless body on a free joint is put before every joint, and before every instance. What its six
+actuators have to do while it rests, g q'' + Gamma q' q' - Q - G^T lambda of its coordinates, is the force and the
+moment that is transmitted there (d'Alembert's principle with released constraints), as of any other coordinate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from flint import arb
+
+from substructures.certificate.bodies import NONE, Bodies, Frame, coordinates_of, in_order
+from substructures.certificate.closures import ROWS, closure_outputs
+from substructures.certificate.dynamics import motions, required
+from substructures.certificate.linear import Ball, Matrix, cross, dot, vector
+from substructures.certificate.numbers import Plain
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.tree_outputs import beside, built, hosts_first, tree_symbols
+from substructures.errors import VerificationFailed
+
+OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
+#: no name of a document has it
+MARK = "~"
+#: of a free joint: shifts along x, y, z, then turns about z, y, x
+_FREE = ("x", "y", "z", "yaw", "pitch", "roll")
+
+
+def reaction_outputs(
+    tree: Plain, definitions: Mapping[str, Plain], rows: Sequence[str], values: Mapping[str, Ball]
+) -> Outputs:
+    """Forces and moments of all ``rows``: joints by coordinates, then seats. Raises VerificationFailed for others."""
+    free_tree, free = _released(tree, definitions)
+    # what is virtual is zero and rests
+    at_rest = {name: arb(0) for name in tree_symbols(free_tree, free) if MARK in name} | dict(values)
+    numbers, bodies, _, acting = built(free_tree, free, at_rest)
+    Q: dict[int, Ball] = {}
+    for forces in (*(x for f in acting for x in (f.applied, f.wrenches)), beside(tree, free, bodies, numbers).applied):
+        for a, x in forces.items():
+            Q[a] = Q.get(a, arb(0)) + x
+    rates, second = ([at_rest[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    if tree.get("closures"):
+        found = Outputs()
+        closure_outputs(found, bodies, tree["closures"], numbers, rates)
+        names = [f"lambda.{c['name']}.{row}" for c in tree["closures"] for row in ROWS[c["type"]]]
+        for (k, a), x in found["closure.jacobian"].entries.items():
+            # a row of no effect has no symbol in any formula
+            Q[a] = Q.get(a, arb(0)) + x * values.get(names[k], arb(0))
+    needed = _required(bodies, rates, second, numbers.vector(tree.get("gravity", NONE)) * -1)
+    exerted = {j.coordinate: needed[a] - Q.get(a, arb(0)) for a, j in enumerate(bodies.joints)}
+    places = list(_places(tree, definitions, bodies))
+    if [name for name, *_ in places] != list(rows):
+        raise VerificationFailed(f"the joints are not those of the documents: {', '.join(rows)}")
+    return _shown(places, exerted)
+
+
+def _free_body(name: str, parent: str, called: str) -> Plain:
+    coordinates = [f"{MARK}{called}{MARK}{way}" for way in _FREE]
+    return {"name": name, "parent": parent, "joint": {"type": "free", "coordinate": coordinates}}
+
+
+def _released(tree: Plain, definitions: Mapping[str, Plain]) -> tuple[Plain, dict[str, Plain]]:
+    """The documents with free massless bodies before all joints and instances."""
+    free = {name: _released_definition(definition) for name, definition in definitions.items()}
+    instances = []
+    for instance in tree.get("instances", ()):
+        seat = f"{MARK}{instance['name']}"
+        free[seat] = {"name": seat, "bodies": [_free_body("seat", "base", "seat")]}
+        bound = {key: x for key, x in instance.items() if key not in ("at", "placement")}
+        instances.append({key: x for key, x in instance.items() if key in ("at", "placement")} | {"name": seat})
+        instances.append(bound | {"at": f"{seat}.seat"})
+    return {**tree, "instances": instances}, free
+
+
+def _released_definition(definition: Plain) -> Plain:
+    bodies = []
+    for body in definition.get("bodies", ()):
+        if body["joint"]["type"] != "fixed":
+            name = f"{MARK}{body['name']}"
+            bodies.append(_free_body(name, body["parent"], body["name"]))
+            body = {**body, "parent": name}
+        bodies.append(body)
+    return {**definition, "bodies": bodies}
+
+
+def _required(bodies: Bodies, rates: Sequence[Ball], second: Sequence[Ball], world: Matrix) -> list[Ball]:
+    """What inertia and weight need along every coordinate; the world is accelerated against gravity."""
+    moving = motions(bodies, rates, second, world)
+    loads = {k: required(moving[k], mass) for k, mass in bodies.own.items()}
+    result = [arb(0)] * len(bodies.joints)
+    for k in reversed(range(len(bodies.joints))):
+        joint, (force, moment) = bodies.joints[k], loads[k]
+        result[k] = dot(joint.v, force) + dot(joint.w, moment)
+        F, N = loads[joint.parent]
+        loads[joint.parent] = F + force, N + moment
+    return result
+
+
+_Place = tuple[str, str, Matrix, Matrix, Frame]
+
+
+def _places(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies) -> Iterator[_Place]:
+    """(row, prefix of its virtual coordinates, axes, origin, frame of the virtual body) of joints, then of seats."""
+    names = [instance["name"] for instance in hosts_first(tree)]
+    at = {joint.coordinate: joint for joint in bodies.joints}
+    for name in names:
+        for body in in_order(definitions[name]):
+            for coordinate in coordinates_of(body):
+                joint, bearing = at[f"{name}.{coordinate}"], f"{name}.{MARK}{body['name']}"
+                yield joint.coordinate, bearing, joint.A, joint.body, bodies.frames[bearing]
+    for name in names:
+        seat = bodies.frames[f"{name}.base"]
+        yield f"{name}.base", f"{MARK}{name}.{MARK}seat", seat.A, seat.p, bodies.frames[f"{MARK}{name}.seat"]
+
+
+def _shown(places: Sequence[_Place], exerted: Mapping[str, Ball]) -> Outputs:
+    """About the origins of the frames, in their axes and in those of the world."""
+    result, shape = Outputs(), (len(places), 3)
+    for name in OUTPUTS:
+        result.array(name, shape)
+    for k, (_, prefix, axes, origin, virtual) in enumerate(places):
+        x, y, z, yaw, pitch, roll = (exerted[f"{prefix}{MARK}{way}"] for way in _FREE)
+        force = virtual.A * vector(x, y, z)
+        moment = virtual.A * vector(roll, pitch, yaw) + cross(virtual.p - origin, force)
+        back = axes.transpose()
+        for name, each in zip(OUTPUTS, (back * force, back * moment, force, moment), strict=True):
+            result.matrix(name, shape, (k,), each)
+    return result

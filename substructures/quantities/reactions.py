@@ -1,0 +1,184 @@
+"""Reactions: the force and the moment that every joint transmits, as formulas (notation.md, section 7).
+
+Newton and Euler's recursion inwards (Luh, Walker, Paul 1980): what hangs on a joint needs the force m a + A s and the
+moment s x a + axial(A J) of :mod:`substructures.mechanics.newton_euler` for its motion, in a world accelerated against
+gravity; loads on it are taken off, also those between parts and the forces of closures, and the rest comes from the
+body before it. So
+
+    (f, n)_k = (f, n)_k of inertia - applied loads + sum over the children c of (f, n)_c, turned back and moved
+
+is what the **inner body exerts on the outer one**, all of it: bearing, actuator, spring, damper and stop of the joint.
+Its component along the axis (prismatic: f . e3; revolute: n . e3) is Q_k - armature q''^k, with the force Q_k of what
+acts on the coordinate k alone. f stands at the origin of the body frame that the joint moves, n is about it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+from substructures.certificate.compare import compare
+from substructures.certificate.reactions import reaction_outputs
+from substructures.certificate.states import states_needed
+from substructures.certificate.tree_outputs import tree_symbols
+from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Formulas, Program, program
+from substructures.expr.replay import replay
+from substructures.mechanics.kinematics import INTERFACE
+from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
+from substructures.mechanics.newton_euler import Wrench, inertial_load
+from substructures.part.certificate import defaults_of
+from substructures.part.certificate import plain as plain_document
+from substructures.part.outputs import over_formulas
+from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.regressor import DYNAMIC, bare
+from substructures.tree.applied_wrenches import applied_wrenches
+from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.coupling import OWN, couple_parts
+from substructures.tree.document import TreeSpec
+from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
+from substructures.tree.model_outputs import rate_symbols
+from substructures.tree.mounted_part import PlacedPart
+
+#: force [N] and moment [N m] in the joint's frame, and in the axes of the world; (rows, 3) each
+OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
+#: their names in an answer
+FIELDS = ("force", "moment", "force_world", "moment_world")
+#: outputs of parts that neither move nor load anything
+_LEFT_OUT = tuple(name for name in DYNAMIC if name not in ("load.at", "load.vector"))
+
+
+@dataclass(frozen=True)
+class ReactionModel:
+    """Reactions of a tree.
+
+    ``program``: OUTPUTS, (rows, 3) each, functions of t, q, q', q'', inputs, free parameters, and of the multipliers
+    ``lambda.<closure>.<row>`` [N, N m] of closures. ``rows``: the joints by their coordinates, then the seats of the
+    instances, ``instance.base``: what carries an instance exerts on it, in its interface frame. In the joint's frame
+    the third axis is that of the joint, and the moment is about the origin of the body frame (O_k + tau e3).
+    """
+
+    program: Program
+    rows: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+
+    def of(self, joints: Sequence[str] | None) -> ReactionModel:
+        """Of some rows alone. Raises InvalidArgument (``/joints/i``, ``unknown-joint``)."""
+        return self if joints is None else _chosen(_ByDigest(self), read_joints(joints, self.rows))
+
+
+@dataclass(frozen=True)
+class _ByDigest:
+    """A model of reactions as a key."""
+
+    model: ReactionModel = field(compare=False)
+    digest: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "digest", f"{self.model.program.digest} {self.model.rows}")
+
+
+def read_joints(joints: Sequence[str] | str, rows: Sequence[str], place: str = "/joints") -> tuple[str, ...]:
+    """Names of rows, each once. Raises InvalidArgument for unknown ones and for none."""
+    names = [joints] if isinstance(joints, str) else joints
+    if not isinstance(names, list | tuple) or not names:
+        raise InvalidArgument.at(place, "missing", "a list of joints is needed")
+    for i, name in enumerate(names):
+        if name not in rows:
+            likely = meant(str(name), rows) or f"; there are {', '.join(rows[:20])}"
+            message = f"there is no joint '{str(name)[:80]}'{likely}"
+            raise InvalidArgument.at(f"{place}/{i}", "unknown-joint", message)
+    return tuple(dict.fromkeys(names))
+
+
+@lru_cache(64)
+def _chosen(known: _ByDigest, joints: tuple[str, ...]) -> ReactionModel:
+    source = known.model.program
+    place = {known.model.rows.index(name): k for k, name in enumerate(joints)}
+    graph = Graph()
+    found = {
+        name: Formulas((len(joints), 3), {(place[k], i): x for (k, i), x in all_rows.entries.items() if k in place})
+        for name, all_rows in replay(source, graph, {}).items()
+    }
+    chosen = program(graph, found, {symbol.name: symbol for symbol in source.symbols})
+    return ReactionModel(chosen, joints, known.model.parameters)
+
+
+def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> ReactionModel:
+    """The reactions of a tree of stored parts (by instance name).
+
+    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
+    VerificationFailed unless every element is what the documents say.
+    """
+    assembly = assemble(spec, parts)
+    try:
+        outputs, rows = _outputs(assembly)
+    except ZeroDivisionError:
+        raise division_by_zero(spec, assembly) from None
+    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge("the reactions (in operations)", len(result), max_nodes)
+    _certify(spec, parts, result, rows)
+    return ReactionModel(result, rows, assembly.parameters)
+
+
+def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, rows: Sequence[str]) -> None:
+    tree = plain_document(spec)
+    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
+    defaults = defaults_of(tree)
+    for name, definition in definitions.items():
+        defaults |= defaults_of(definition, f"{name}.")
+    kinds = tree_symbols(tree, definitions) | {s.name: s.kind for s in result.symbols if s.name.startswith("lambda.")}
+    try:
+        compare(
+            result,
+            kinds,
+            lambda values: reaction_outputs(tree, definitions, rows, values),
+            defaults,
+            states_needed(result.operations, [tree, *definitions.values()]),
+        )
+    except VerificationFailed as error:
+        raise VerificationFailed(f"reactions: {error}") from None
+
+
+def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
+    """OUTPUTS, and the names of their rows."""
+    run = over_formulas(assembly.scope.graph)
+    placed = couple_parts(bare(run, _LEFT_OUT), assembly.mounted, assembly.gravity, christoffel=False).placed
+    rates, accelerations = rate_symbols(assembly)
+    loads = _needed(assembly, placed, rates, accelerations)
+    for part, carrier, wrench in applied_wrenches(assembly, placed, rates):
+        # a force that acts is one that the joints need not transmit
+        loads[part][carrier] += Wrench(negate(wrench.f), negate(wrench.n))
+    pass_back(placed, loads, len(rates))
+    joints: list[tuple[str, Wrench, Matrix]] = []
+    seats: list[tuple[str, Wrench, Matrix]] = []
+    for instance, here, own in zip(assembly.instances, placed, loads, strict=True):
+        for c, joint in enumerate(here.part.topology.joints):
+            joints.append((f"{instance.name}.{joint.coordinate}", own[c], here.pose(c).R))
+        seats.append((f"{instance.name}.base", own[INTERFACE], here.pose(INTERFACE).R))
+    found: dict[str, dict[tuple[int, ...], Scalar]] = {name: {} for name in OUTPUTS}
+    for k, (_, wrench, R) in enumerate([*joints, *seats]):
+        # from the axes of the frame to those of the world: R^T
+        shown = wrench.f, wrench.n, apply(transpose(R), wrench.f), apply(transpose(R), wrench.n)
+        for name, vector in zip(OUTPUTS, shown, strict=True):
+            found[name] |= {(k, i): vector[i] for i in range(3)}
+    rows = tuple(name for name, *_ in (*joints, *seats))
+    return {name: Formulas((len(rows), 3), some) for name, some in found.items()}, rows
+
+
+def _needed(
+    assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr], accelerations: Sequence[Expr]
+) -> list[WrenchesByCarrier]:
+    """What the motion needs of every carrier, with the masses where the definitions put them: what is moved along an
+    axis for fewer operations changes no generalised force, but the load of the bearing."""
+    run = over_formulas(assembly.scope.graph)
+    result: list[WrenchesByCarrier] = []
+    for m, motions in zip(assembly.mounted, body_motions(placed, rates, accelerations), strict=True):
+        own = run(m.part, m.bindings, OWN)
+        carriers = (*range(m.part.dof), INTERFACE)
+        result.append({c: inertial_load(motions[c], own.own_inertia(c)) for c in carriers})
+    return result
