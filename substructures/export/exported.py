@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 from substructures.errors import InvalidArgument
-from substructures.export.interface import ORDER, Interface, Vector, signature
+from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, signature
+from substructures.export.packed import Indices, packed
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.evaluation import REACTIONS, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS as COLUMNS
 from substructures.tree.model import Model, require_stored
@@ -66,11 +67,12 @@ def identifier_of(text: str) -> str:
 
 @dataclass(frozen=True)
 class Function:
-    """A quantity as a function: its outputs are those of the program."""
+    """A quantity as a function: its outputs are those of the program; ``packed``: what stands where in packed ones."""
 
     quantity: str
     program: Program
     interface: Interface
+    packed: Indices = field(default_factory=dict, kw_only=True)
 
     @cached_property
     def further(self) -> Vector:
@@ -83,7 +85,8 @@ class Function:
     def arguments(self) -> tuple[str, ...]:
         """Symbols of the arguments: those of the quantity, ``x`` where it has further symbols."""
         found = {*signature(self.quantity), *(["x"] if self.further.names else [])}
-        return tuple(symbol for symbol in ORDER if symbol in found)
+        found |= {WORK} if WORK in self.interface.vectors and self.quantity != PREPARE else set()
+        return tuple(symbol for symbol in (*ORDER, WORK) if symbol in found)
 
     @cached_property
     def places(self) -> tuple[tuple[str, int], ...]:
@@ -104,10 +107,13 @@ class Function:
 
     def document(self, name: str) -> dict[str, Any]:
         """Plain data: the signature, and shapes of the outputs."""
-        outputs = [
+        outputs: list[dict[str, Any]] = [
             {"name": n, "shape": list(o.shape), "symmetry": o.symmetry, "rule": symmetry_rule(o.symmetry, n)}
             for n, o in self.program.outputs.items()
         ]
+        for each in outputs:
+            if each["name"] in self.packed:
+                each["packed"] = [list(index) for index in self.packed[each["name"]]]
         told: dict[str, Any] = {"name": name, "quantity": self.quantity, "arguments": list(self.arguments)}
         further = {"x": self.further.document()} if self.further.names else {}
         counted = {"operations": self.program.count()["total"], "digest": self.program.digest}
@@ -116,12 +122,18 @@ class Function:
 
 @dataclass(frozen=True)
 class Exported:
-    """Functions under one name. ``form``: compact or expanded."""
+    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single."""
 
     name: str
     interface: Interface
     functions: tuple[Function, ...]
     form: str = "compact"
+    precision: str = "double"
+
+    @property
+    def real(self) -> str:
+        """The type of numbers in C."""
+        return "float" if self.precision == "single" else "double"
 
     def called(self, function: Function) -> str:
         """The name of a function: the prefix, then its quantity."""
@@ -132,17 +144,21 @@ class Exported:
     def symbols(self) -> tuple[str, ...]:
         """All arguments that some function has, but ``x``, which is another for each."""
         found = {symbol for each in self.functions for symbol in each.arguments}
-        return tuple(symbol for symbol in ORDER if symbol in found and symbol != "x")
+        return tuple(symbol for symbol in (*ORDER, WORK) if symbol in found and symbol != "x")
 
     def document(self, software: str) -> dict[str, Any]:
         """The description of everything, as plain data: the target ``interface``."""
+        work = [WORK] if WORK in self.interface.vectors else []
         return {
             "format": "substructures.interface",
             "version": 1,
             "name": self.name,
             "made_from": {"reference": self.interface.reference, "digest": self.interface.digest, "by": software},
             "order": "row-major, indices from 0",
-            "vectors": {symbol: self.interface.vectors[symbol].document() for symbol in ORDER if symbol != "x"},
+            "call": {"name": f"{self.name}_call", "vectors": [*ORDER, *work]},
+            "vectors": {
+                symbol: self.interface.vectors[symbol].document() for symbol in (*ORDER, *work) if symbol != "x"
+            },
             "frames": list(self.interface.frames),
             "functions": [each.document(self.called(each)) for each in self.functions],
         }
@@ -155,15 +171,17 @@ def exported_model(
     name: str,
     bind: Any = None,
     together: bool = False,
+    packed: bool = False,
 ) -> Exported:
     """Quantities of a model as functions ``name_quantity``; ``bind``: what puts numbers into a program;
-    ``together``: also ``name_all``, in which they share their subexpressions.
+    ``together``: also ``name_all``, in which they share their subexpressions; ``packed``: of the metric and of the
+    Christoffel symbols the independent elements alone (:mod:`substructures.formats.packing`).
 
     Raises InvalidArgument for unknown quantities and bad names, TooLarge, InvalidDocument for what is not stored.
     """
     check_name(name)
     programs = {q: quantity_program(sources, q) for q in dict.fromkeys(quantities)}
-    return _exported(programs, interface, name, bind, together)
+    return _exported(programs, interface, name, bind, together, packed)
 
 
 def exported_part(
@@ -173,6 +191,7 @@ def exported_part(
     name: str,
     bind: Bind | None = None,
     together: bool = False,
+    packed: bool = False,
 ) -> Exported:
     """Quantities of a part as it stands alone, nothing mounted on it. Arguments and errors as of exported_model."""
     check_name(name)
@@ -182,16 +201,17 @@ def exported_part(
             message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known)}"
             raise InvalidArgument.at("/quantities", "unknown-quantity", message)
     programs = {q: with_own_inertia(part, part.program.select([q])) for q in dict.fromkeys(quantities)}
-    return _exported(programs, interface, name, bind, together)
+    return _exported(programs, interface, name, bind, together, packed)
 
 
 def _exported(
-    programs: Mapping[str, Program], interface: Interface, name: str, bind: Bind | None, together: bool
+    programs: Mapping[str, Program], interface: Interface, name: str, bind: Bind | None, together: bool, pack: bool
 ) -> Exported:
     made = {q: each if bind is None else bind(each) for q, each in programs.items()}
     if together:
         made[ALL] = joined(list(made.values()))
-    functions = tuple(Function(q, each, interface) for q, each in made.items())
+    outputs = {q: packed(each) if pack else (each, {}) for q, each in made.items()}
+    functions = tuple(Function(q, each, interface, packed=table) for q, (each, table) in outputs.items())
     for each in functions:
         each.require_signature()
     return Exported(name, interface, functions)
@@ -200,6 +220,8 @@ def _exported(
 def quantity_program(sources: Sources, quantity: str) -> Program:
     """The program of a quantity, with the outputs that belong to it alone. Raises InvalidArgument, TooLarge."""
     model = sources.model
+    if quantity == REACTIONS:
+        return sources.program(REACTIONS)
     if quantity in COLUMNS:
         return sources.columns().program.select([quantity])
     if quantity in DERIVED:
@@ -216,7 +238,7 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
 
 def known_quantities(model: Model) -> list[str]:
     """The quantities that a model can be exported with."""
-    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS]))
+    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS, REACTIONS]))
 
 
 def joined(programs: Sequence[Program]) -> Program:

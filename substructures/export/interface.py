@@ -16,6 +16,8 @@ from substructures.expr.program import Symbol
 
 #: arguments in their order; ``x``: what a quantity has beside states, inputs and parameters
 ORDER = ("t", "q", "qd", "qdd", "u", "x", "p")
+#: what the function ``prepare`` makes of parameters, behind all others, and that function
+WORK, PREPARE = "w", "prepare"
 MEANINGS = {
     "t": "time",
     "q": "coordinates",
@@ -24,6 +26,7 @@ MEANINGS = {
     "u": "inputs",
     "x": "further symbols of this quantity",
     "p": "parameters",
+    WORK: "what prepare makes of the parameters",
 }
 _KINDS = {
     "time": "t",
@@ -38,13 +41,18 @@ _KINDS = {
 _BY_PLACE = ("metric christoffel gravity kinematics position rotation U Omega R r E Z tau interface f n K kappa F N",)
 _SIGNATURES: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(" ".join(_BY_PLACE).split(), ("q", "p")),
+    **dict.fromkeys(("inverse_metric", "christoffel_second_kind"), ("q", "p")),
     **dict.fromkeys(("composite", "momentum", "linear_momentum", "angular_momentum"), ("q", "p")),
     **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum", "generalised_momenta"), ("q", "qd", "p")),
-    "limits": ("p",),
+    **dict.fromkeys(("limits", "friction", PREPARE), ("p",)),
     "potential_energy": ("t", "q", "p"),
     "forces": ("t", "q", "qd", "u", "p"),
     "forward_dynamics": ("t", "q", "qd", "u", "p"),
     "inverse_dynamics": ("t", "q", "qd", "qdd", "u", "p"),
+    "power": ("t", "q", "qd", "u", "p"),
+    "hamiltonian": ("t", "q", "p"),
+    "canonical_equations": ("t", "q", "u", "p"),
+    "reactions": ("t", "q", "qd", "qdd", "u", "p"),
 }
 #: of every other quantity
 _ANY = ("t", "q", "qd", "qdd", "u", "p")

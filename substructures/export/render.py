@@ -13,6 +13,7 @@ from substructures.export.languages.code import Code
 from substructures.export.languages.cpp import Cpp
 from substructures.export.languages.fortran import Fortran
 from substructures.export.languages.fricas import Fricas
+from substructures.export.languages.jax import Jax
 from substructures.export.languages.julia import Julia
 from substructures.export.languages.maple import Maple
 from substructures.export.languages.mathematica import Mathematica
@@ -39,6 +40,7 @@ _LISTINGS = {"expanded": expanded, "textbook": textbook}
 LANGUAGES: Mapping[str, type[Code]] = {
     "sympy": SymPy,
     "python": Python,
+    "jax": Jax,
     "c": C,
     "cpp": Cpp,
     "fortran": Fortran,

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import orjson
 
 from substructures.errors import InvalidArgument
+from substructures.export.c_files import c_files
+from substructures.export.casadi import casadi
 from substructures.export.exported import Exported
-from substructures.export.languages import c
+from substructures.export.fmu import fmu
 from substructures.export.languages.c import C
 from substructures.export.languages.code import Code
 from substructures.export.languages.cuda import Cuda
 from substructures.export.reference import reference
 from substructures.export.render import LANGUAGES, definitions, text_of
+from substructures.export.simulink import simulink
 from substructures.export.software import SOFTWARE
 from substructures.export.webassembly import glue
 from substructures.export.webassembly.functions import webassembly
@@ -78,22 +81,27 @@ def _javascript(exported: Exported, _: int) -> Files:
     }
 
 
-def _c(exported: Exported, limit: int) -> Files:
-    guard, about = f"{exported.name.upper()}_H", c.head_of(exported, SOFTWARE)
-    header = [*about, f"#ifndef {guard}", f"#define {guard}", "#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
-    header += [*c.declarations(exported), "", "#ifdef __cplusplus", "}", "#endif", "#endif", ""]
-    lines = c.source(exported, definitions(exported, C, limit))
-    text = [about[0], "", f'#include "{exported.name}.h"', "", *lines, ""]
-    found = {f"{exported.name}.h": "\n".join(header), f"{exported.name}.c": "\n".join(text)}
-    found |= C.selftest(exported, reference(exported))
-    return {name: each.encode() for name, each in found.items()}
+def _casadi(exported: Exported, limit: int) -> Files:
+    return {f"{exported.name}.c": casadi(exported, limit).encode()}
+
+
+def _fmu(version: str) -> Callable[[Exported, int], Files]:
+    def make(exported: Exported, limit: int) -> Files:
+        """One file."""
+        return {f"{exported.name}.fmu": fmu(exported, version, limit)}
+
+    return make
 
 
 TARGETS: Mapping[str, Target] = {
     "cuda": _one_file(Cuda),
     "javascript": Target(_javascript, "Node"),
     "interface": Target(_interface, "read by callers in C and Octave"),
-    "c": Target(_c, C.executed),
+    "c": Target(c_files, C.executed),
+    "simulink": Target(simulink),
+    "fmu": Target(_fmu("3.0"), "FMPy"),
+    "fmu2": Target(_fmu("2.0"), "FMPy"),
+    "casadi": Target(_casadi, "CasADi"),
     "matlab": Target(_function_files, LANGUAGES["matlab"].executed),
     **{name: _one_file(language) for name, language in LANGUAGES.items() if name not in ("c", "matlab")},
 }

@@ -8,22 +8,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from math import isnan, prod
+from fractions import Fraction
+from math import isfinite, isnan, prod
 from typing import ClassVar
 
 from substructures.export.exported import Exported, Function, identifier_of
-from substructures.export.interface import ORDER
+from substructures.export.interface import ORDER, WORK
 from substructures.export.languages.code import Code, head, indented
 from substructures.export.languages.pieces import Pieces, split
 from substructures.export.reference import Reference
+from substructures.export.rounding import STATED, bounds
 from substructures.expr.operations import Output, flat
-from substructures.printers.language import Listing, Piece
+from substructures.printers.language import NEGATION, Listing, Piece
+from substructures.printers.names import comment
 
 #: elements of arrays whose dependent ones are copied by loops
 TABLES = 200
 #: what the source needs before its functions; unused ones are left out
 _HELPERS = {
-    "sign_of": ("static double sign_of(double v)", "{", "    return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : v;", "}", ""),
+    "sign_of": ("static REAL sign_of(REAL v)", "{", "    return v > 0 ? 1 : v < 0 ? -1 : v;", "}", ""),
 }
 
 
@@ -37,13 +40,36 @@ class C(Code):
     executed = "gcc and clang"
     functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
 
+    @property
+    def f(self) -> str:
+        """What constants and functions of single precision end with."""
+        return "f" if self.exported.precision == "single" else ""
+
+    def number(self, value: Fraction) -> Piece:
+        """The nearest number of the precision."""
+        if value < 0:
+            return Piece("-" + self.number(-value).text, NEGATION)
+        text = super().number(value).text
+        return Piece(text if text == self.infinity else f"{text}{self.f}")
+
     def pi(self) -> Piece:
-        """pi as a double: C99 has no constant for it."""
-        return Piece("3.141592653589793")
+        """pi as a number: C99 has no constant for it."""
+        return Piece(f"3.141592653589793{self.f}")
+
+    def call(self, op: str, args: list[Piece]) -> Piece:
+        """A function of the mathematical library, or one of ours."""
+        found = super().call(op, args)
+        name, bracket, rest = found.text.partition("(")
+        return found if name in _HELPERS else Piece(f"{name}{self.f}{bracket}{rest}")
 
     def power(self, a: Piece, n: int) -> Piece:
         """``pow``, which is exact for integer exponents of small numbers."""
-        return Piece(f"pow({a.text}, {float(n)!r})")
+        return Piece(f"pow{self.f}({a.text}, {float(n)!r}{self.f})")
+
+    @property
+    def real(self) -> str:
+        """The type of numbers."""
+        return self.exported.real
 
     def place(self, variable: str, array: Output, index: tuple[int, ...]) -> str:
         """An element of a flat array."""
@@ -65,12 +91,12 @@ class C(Code):
             pairs = self.pairs(output, listing)
             v, size = self.variables[output], prod(array.shape)
             if len(pairs) < size:
-                zeros.append(f"for (size_t i = 0; i < {size}; ++i) {v}[i] = 0.0;")
+                zeros.append(f"for (size_t i = 0; i < {size}; ++i) {v}[i] = 0;")
             own, copied = _apart(v, pairs)
             assigned += own
             copies += copied
         pieces = split(listing.temporaries, assigned)
-        opening = [signature(self.function, self.called, self.variables), "{", *indented(unused + zeros)]
+        opening = [signature(self.function, self.called, self.variables, self.real), "{", *indented(unused + zeros)]
         if len(pieces.bodies) == 1:
             return [*opening, *indented([*self._statements(pieces, 0), *copies]), "}"]
         return [*self._pieces(pieces), *opening, *indented([*self._calls(pieces), *copies]), "}"]
@@ -82,24 +108,27 @@ class C(Code):
 
     def _statements(self, pieces: Pieces, k: int) -> list[str]:
         body = pieces.bodies[k]
-        lines = [f"const double t{n} = w[{slot}];" for n, slot in body.taken]
-        lines += [f"const double {n} = {text};" if is_new else f"{n} = {text};" for n, text, is_new in body.statements]
-        return lines + [f"w[{slot}] = t{n};" for n, slot in body.given]
+        lines = [f"const {self.real} t{n} = work[{slot}];" for n, slot in body.taken]
+        lines += [
+            f"const {self.real} {n} = {text};" if is_new else f"{n} = {text};" for n, text, is_new in body.statements
+        ]
+        return lines + [f"work[{slot}] = t{n};" for n, slot in body.given]
 
     def _pieces(self, pieces: Pieces) -> list[str]:
         lines = []
         for k in range(len(pieces.bodies)):
-            arguments = [argument(v) for v in self.function.arguments]
-            arguments += [f"double *{v}" for v in self.variables.values()] + ["double *w"]
+            arguments = [argument(v, self.real) for v in self.function.arguments]
+            arguments += [f"{self.real} *{v}" for v in self.variables.values()] + [f"{self.real} *work"]
             lines += [f"static void {self.called}_{k + 1}({', '.join(arguments)})", "{"]
-            names = [*self.function.arguments, *self.variables.values(), "w"]
+            names = [*self.function.arguments, *self.variables.values(), "work"]
             lines += [*indented([*(f"(void){v};" for v in names), *self._statements(pieces, k)]), "}", ""]
         return lines
 
     def _calls(self, pieces: Pieces) -> list[str]:
-        names = ", ".join([*self.function.arguments, *self.variables.values(), "w"])
+        names = ", ".join([*self.function.arguments, *self.variables.values(), "work"])
         calls = [f"{self.called}_{k + 1}({names});" for k in range(len(pieces.bodies))]
-        return [f"double w[{max(1, pieces.slots)}]; // the stack: {8 * pieces.stack} bytes at most", *calls]
+        size = (4 if self.f else 8) * pieces.stack
+        return [f"{self.real} work[{max(1, pieces.slots)}]; // the stack: {size} bytes at most", *calls]
 
 
 def _apart(v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], list[str]]:
@@ -120,37 +149,50 @@ def _apart(v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]],
     return own, lines
 
 
-def argument(symbol: str) -> str:
+def argument(symbol: str, real: str = "double") -> str:
     """The declaration of an argument."""
-    return "double t" if symbol == "t" else f"const double *{symbol}"
+    return f"{real} t" if symbol == "t" else f"const {real} *{symbol}"
 
 
-def signature(function: Function, called: str, variables: Mapping[str, str]) -> str:
+def signature(function: Function, called: str, variables: Mapping[str, str], real: str) -> str:
     """The head of a function."""
-    arguments = [argument(symbol) for symbol in function.arguments]
-    return f"void {called}({', '.join([*arguments, *(f'double *{v}' for v in variables.values())])})"
+    arguments = [argument(symbol, real) for symbol in function.arguments]
+    return f"void {called}({', '.join([*arguments, *(f'{real} *{v}' for v in variables.values())])})"
 
 
 def declarations(exported: Exported) -> list[str]:
     """Sizes and indices as constants, and the functions."""
     name, constants = exported.name, [f"{exported.name}_FUNCTIONS = {len(exported.functions)}"]
-    for symbol in ORDER:
-        if symbol in ("t", "x"):
+    for symbol in (*ORDER, WORK):
+        if symbol not in exported.interface.vectors or symbol in ("t", "x"):
             continue
         vector = exported.interface.vectors[symbol]
         constants.append(f"{name}_N{symbol.upper()} = {len(vector)}")
         if symbol in ("q", "u", "p"):
             constants += _indices(name, symbol, vector.names)
     lines = ["enum {", *(f"    {constant}," for constant in constants[:-1]), f"    {constants[-1]}", "};", ""]
-    lines += ["// the default values of the parameters, NaN where there are none", f"void {name}_defaults(double *p);"]
+    lines += [
+        "// the default values of the parameters, NaN where there are none",
+        f"void {name}_defaults({exported.real} *p);",
+    ]
     for each in exported.functions:
         code = C(each, exported)
         lines.append(f"// {each.program.count()['total']} operations")
-        lines.append(f"{signature(each, code.called, code.variables)};")
-    lines += [
-        "// any of them by its number from 0: in = {&t, q, qd, qdd, u, x, p}, out: its outputs; 0, or 1 for no such"
-    ]
-    return [*lines, f"int {name}_call(int function, const double *const *in, double *const *out);"]
+        lines += _errors(each) if code.f else []
+        lines.append(f"{signature(each, code.called, code.variables, exported.real)};")
+    inputs = "&t, q, qd, qdd, u, x, p" + (f", {WORK}" if WORK in exported.interface.vectors else "")
+    lines += [f"// any of them by its number from 0: in = {{{inputs}}}, out: its outputs; 0, or 1 for no such"]
+    real = exported.real
+    return [*lines, f"int {name}_call(int function, const {real} *const *in, {real} *const *out);"]
+
+
+def _errors(function: Function) -> list[str]:
+    """What the rounding of single precision may make of the outputs."""
+    lines = []
+    for name, (error, size) in bounds(function).items():
+        told = f"at most {error:.2g}, elements at most {size:.3g}" if isfinite(error) else "without a bound"
+        lines.append(f"// rounding of {comment(name)}: {told}")
+    return [*lines, f"// for {STATED}"]
 
 
 def _indices(prefix: str, symbol: str, names: Iterable[str]) -> list[str]:
@@ -174,15 +216,16 @@ def source(exported: Exported, functions: Iterable[list[str]]) -> list[str]:
     lines = ["#include <math.h>", "#include <stddef.h>", ""]
     for name, helper in _HELPERS.items():
         if f"{name}(" in text:
-            lines += helper
+            lines += [line.replace("REAL", exported.real) for line in helper]
     values = enumerate(exported.interface.vectors["p"].defaults)
-    lines += [f"void {exported.name}_defaults(double *p)", "{", "    (void)p;"]
-    lines += [f"    p[{i}] = {'NAN' if isnan(x) else repr(x)};" for i, x in values]
+    real, f = exported.real, "f" if exported.precision == "single" else ""
+    lines += [f"void {exported.name}_defaults({real} *p)", "{", "    (void)p;"]
+    lines += [f"    p[{i}] = {'NAN' if isnan(x) else repr(x) + f};" for i, x in values]
     return [*lines, "}", "", *body, *_call(exported)]
 
 
 def _call(exported: Exported) -> list[str]:
-    position = {symbol: i for i, symbol in enumerate(ORDER)}
+    position = {symbol: i for i, symbol in enumerate((*ORDER, WORK))}
     cases = []
     for k, each in enumerate(exported.functions):
         inputs = ["*in[0]" if v == "t" else f"in[{position[v]}]" for v in each.arguments]
@@ -192,7 +235,8 @@ def _call(exported: Exported) -> list[str]:
             f"        {exported.called(each)}({', '.join(inputs + outputs)});",
             "        return 0;",
         ]
-    head_ = [f"int {exported.name}_call(int function, const double *const *in, double *const *out)", "{"]
+    real = exported.real
+    head_ = [f"int {exported.name}_call(int function, const {real} *const *in, {real} *const *out)", "{"]
     return [
         *head_,
         "    (void)in;",
@@ -208,6 +252,9 @@ def _call(exported: Exported) -> list[str]:
 
 def selftest(exported: Exported, reference: Sequence[Reference]) -> list[str]:
     """A program that ends with 1 where a value is not the reference's."""
+    real, f, wider = exported.real, "", 1.0
+    if exported.precision == "single":
+        f, wider = "f", 1e5
     lines = [
         f'#include "{exported.name}.h"',
         "",
@@ -215,28 +262,28 @@ def selftest(exported: Exported, reference: Sequence[Reference]) -> list[str]:
         "#include <stddef.h>",
         "#include <stdio.h>",
         "",
-        *_CHECK,
+        *(line.replace("REAL", real) for line in _CHECK),
     ]
     for each in reference:
         lines += ["", f"static int test_{each.number}(void)", "{", "    int wrong = 0;"]
         names = []
         for symbol, values in each.arguments.items():
-            plain = ", ".join(map(repr, values)) or "0.0"
+            plain = ", ".join(f"{x!r}{f}" for x in values) or "0"
             one = (
-                f"const double t = {values[0]!r};"
+                f"const {real} t = {values[0]!r}{f};"
                 if symbol == "t"
-                else f"static const double {symbol}[] = {{{plain}}};"
+                else f"static const {real} {symbol}[] = {{{plain}}};"
             )
             lines.append(f"    {one}")
             names.append(symbol)
         for k, shape in enumerate(each.shapes):
-            lines.append(f"    static double y{k}[{max(1, prod(shape))}];")
+            lines.append(f"    static {real} y{k}[{max(1, prod(shape))}];")
             names.append(f"y{k}")
         lines.append(f"    {each.called}({', '.join(names)});")
         for check in each.checks:
             y, size = f"y{check.output}", prod(each.shapes[check.output])
             found = f"sum({y}, {size})" if check.is_sum else f"{y}[{flat(check.index, each.shapes[check.output])}]"
-            lines.append(f'    wrong |= differs({found}, {check.value!r}, {check.limit!r}, "{each.called}");')
+            lines.append(f'    wrong |= differs({found}, {check.value!r}, {wider * check.limit!r}, "{each.called}");')
         lines += ["    return wrong;", "}"]
     lines += ["", "int main(void)", "{", "    int wrong = 0;"]
     lines += [f"    wrong |= test_{each.number}();" for each in reference]
@@ -251,7 +298,7 @@ _CHECK = (
     "    return 1;",
     "}",
     "",
-    "static double sum(const double *values, size_t count)",
+    "static double sum(const REAL *values, size_t count)",
     "{",
     "    double total = 0.0;",
     "    for (size_t i = 0; i < count; ++i) total += values[i];",

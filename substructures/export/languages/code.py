@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from substructures.export.exported import Exported, Function, identifier_of
 from substructures.export.interface import MEANINGS, Vector
+from substructures.export.packed import table
 from substructures.export.reference import Reference
 from substructures.expr.interpret import constant
 from substructures.expr.program import Output
@@ -18,7 +19,7 @@ from substructures.printers.names import comment, identifier
 from substructures.printers.symmetry import assignments, symmetry_rule
 
 _WORDS = (
-    "t q qd qdd u x p w pi i j e d np math model sign auto break case char const continue default do double else",
+    "t q qd qdd u x p w work pi i j e d np math model sign auto break case char const continue default do double else",
     "enum extern float for goto if inline int long register restrict return short signed sizeof static struct",
     "switch typedef union unsigned void volatile while and as assert async await class def del elif except false",
     "finally from global import in is lambda none nonlocal not or pass raise true try with yield match type",
@@ -163,7 +164,12 @@ def _outputs(function: Function, first: int) -> Iterator[str]:
     for output, array in function.program.outputs.items():
         shape = " x ".join(map(str, array.shape)) or "scalar"
         rule = f", indices from {first}; {symmetry_rule(array.symmetry)}" if array.shape else ""
-        yield f"{variables[output]}  {comment(output)}: {shape}{rule}"
+        indices = function.packed.get(output)
+        if indices is None:
+            yield f"{variables[output]}  {comment(output)}: {shape}{rule}"
+        else:
+            yield f"{variables[output]}  {comment(output)}: {shape}, packed: of the elements with these indices"
+            yield from (f"  {line}" for line in table(indices, first))
 
 
 def _elements(vector: Vector, first: int, of: str = "") -> Iterator[str]:

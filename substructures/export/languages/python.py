@@ -18,7 +18,7 @@ def _columns(name, value, length):
     return np.moveaxis(value, -1, 0)
 """
 
-_CHECK = (
+CHECK = (
     "",
     "",
     "def differs(found, expected, limit, what):",
@@ -84,7 +84,7 @@ class Python(Code):
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
         """A script that exits with 1 where a value is not the reference's."""
-        lines = ["import sys", "", "import numpy as np", "", f"import {exported.name}", "", "wrong = False", *_CHECK]
+        lines = ["import sys", "", "import numpy as np", "", f"import {exported.name}", "", "wrong = False", *CHECK]
         for each in reference:
             given = [repr(values[0] if s == "t" else list(values)) for s, values in each.arguments.items()]
             lines += ["", f"y = {exported.name}.{each.called}({', '.join(given)})"]

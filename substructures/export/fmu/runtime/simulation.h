@@ -1,0 +1,54 @@
+/* The state of one simulation and what is computed of it; the same for both versions of the interface.
+ *
+ * All numbers of an instance stand in one array, in the order of the variables of modelDescription.xml:
+ *
+ *     t | q | qd | der(q) | der(qd) | u | p | solver_step, solver_tolerance | outputs
+ */
+#ifndef SUBSTRUCTURES_SIMULATION_H
+#define SUBSTRUCTURES_SIMULATION_H
+
+#include <stddef.h>
+
+#include "model.h"
+
+enum {
+    AT_T = 0,
+    AT_Q = 1,
+    AT_QD = AT_Q + FMU_NQ,
+    AT_DQ = AT_QD + FMU_NQ,
+    AT_QDD = AT_DQ + FMU_NQ,
+    AT_U = AT_QDD + FMU_NQ,
+    AT_P = AT_U + FMU_NU,
+    AT_STEP = AT_P + FMU_NP,
+    AT_TOLERANCE = AT_STEP + 1,
+    AT_Y = AT_TOLERANCE + 1,
+    VALUES = AT_Y + FMU_NY,
+    STATES = 2 * FMU_NQ
+};
+
+/* what may be written: states and inputs, parameters, time */
+enum { PHASE_NEW, PHASE_INITIALISING, PHASE_READY, PHASE_ENDED };
+
+typedef struct {
+    double v[VALUES];
+    double next;      /* step that the adaptive solver tries next; 0: none was made yet */
+    int has_rates;    /* der(q), der(qd) belong to the state */
+    int has_outputs;
+    int phase;
+} State;
+
+void state_reset(State *s);
+/* 0, or 1 where the value may not be written */
+int state_write(State *s, size_t at, double value);
+/* 0, or 1 where accelerations are not finite */
+int state_rates(State *s);
+int state_outputs(State *s);
+/* 0, or 1 where a value cannot be had */
+int state_read(State *s, size_t at, double *value);
+/* derivatives of values in the direction of others; 0, or 1 for those that have none */
+int state_tangent(State *s, const unsigned *unknowns, size_t n_unknowns, const unsigned *knowns, size_t n_knowns,
+                  const double *seed, double *found);
+/* to a later time with constant inputs; 0, or 1 where accelerations are not finite or steps become too small */
+int state_advance(State *s, double to);
+
+#endif

@@ -1,0 +1,170 @@
+"""The variables of a model for simulators, in the order in which their values stand in an instance.
+
+time | q | qd | der(q) | der(qd) | u | p | solver_step, solver_tolerance | outputs
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from math import isfinite, prod
+
+from substructures.errors import InvalidArgument, MissingValue, TooLarge
+from substructures.export.exported import Exported, Function
+from substructures.export.interface import Interface
+from substructures.tree.model_outputs import KINEMATICS
+
+_NAME = re.compile(r"(der\()?[A-Za-z_]\w*(\.\w+)*\)?", re.ASCII)
+DYNAMICS = "forward_dynamics"
+#: most numbers of an instance
+MOST = 100_000
+TOLERANCE = 1e-8
+_UNITS = {"position": "m", "kinetic_energy": "J", "potential_energy": "J", "lagrangian": "J", "hamiltonian": "J"}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """``at``: where its first number stands, which is its reference; ``of``: where that stands whose derivative it is;
+    ``start``: None where it is computed.
+    """
+
+    name: str
+    at: int
+    causality: str
+    unit: str = ""
+    shape: tuple[int, ...] = ()
+    start: float | None = None
+    of: int | None = None
+    description: str = ""
+
+    @property
+    def size(self) -> int:
+        """How many numbers."""
+        return prod(self.shape)
+
+    @property
+    def variability(self) -> str:
+        """As modelDescription.xml says it."""
+        return "tunable" if self.causality == "parameter" else "continuous"
+
+    def elements(self) -> Iterator[Variable]:
+        """One variable for each number, ``metric[1,2]``."""
+        if not self.shape:
+            yield self
+            return
+        for k, index in enumerate(product(*(range(1, n + 1) for n in self.shape))):
+            name = f"{self.name}[{','.join(map(str, index))}]"
+            yield Variable(name, self.at + k, self.causality, self.unit, description=self.description)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The variables of functions, of which the first is that of the accelerations."""
+
+    exported: Exported
+
+    @property
+    def interface(self) -> Interface:
+        """What stands where in the arguments of functions."""
+        return self.exported.interface
+
+    @property
+    def outputs(self) -> Sequence[Function]:
+        """All functions but that of the accelerations."""
+        return [each for each in self.exported.functions if each.quantity != DYNAMICS]
+
+    @cached_property
+    def begins(self) -> Mapping[str, int]:
+        """Where each vector begins; ``dq`` are the derivatives of coordinates, ``s`` parameters of the solver."""
+        vectors = self.interface.vectors
+        n, found, at = len(vectors["q"]), dict[str, int](), 0
+        for symbol, size in (
+            ("t", 1), ("q", n), ("qd", n), ("dq", n), ("qdd", n), ("u", len(vectors["u"])), ("p", len(vectors["p"])),
+            ("s", 2), ("y", 0),
+        ):  # fmt: skip
+            found[symbol] = at
+            at += size
+        return found
+
+    @cached_property
+    def places(self) -> Mapping[str, int]:
+        """Where the number of each name of a vector stands."""
+        vectors = self.interface.vectors
+        return {n: self.begins[s] + i for s in ("q", "qd", "qdd", "u", "p") for i, n in enumerate(vectors[s].names)}
+
+    @cached_property
+    def size(self) -> int:
+        """How many numbers an instance has."""
+        return self.variables[-1].at + self.variables[-1].size
+
+    @cached_property
+    def variables(self) -> list[Variable]:
+        """All of them. Raises MissingValue for parameters without value, InvalidArgument for bad names, TooLarge."""
+        vectors = self.interface.vectors
+        q, qd, u, p = (vectors[symbol] for symbol in ("q", "qd", "u", "p"))
+        begins = self.begins
+        found = [Variable("time", 0, "independent", "s")]
+        found += [Variable(n, begins["q"] + i, "output", x, start=0.0) for i, (n, x) in _named(q.names, q.units)]
+        rates = [f"{name}_d" for name in q.names]
+        found += [Variable(n, begins["qd"] + i, "output", x, start=0.0) for i, (n, x) in _named(rates, qd.units)]
+        for symbol, of, names in (("dq", "q", q.names), ("qdd", "qd", rates)):
+            units = vectors["qd" if symbol == "dq" else "qdd"].units
+            found += [
+                Variable(f"der({n})", begins[symbol] + i, "local", x, of=begins[of] + i)
+                for i, (n, x) in _named(names, units)
+            ]
+        found += [Variable(n, begins["u"] + i, "input", x, start=0.0) for i, (n, x) in _named(u.names, u.units)]
+        for i, (name, unit) in _named(p.names, p.units):
+            if not isfinite(p.defaults[i]):
+                raise MissingValue(f"'{name}' has no value: give one, or a default in its definition")
+            found.append(Variable(name, begins["p"] + i, "parameter", unit, start=p.defaults[i]))
+        told = "step of classical Runge-Kutta steps in co-simulation; 0: steps of Dormand and Prince as tolerance asks"
+        found.append(Variable("solver_step", begins["s"], "parameter", "s", start=0.0, description=told))
+        told = "relative tolerance of adaptive steps in co-simulation, where the importer gives none"
+        found.append(Variable("solver_tolerance", begins["s"] + 1, "parameter", start=TOLERANCE, description=told))
+        found += self._outputs({each.name for each in found})
+        for each in found:
+            if not _NAME.fullmatch(each.name):
+                message = f"{each.name[:40]!r} is no name of a variable: identifiers with dots between them"
+                raise InvalidArgument.at("/target", "bad-name", message)
+        if found[-1].at + found[-1].size > MOST:
+            raise TooLarge("the outputs of an FMU (in numbers)", found[-1].at + found[-1].size, MOST)
+        return found
+
+    def _outputs(self, taken: set[str]) -> Iterator[Variable]:
+        at = self.begins["y"]
+        for function in self.outputs:
+            for name, array in function.program.outputs.items():
+                for called, shape in self._apart(name, array.shape):
+                    unique = called if called not in taken else f"output.{called}"
+                    taken.add(unique)
+                    yield Variable(unique, at, "output", _UNITS.get(name, ""), shape)
+                    at += prod(shape)
+
+    def _apart(self, name: str, shape: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """Of poses and velocities a variable for each frame."""
+        if name in KINEMATICS:
+            yield from ((f"{frame}.{name}", shape[1:]) for frame in self.interface.frames)
+        else:
+            yield name, shape
+
+
+def _named(names: Sequence[str], units: Sequence[str]) -> Iterator[tuple[int, tuple[str, str]]]:
+    return enumerate(zip(names, units, strict=True))
+
+
+def layout_of(exported: Exported) -> Layout:
+    """Raises InvalidArgument where there are no accelerations of a tree."""
+    if all(each.quantity != DYNAMICS for each in exported.functions):
+        message = "an FMU needs the accelerations of a tree: make a tree of the part, which says gravity and mounts"
+        raise InvalidArgument.at("/target", "not-a-tree", message)
+    if not len(exported.interface.vectors["q"]):
+        raise InvalidArgument.at("/target", "no-coordinates", "nothing moves: there is nothing to be simulated")
+    further = next((each for each in exported.functions if each.further.names), None)
+    if further is not None:
+        message = f"'{further.quantity}' depends on more than states, inputs and parameters: it is no output of an FMU"
+        raise InvalidArgument.at("/quantities", "signature", message)
+    return Layout(exported)

@@ -1,0 +1,159 @@
+"""How far single precision may be from the exact value: a proven bound over ranges, by error analysis in balls.
+
+Every operation of a program has the ball of its exact values (arb, so that nothing of the ranges is lost) and a bound e
+of the error with which it is computed. With the unit roundoff u and operands x, y of the errors ex, ey
+
+    x + y   e = ex + ey + u (|x + y| + ex + ey)         x y   e = |x| ey + |y| ex + ex ey, and u (|x y| + e)
+    f(x)    e = sup |f'| ex + 2 u |f(x)|                x / y e = (ex + |x / y| ey) / (|y| - ey), and u (|x / y| + e)
+
+(N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3). Functions of the library are taken
+to be within one unit in the last place. Arguments count as given; default values of parameters are rounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite
+
+import flint
+
+from substructures.export.exported import Function
+from substructures.export.interface import Interface
+from substructures.expr.program import Program
+
+#: of single precision: unit roundoff, smallest normal number
+UNIT, SMALLEST = 2.0**-24, 2.0**-126
+STATED = "angles up to pi, all else but parameters up to 1 in SI units, parameters at their defaults"
+
+
+@dataclass(frozen=True)
+class _Rounded:
+    """``exact``: ball of the exact values; ``error``: bound of the distance of what is computed."""
+
+    exact: flint.arb
+    error: float
+
+    @property
+    def size(self) -> float:
+        """Of the exact values at most."""
+        return float(abs(self.exact).upper())
+
+
+def bounds(function: Function) -> dict[str, tuple[float, float]]:
+    """Of every output the bound of the error of its elements, and the most that their exact values are; infinite where
+    nothing can be said: quotients whose divisor may vanish, parameters without value.
+    """
+    results = _operations(function.program, _ranges(function.interface))
+    found = {}
+    for name, output in function.program.outputs.items():
+        some = [results[entry] for entry in output.entries]
+        found[name] = max((x.error for x in some), default=0.0), max((x.size for x in some), default=0.0)
+    return found
+
+
+def _ranges(interface: Interface) -> Callable[[str], _Rounded]:
+    known: dict[str, _Rounded] = {}
+    for vector in interface.vectors.values():
+        for i, (name, unit) in enumerate(zip(vector.names, vector.units, strict=True)):
+            if vector.symbol == "p":
+                x = vector.defaults[i] if vector.defaults else inf
+                known[name] = _Rounded(flint.arb(x), abs(x) * UNIT) if isfinite(x) else _UNKNOWN
+            else:
+                largest = flint.arb.pi() if unit == "rad" else flint.arb(1)
+                known[name] = _Rounded(flint.arb(0, largest), 0.0)
+    return lambda name: known.get(name, _UNKNOWN)
+
+
+_UNKNOWN = _Rounded(flint.arb("nan"), inf)
+
+
+def _operations(program: Program, value: Callable[[str], _Rounded]) -> dict[int, _Rounded]:
+    results: dict[int, _Rounded] = {}
+    for i in program.reachable():
+        op, *rest = program.operations[i]
+        if op == "sym":
+            results[i] = value(program.symbols[rest[0]].name)
+        elif op in ("int", "rat", "pi"):
+            results[i] = _constant(op, rest)
+        elif op == "powi":
+            results[i] = _power(results[rest[0]], int(rest[1]))
+        elif op in _ARITHMETIC:
+            results[i] = _ARITHMETIC[op](*(results[k] for k in rest))
+        elif op in _FUNCTIONS:
+            results[i] = _applied(op, results[rest[0]])
+        else:  # corners and jumps
+            results[i] = _UNKNOWN
+        if not (results[i].exact.is_finite() and isfinite(results[i].error)):
+            results[i] = _UNKNOWN
+    return results
+
+
+def _constant(op: str, rest: list[object]) -> _Rounded:
+    if op == "pi":
+        return _Rounded(flint.arb.pi(), 4 * UNIT)
+    number = Fraction(int(str(rest[0])), int(str(rest[1])) if op == "rat" else 1)
+    exact = flint.arb(flint.fmpq(number.numerator, number.denominator))
+    is_float = number.denominator == 1 and abs(number.numerator) <= 2**24
+    return _Rounded(exact, 0.0 if is_float else float(abs(exact).upper()) * UNIT)
+
+
+def _rounded(exact: flint.arb, error: float, units: int = 1) -> _Rounded:
+    """With the rounding of the result itself; what is added here is large beside the roundings of these sums."""
+    size = float(abs(exact).upper())
+    return _Rounded(exact, (error + units * UNIT * (size + error) + SMALLEST) * (1 + 1e-12))
+
+
+def _sum(x: _Rounded, y: _Rounded) -> _Rounded:
+    return _rounded(x.exact + y.exact, x.error + y.error)
+
+
+def _difference(x: _Rounded, y: _Rounded) -> _Rounded:
+    return _rounded(x.exact - y.exact, x.error + y.error)
+
+
+def _product(x: _Rounded, y: _Rounded) -> _Rounded:
+    return _rounded(x.exact * y.exact, x.size * y.error + y.size * x.error + x.error * y.error)
+
+
+def _quotient(x: _Rounded, y: _Rounded) -> _Rounded:
+    exact, least = x.exact / y.exact, float(abs(y.exact).lower()) - y.error
+    if not exact.is_finite() or least <= 0:
+        return _UNKNOWN
+    return _rounded(exact, (x.error + float(abs(exact).upper()) * y.error) / least)
+
+
+def _power(x: _Rounded, n: int) -> _Rounded:
+    if n < 0:
+        return _quotient(_Rounded(flint.arb(1), 0.0), _power(x, -n))
+    error = abs(n) * (x.size + x.error) ** (n - 1) * x.error if n else 0.0
+    return _rounded(x.exact**n, error, 2)
+
+
+def _applied(name: str, x: _Rounded) -> _Rounded:
+    function, slope = _FUNCTIONS[name]
+    wide = x.exact + flint.arb(0, x.error) if x.error else x.exact
+    steep = abs(slope(wide)).upper()
+    return _rounded(function(x.exact), float(steep) * x.error, 2) if steep.is_finite() else _UNKNOWN
+
+
+_ARITHMETIC: Mapping[str, Callable[..., _Rounded]] = {
+    "add": _sum,
+    "sub": _difference,
+    "mul": _product,
+    "div": _quotient,
+    "neg": lambda x: _Rounded(-x.exact, x.error),
+    "abs": lambda x: _Rounded(abs(x.exact), x.error),
+}
+_FUNCTIONS: Mapping[str, tuple[Callable[[flint.arb], flint.arb], Callable[[flint.arb], flint.arb]]] = {
+    "sin": (flint.arb.sin, flint.arb.cos),
+    "cos": (flint.arb.cos, flint.arb.sin),
+    "tan": (flint.arb.tan, lambda x: 1 + x.tan() ** 2),
+    "sqrt": (flint.arb.sqrt, lambda x: 1 / (2 * x.sqrt())),
+    "exp": (flint.arb.exp, flint.arb.exp),
+    "log": (flint.arb.log, lambda x: 1 / x),
+    "atan": (flint.arb.atan, lambda x: 1 / (1 + x**2)),
+    "asin": (flint.arb.asin, lambda x: 1 / (1 - x**2).sqrt()),
+    "acos": (flint.arb.acos, lambda x: 1 / (1 - x**2).sqrt()),
+}

@@ -1,0 +1,227 @@
+"""A definition as links on joints with one coordinate each, in numbers, where all coordinates are zero.
+
+A link is placed in its parent by x_parent = R x + r. A revolute or prismatic link moves from there about or along an
+axis through its own origin. Compound joints (universal, spherical, ..., free) are chains with massless links between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.errors import InvalidArgument, MissingValue
+from substructures.expr.graph import Expr
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.mechanics.kinematics import INTERFACE
+from substructures.part.definition import Definition
+from substructures.part.mechanism import Mechanism, mechanism
+from substructures.part.topology import BASE, JointEntry
+
+#: x_parent = R x + r
+Pose = tuple[Array, Array]
+#: numbers for all parameters of a program
+Values = Callable[[Program], Mapping[str, Array]]
+
+_NOWHERE: Pose = (np.eye(3), np.zeros(3))
+_MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+
+
+@dataclass(frozen=True)
+class Drive:
+    """The joint of a link: its coordinate, the axis in the link's frame, limits [rad or m], damping."""
+
+    coordinate: str
+    is_slide: bool
+    axis: Array
+    limits: tuple[float, float] | None
+    damping: float
+
+
+@dataclass(frozen=True)
+class RigidLink:
+    """A link on its parent (None: the root); mass [kg], mass centre [m], tensor about it in the link's axes."""
+
+    name: str
+    parent: str | None
+    pose: Pose = _NOWHERE
+    drive: Drive | None = None
+    mass: float = 0.0
+    com: Array = field(default_factory=lambda: np.zeros(3))
+    inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
+
+
+@dataclass(frozen=True)
+class Links:
+    """Parents first; ``left_out``: what cannot be said of them in numbers of links and joints."""
+
+    links: tuple[RigidLink, ...]
+    left_out: tuple[str, ...]
+
+
+def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
+    """The links of a definition, the first is its interface; ``prefix``: of all names.
+
+    Raises InvalidArgument for numbers that are not finite, MissingValue for parameters without one.
+    """
+    m = mechanism(definition)
+    laws = {k: law.damping for k, law in enumerate(m.laws) if _is_constant(m, law.damping)}
+    numbers = values(program(m.graph, _outputs(m, laws), m.scope.symbols))
+    for name, x in numbers.items():
+        if not np.isfinite(x).all():
+            message = f"'{name}' of '{definition.name}' is not finite with these parameters: give others by bind"
+            raise InvalidArgument.at("/bind", "not-finite", message)
+    reader = _Reader(m, numbers, prefix)
+    return Links(tuple(reader.links()), tuple(reader.left_out(laws)))
+
+
+def at_zero(given: Program, values: Mapping[str, float]) -> dict[str, Array]:
+    """All outputs where coordinates are zero. Raises MissingValue for parameters that have no value."""
+    known = {s.name: values.get(s.name, 0.0 if s.kind == "coordinate" else None) for s in given.symbols}
+    for name, x in known.items():
+        if x is None:
+            raise MissingValue(name)
+    return interpret(given, known)
+
+
+def _is_constant(m: Mechanism, x: Expr) -> bool:
+    """Whether it depends on parameters alone."""
+    found = program(m.graph, {"x": array((), lambda: x)}, m.scope.symbols)
+    return all(symbol.kind == "parameter" for symbol in found.symbols)
+
+
+def _outputs(m: Mechanism, laws: Mapping[int, Expr]) -> dict[str, Formulas]:
+    """Everything that becomes a number."""
+    n, bodies = len(m.joints), m.definition.bodies
+    frames = [*m.bodies.values(), *m.ports.values()]
+    unit = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    turned = [[joint.rotation.forward(e) for e in unit] for joint in m.joints]  # columns of E
+    read, vector = m.scope.read, m.scope.vector
+    tensors = [_central(m, i) for i in range(len(bodies))]
+    limits = list(_limits(m))
+    return {
+        "rotation": array((n, 3, 3), lambda k, i, j: turned[k][j][i]),
+        "offset": array((n, 3), lambda k, i: m.joints[k].offset[i]),
+        "tau": array((n,), lambda k: m.joints[k].tau),
+        "frame.E": array((len(frames), 3, 3), lambda f, i, j: frames[f].E[i][j]),
+        "frame.position": array((len(frames), 3), lambda f, i: frames[f].position[i]),
+        "mass": array((len(bodies),), lambda b: read(bodies[b].mass, "")),
+        "com": array((len(bodies), 3), lambda b, i: vector(bodies[b].com, "")[i]),
+        "inertia": array((len(bodies), 6), lambda b, i: tensors[b][i]),
+        "damping": array((n,), lambda k: laws.get(k, m.graph.zero)),
+        "armature": array((n,), lambda k: m.laws[k].armature),
+        "limits": array((len(limits), 2), lambda k, i: limits[k][1][i]),
+    }
+
+
+def _central(m: Mechanism, i: int) -> tuple[Any, ...]:
+    """The inertia tensor of a body about its mass centre: as written, or Theta = tr(J) 1 - J of what Steiner leaves."""
+    given = m.definition.bodies[i].inertia
+    if given.about == "com":
+        return tuple(m.scope.read(getattr(given, entry), "") for entry in _MOMENTS)
+    _, (xx, yy, zz, xy, xz, yz) = m.central[i]
+    lift = m.graph.lift
+    xx, yy, zz = lift(xx), lift(yy), lift(zz)
+    return yy + zz, zz + xx, xx + yy, -lift(xy), -lift(xz), -lift(yz)
+
+
+def _limits(m: Mechanism) -> Iterator[tuple[int, tuple[Expr, Expr]]]:
+    """Of every coordinate that has limits, by its index."""
+    for k, entry in enumerate(m.topology.joints):
+        given = m.definition.bodies[entry.body].joint.limits
+        if given:
+            low, high = given[entry.step] if isinstance(given[0], tuple) else given
+            yield k, (m.scope.read(low, ""), m.scope.read(high, ""))
+
+
+class _Reader:
+    """Numbers to links."""
+
+    def __init__(self, m: Mechanism, numbers: Mapping[str, Array], prefix: str) -> None:
+        self.m, self.numbers, self.prefix = m, numbers, prefix
+        self.limits = dict(zip((k for k, _ in _limits(m)), numbers["limits"].tolist(), strict=True))
+        names = [*m.bodies, *m.ports]
+        self.frame = {name: f for f, name in enumerate(names)}
+        self.carriers: dict[int, Pose] = {INTERFACE: _NOWHERE}
+        for k, joint in enumerate(m.joints):
+            R = numbers["rotation"][k].T
+            # from the parent's origin to O_k, then along the axis
+            own = R, numbers["offset"][k] + R[:, 2] * numbers["tau"][k]
+            self.carriers[k] = beyond(self.carriers[joint.parent], own)
+
+    def links(self) -> Iterator[RigidLink]:
+        """The interface, bodies with their joints, ports."""
+        yield RigidLink(self.prefix + BASE, None)
+        entries: dict[int, list[tuple[int, JointEntry]]] = {}
+        for k, entry in enumerate(self.m.topology.joints):
+            entries.setdefault(entry.body, []).append((k, entry))
+        for i in self.m.topology.order:
+            yield from self._body(i, entries.get(i, []))
+        for port in self.m.definition.ports:
+            pose = between(self._pose(port.body), self._pose(port.name))
+            yield RigidLink(self.prefix + port.name, self.prefix + port.body, pose)
+
+    def _body(self, i: int, entries: list[tuple[int, JointEntry]]) -> Iterator[RigidLink]:
+        """A body, and massless links before it where its joint is compound."""
+        body = self.m.definition.bodies[i]
+        parent, before = self.prefix + body.parent, self._pose(body.parent)
+        for k, entry in entries[:-1]:
+            name = self._between(f"{body.name}_{entry.step + 1}")
+            yield RigidLink(name, parent, between(before, self.carriers[k]), self._drive(k, entry, np.eye(3)[2]))
+            parent, before = name, self.carriers[k]
+        drive = None
+        if entries:
+            k, entry = entries[-1]
+            # the axis is the third one of the carrier
+            drive = self._drive(k, entry, self.numbers["frame.E"][self.frame[body.name]][:, 2])
+        mass, com, six = (self.numbers[name][i] for name in ("mass", "com", "inertia"))
+        tensor = np.array([[six[0], six[3], six[4]], [six[3], six[1], six[5]], [six[4], six[5], six[2]]])
+        pose = between(before, self._pose(body.name))
+        yield RigidLink(self.prefix + body.name, parent, pose, drive, float(mass), com, tensor)
+
+    def _between(self, wanted: str) -> str:
+        """A name that no body or port has."""
+        while wanted in self.frame:
+            wanted += "_"
+        return self.prefix + wanted
+
+    def _pose(self, frame: str) -> Pose:
+        f = self.frame[frame]
+        placed = {**self.m.bodies, **self.m.ports}[frame]
+        own = self.numbers["frame.E"][f].T, self.numbers["frame.position"][f]
+        return beyond(self.carriers[placed.carrier], own)
+
+    def _drive(self, k: int, entry: JointEntry, axis: Array) -> Drive:
+        low_high = self.limits.get(k)
+        limits = None if low_high is None else (low_high[0], low_high[1])
+        damping = float(self.numbers["damping"][k])
+        return Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, damping)
+
+    def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
+        """Springs, rotors, end stops and loads."""
+        for k, (entry, law) in enumerate(zip(self.m.topology.joints, self.m.laws, strict=True)):
+            name = f"'{self.prefix}{entry.coordinate}'"
+            if not law.stiffness.is_zero:
+                yield f"the spring of {name}"
+            if self.numbers["armature"][k]:
+                yield f"the armature {float(self.numbers['armature'][k])!r} of {name}"
+            if k not in laws:
+                yield f"the damping of {name}, which depends on the state"
+            if law.stops is not None:
+                yield f"the end stops of {name}"
+        for number, load in enumerate(self.m.definition.loads):
+            yield f"load {number} of '{self.prefix[:-1] or self.m.definition.name}' ({load.type})"
+
+
+def beyond(outer: Pose, inner: Pose) -> Pose:
+    """The pose of what is placed in something placed."""
+    return outer[0] @ inner[0], outer[1] + outer[0] @ inner[1]
+
+
+def between(outer: Pose, inner: Pose) -> Pose:
+    """The pose in ``outer`` of what is placed beside it."""
+    return outer[0].T @ inner[0], outer[0].T @ (inner[1] - outer[1])

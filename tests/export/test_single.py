@@ -1,0 +1,107 @@
+"""C in single precision: compiled without a warning, within the bound of its rounding that its header states."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import subprocess
+from dataclasses import replace
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from exported_models import exported_of, tree_of, write
+from mixed_program import mixed_program
+from run_code import STRICT, alone, shared, tool
+
+from substructures.export import Exported, Function
+from substructures.export.rounding import bounds
+from substructures.expr.interpret import interpret
+
+FLAGS = [*STRICT, "-Wdouble-promotion", "-ffp-contract=off"]
+
+
+def states(function: Function, rng: np.random.Generator) -> dict[str, np.ndarray[Any, Any]]:
+    """Arguments in the stated ranges that are numbers of single precision; parameters at their defaults."""
+    found = {}
+    for symbol in function.arguments:
+        vector = function.vector(symbol)
+        most = np.array([np.pi if unit == "rad" else 1.0 for unit in vector.units])
+        values = np.array(vector.defaults) if symbol == "p" else rng.uniform(-most, most)
+        found[symbol] = values.astype(np.float32)
+    return found
+
+
+def call(library: ctypes.CDLL, exported: Exported, function: Function, given: Any) -> list[np.ndarray[Any, Any]]:
+    pointer = ctypes.POINTER(ctypes.c_float)
+    outputs = [np.zeros(max(1, prod(o.shape)), np.float32) for o in function.program.outputs.values()]
+    arguments = [
+        ctypes.c_float(given[s][0]) if s == "t" else given[s].ctypes.data_as(pointer) for s in function.arguments
+    ]
+    getattr(library, exported.called(function))(*arguments, *(x.ctypes.data_as(pointer) for x in outputs))
+    return outputs
+
+
+@pytest.mark.parametrize("parts", [("acrobot",), ("scara", "camera"), ("puma560",)])
+def test_rounding_is_within_its_bound(parts: tuple[str, ...], tmp_path: Path) -> None:
+    exported = replace(exported_of(tree_of(*parts)), precision="single")
+    write(exported, "c", tmp_path)
+    library, rng = shared([tmp_path / "demo.c"], FLAGS), np.random.default_rng(3)
+    finite = 0
+    for function in exported.functions:
+        bound = bounds(function)
+        for _ in range(40):
+            given = states(function, rng)
+            # exactly what was given; but parameters are the defaults, whose rounding belongs to the bound
+            values = {
+                n: float(x) for s in given if s != "p" for n, x in zip(function.vector(s).names, given[s], strict=True)
+            }
+            p = function.interface.vectors["p"]
+            exact = interpret(function.program, values | dict(zip(p.names, p.defaults, strict=True)))
+            for (name, expected), found in zip(exact.items(), call(library, exported, function, given), strict=True):
+                error, size = bound[name]
+                if np.isfinite(error):
+                    finite += 1
+                    assert np.abs(found - np.ravel(expected)).max() <= error
+                    assert np.abs(expected).max() <= size * (1 + 1e-12)
+    assert finite > 40 * 8  # forward dynamics divides by what may vanish in the ranges
+
+
+def test_the_bound_says_something() -> None:
+    """Not only true: within a few thousand roundings of the size of the metric."""
+    exported = exported_of(tree_of("scara", "camera"))
+    metric = next(f for f in exported.functions if f.quantity == "metric")
+    (error, size) = bounds(metric)["metric"]
+    assert 2.0**-24 * size < error < 2000 * 2.0**-24 * size
+
+
+def test_a_wrong_bound_would_be_seen(tmp_path: Path) -> None:
+    exported = replace(exported_of(tree_of("puma560")), precision="single")
+    write(exported, "c", tmp_path)
+    library, rng = shared([tmp_path / "demo.c"], FLAGS), np.random.default_rng(3)
+    function = next(f for f in exported.functions if f.quantity == "christoffel")
+    worst = 0.0
+    for _ in range(200):
+        given = states(function, rng)
+        p = function.interface.vectors["p"]
+        values = dict(zip(function.vector("q").names, map(float, given["q"]), strict=True))
+        exact = interpret(function.program, values | dict(zip(p.names, p.defaults, strict=True)))["christoffel"]
+        worst = max(worst, float(np.abs(call(library, exported, function, given)[0] - np.ravel(exact)).max()))
+    assert bounds(function)["christoffel"][0] / 5000 < worst
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_it_compiles_and_passes_its_selftest(compiler: str, tmp_path: Path) -> None:
+    for exported in (exported_of(tree_of("scara", "camera")), alone(mixed_program(), "mixed")):
+        write(replace(exported, precision="single"), "c", tmp_path)
+        name = exported.name
+        sources = [str(tmp_path / f"{name}_selftest.c"), str(tmp_path / f"{name}.c")]
+        flags = [flag for flag in FLAGS if flag != "-Wdouble-promotion"]
+        subprocess.run([tool(compiler), *flags, "-o", str(tmp_path / "run"), *sources, "-lm"], check=True)
+        done = subprocess.run([str(tmp_path / "run")], capture_output=True, text=True, check=False)
+        assert (done.stdout.strip(), done.returncode) == ("ok", 0)
+        code = re.sub(r"//.*", "", (tmp_path / f"{name}.c").read_text())
+        assert "double" not in code
+        assert not re.search(r"[^\w.]\d+\.\d+(e[-+]?\d+)?(?![\d.ef])", code)
