@@ -19,6 +19,9 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Self
 
+#: unknown names of a request for which others are sought that are like them
+SOUGHT = 20
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
@@ -47,6 +50,17 @@ def meant(name: str, names: Iterable[str]) -> str:
     known = {each.lower(): each for each in names}
     found = get_close_matches(name[:80].lower(), known, n=1)
     return f"; did you mean '{known[found[0]]}'?" if found else ""
+
+
+def among(name: object, names: Iterable[str], number: int = 0) -> str:
+    """What may have been meant by a name, or else what there is; ``number``: how many unknown names came before, of
+    which only the first are looked for.
+
+    >>> among("metrik", ["forces", "metric"]), among("x", ["forces", "metric"])
+    ("; did you mean 'metric'?", '; there are forces, metric')
+    """
+    found = list(names)
+    return (meant(str(name), found) if number < SOUGHT else "") or f"; there are {listed(found) or 'none'}"
 
 
 class SubstructuresError(Exception):

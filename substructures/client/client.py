@@ -66,6 +66,10 @@ class Client(JobCaller):
         name: str = "",
         bind: str = "",
         together: bool = False,
+        packed: bool = False,
+        fmi: str = "3.0",
+        precision: str = "double",
+        stages: bool = False,
     ) -> Any:
         """The answer with the files of a target: of ``kind`` trees or substructures."""
         wanted = {
@@ -74,6 +78,10 @@ class Client(JobCaller):
             "name": name,
             "bind": bind,
             "together": together,
+            "packed": packed,
+            "fmi": fmi,
+            "precision": precision,
+            "stages": stages,
         }
         return self.request("GET", f"/v1/{step(kind)}/{step(ref)}/export", params=wanted)
 

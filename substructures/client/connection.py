@@ -14,7 +14,7 @@ from urllib.parse import quote, urlencode
 
 import httpx2
 
-from substructures.client.bulk import transfer
+from substructures.client.bulk import Bulk
 from substructures.documents import write_json
 from substructures.formats.arrays import Npz
 
@@ -50,6 +50,7 @@ class Caller:
         self.address, self.timeout = address, timeout
         self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}
         self._http = httpx2.Client(base_url=address, headers=self._headers, timeout=timeout)
+        self._bulk = Bulk(address, timeout)
 
     def __enter__(self) -> Self:
         return self
@@ -60,6 +61,7 @@ class Caller:
     def close(self) -> None:
         """Close all connections."""
         self._http.close()
+        self._bulk.close()
 
     def request(self, method: str, path: str, body: Any = None, **options: Any) -> httpx2.Response:
         """Send one request; ``body`` is sent as JSON with exact numbers."""
@@ -75,10 +77,11 @@ class Caller:
         self, path: str, content: Npz | Iterable[bytes | memoryview], media_type: str, **more: str
     ) -> Iterator[HTTPResponse]:
         headers = {**self._headers, "Content-Type": media_type, "Accept": media_type, **more}
+        is_repeatable = isinstance(content, Npz) and "Prefer" not in more  # not a job, which would be made twice
         if isinstance(content, Npz):
             headers["Content-Length"] = str(content.size)
             content = content.pieces
-        with transfer(self.address, path, content, headers, self.timeout) as answer:
+        with self._bulk.transfer(path, content, headers, is_repeatable=is_repeatable) as answer:
             if answer.status >= 400:
                 raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
             yield answer

@@ -51,6 +51,14 @@ class JobCaller(Caller):
         """Cancel what is not finished."""
         return dict(self.request("POST", f"/v1/jobs/{step(job)}/cancel").json())
 
+    def retry_job(self, job: str) -> dict[str, Any]:
+        """What of a job failed or was cancelled once more: the new job."""
+        return dict(self.request("POST", f"/v1/jobs/{step(job)}/retry").json())
+
+    def remove_job(self, job: str) -> None:
+        """Remove a job that has ended, with its results."""
+        self.request("DELETE", f"/v1/jobs/{step(job)}")
+
     def submit_states(
         self, tree: str, states: Mapping[str, Any] | Iterable[Mapping[str, Any]], form: str = "npz", **constants: Any
     ) -> dict[str, Any]:

@@ -11,11 +11,12 @@ Sources: RFC 8259 (JSON), RFC 6901 (pointers), YAML 1.2.2 section 10.3 (core sch
 """
 
 from substructures.documents.from_json import read_json
-from substructures.documents.from_yaml import read_yaml
+from substructures.documents.from_yaml import places, read_yaml
 from substructures.documents.numbers import MAX_DIGITS
 from substructures.documents.schema import Document, DocumentPart, message_of, read_model
 from substructures.documents.text import MAX_DEPTH, escape, pointer_step
 from substructures.documents.to_json import write_json
+from substructures.documents.to_yaml import write_yaml
 
 __all__ = [
     "MAX_DEPTH",
@@ -24,9 +25,11 @@ __all__ = [
     "DocumentPart",
     "escape",
     "message_of",
+    "places",
     "pointer_step",
     "read_json",
     "read_model",
     "read_yaml",
     "write_json",
+    "write_yaml",
 ]

@@ -38,7 +38,8 @@ PATTERNS[LIBRARY_NAME] = lambda text: (
 _CONSTANT = re.compile(r"[-+]?(?:[\d.]+(?:[eE][-+]?\d+)?|pi)(?:[*/](?:[\d.]+(?:[eE][-+]?\d+)?|pi))*")
 _UNIT = re.compile(r"[^\W\d_]|[°%]|1\s*/")
 _WITH_UNIT = re.compile(r"([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*([^\W\d_][^\s]*(?:\s[^\s]+)?|[°%])")
-_EITHER = [{"type": "number"}, {"type": "string", "maxLength": 10000}]
+LONGEST = 10_000  # characters of an expression, as its reader has it
+_EITHER = [{"type": "number"}, {"type": "string", "maxLength": LONGEST}]
 
 
 class Quantity(DocumentPart):
@@ -118,6 +119,8 @@ def _plain_number(value: Any) -> Any:
     """Exact number or expression text; floats are taken by their shortest decimal text."""
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str)):
         raise PydanticCustomError("number-expected", "expected a number or an expression")
+    if isinstance(value, str) and len(value) > LONGEST:
+        raise PydanticCustomError("bad-expression", f"an expression has at most {LONGEST} characters")
     if isinstance(value, float):
         value = Decimal(repr(float(value)))
     if isinstance(value, Decimal) and not value.is_finite():

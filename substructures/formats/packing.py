@@ -23,7 +23,8 @@ RANKS = {"metric": 2, "christoffel": 3}
 Elements = NDArray[np.int64]
 
 
-def _indices(quantity: str, n: int) -> list[tuple[int, ...]]:
+def packed_indices(quantity: str, n: int) -> list[tuple[int, ...]]:
+    """The indices of the packed elements of ``metric`` or ``christoffel`` for n coordinates, in their order."""
     if quantity == "metric":
         return [(a, b) for a in range(n) for b in range(a + 1)]
     return [(a, b, c) for c in range(n) for a in range(c) for b in range(c + 1)]
@@ -33,7 +34,7 @@ def _indices(quantity: str, n: int) -> list[tuple[int, ...]]:
 def packed_elements(quantity: str, n: int) -> Elements:
     """The places (K,) of the packed elements of ``metric`` or ``christoffel`` for n coordinates."""
     rank = RANKS[quantity]
-    places = np.array(_indices(quantity, n), dtype=np.int64).reshape(-1, rank)
+    places = np.array(packed_indices(quantity, n), dtype=np.int64).reshape(-1, rank)
     return places @ np.array([n**k for k in range(rank)][::-1], dtype=np.int64)
 
 
@@ -47,7 +48,7 @@ def unpack(quantity: str, packed: Any, n: int) -> NDArray[Any]:
     """
     if quantity not in SYMMETRIES:
         raise ValueError(f"'{quantity}' is never packed; there are {', '.join(SYMMETRIES)}")
-    values, indices = np.asarray(packed), _indices(quantity, n)
+    values, indices = np.asarray(packed), packed_indices(quantity, n)
     if values.shape[-1] != len(indices):
         raise ValueError(f"{len(indices)} elements are packed for {n} coordinates, found {values.shape[-1]}")
     dense = np.zeros(values.shape[:-1] + (n,) * RANKS[quantity], dtype=values.dtype)
