@@ -13,6 +13,7 @@ from sqlalchemy.exc import DBAPIError
 from service import __version__
 from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
+from service.http.away import Away
 from service.http.middleware import Conventions
 from service.http.short_way import ShortWay
 from service.metrics import Metrics
@@ -25,6 +26,7 @@ from service.routes import (
     aliases,
     analyses,
     audit,
+    differences,
     equivalences,
     exports,
     formulas,
@@ -34,9 +36,11 @@ from service.routes import (
     kernels,
     models,
     pictures,
+    publishing,
     substructures,
     system,
     trees,
+    versions,
     visibility,
 )
 from service.settings import Settings
@@ -46,10 +50,13 @@ ROUTES = (
     substructures,
     aliases,
     visibility,
+    versions,
+    differences,
     exports,
     formulas,
     pictures,
     trees,
+    publishing,
     analyses,
     models,
     kernels,
@@ -77,7 +84,7 @@ def open_store(settings: Settings, kept: Kept | None = None) -> Iterator[Store]:
     store = Store(settings, database, Metrics(label))
     try:
         if kept.number == 0:
-            _prepare(store, is_alone=kept.is_start or settings.processes == 1)
+            _prepare(store, is_alone=kept.is_start or (settings.processes == 1 and not kept.path))
         yield store
     finally:
         store.close()
@@ -96,11 +103,11 @@ def _prepare(store: Store, is_alone: bool) -> None:
         raise DatabaseError(f"cannot use the database {database.url}: {told(error)}") from None
 
 
-def create_app(store: Store) -> FastAPI:
-    """The app that serves a store."""
+def create_app(store: Store, away: Away | None = None) -> FastAPI:
+    """The app that serves a store; ``away``: the process that does what takes long."""
     hosts = (*store.settings.allowed_hosts, store.settings.host)
     app = bare_app(tuple(host.lower() for host in hosts), store.metrics)
-    app.state.store = store
+    app.state.store, app.state.away = store, away
     return app
 
 

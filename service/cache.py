@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from concurrent.futures import Future
 from threading import Lock
 from typing import Generic, TypeVar
 
@@ -16,6 +17,7 @@ class Cache(Generic[V]):
     def __init__(self, capacity: int, weight: Callable[[V], int]) -> None:
         self.capacity, self.weight = capacity, weight
         self._entries: OrderedDict[Hashable, V] = OrderedDict()
+        self._pending: dict[Hashable, Future[V]] = {}
         self._total = 0
         self._lock = Lock()
 
@@ -26,6 +28,29 @@ class Cache(Generic[V]):
             if value is not None:
                 self._entries.move_to_end(key)
             return value
+
+    def once(self, key: Hashable, make: Callable[[], V]) -> V:
+        """The value, made where there is none; who asks meanwhile waits for that. Raises what ``make`` does."""
+        value = self.get(key)
+        if value is not None:
+            return value
+        with self._lock:
+            pending, mine = self._pending.get(key), Future[V]()
+            if pending is None:
+                self._pending[key] = mine
+        if pending is not None:
+            return pending.result()
+        try:
+            value = make()
+            self.put(key, value)
+            mine.set_result(value)
+        except BaseException as error:
+            mine.set_exception(error)
+            raise
+        finally:
+            with self._lock:
+                del self._pending[key]
+        return value
 
     def put(self, key: Hashable, value: V) -> None:
         """Remember a value; one heavier than the whole cache is not kept."""

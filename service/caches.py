@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from service.answers import Answer
 from service.cache import Cache
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
@@ -16,24 +18,30 @@ from substructures.tree.plausibility import Plausibility
 TREES = 1000  # with what judges their values
 PICTURES = 16 * 2**20  # characters
 BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
+PRINTED = 32 * 2**20  # bytes of formulas as they were sent
+SECTIONS = 8 * 2**20  # characters of formulas on pages
 
 
 @dataclass(frozen=True)
 class Caches:
     """Decoded values: ``parts`` by digest of the definition, ``models`` by that of the tree, ``derived`` programs by
-    model and quantity, ``regressors``, ``numeric_trees`` and ``plausibilities`` by digest of the tree, ``evaluations``
-    that are at hand by reference and quantities, ``pictures`` in the standard pose by digest, ``blobs`` by digest.
+    model and quantity, ``regressors``, ``reactions``, ``numeric_trees`` and ``plausibilities`` by digest of the tree,
+    ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose by digest, ``blobs``
+    by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
     """
 
     parts: Cache[Part]
     models: Cache[Model]
     derived: Cache[Program]
     regressors: Cache[RegressorModel]
+    reactions: Cache[ReactionModel]
     numeric_trees: Cache[NumericTree]
     plausibilities: Cache[Plausibility]
     evaluations: Cache[Any]  # of service.operations.at_hand
     pictures: Cache[str]
     blobs: Cache[bytes]
+    printed: Cache[Answer]
+    sections: Cache[str]
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
@@ -43,9 +51,12 @@ class Caches:
             models=Cache(nodes // 4, lambda model: len(model.program)),
             derived=Cache(nodes // 4, len),
             regressors=Cache(nodes // 8, lambda found: len(found.program)),
+            reactions=Cache(nodes // 8, lambda found: len(found.program)),
             numeric_trees=Cache(nodes // 8, NumericTree.weight),
             plausibilities=Cache(TREES, lambda _: 1),
             evaluations=Cache(nodes // 8, lambda found: found.weight()),
             pictures=Cache(PICTURES, len),
             blobs=Cache(BLOBS, len),
+            printed=Cache(PRINTED, lambda answer: len(answer.body)),
+            sections=Cache(SECTIONS, len),
         )

@@ -26,12 +26,24 @@ def read_token(search: object, token: str | None, *kinds: type) -> tuple[Any, ..
     if token is None:
         return None
     try:
-        mark, *position = orjson.loads(base64.urlsafe_b64decode(token + "=" * (-len(token) % 4)))
+        mark, *position = _read(token)
     except (ValueError, TypeError, binascii.Error):
         mark, position = "", []
     if mark != _mark(search) or [type(value) for value in position] != list(kinds):
         raise unprocessable("page-token", "this page_token belongs to no page of this search", "/query/page_token")
     return tuple(position)
+
+
+def is_of(search: object, token: str) -> bool:
+    """Whether a token came from a search."""
+    try:
+        return bool(_read(token)[0] == _mark(search))
+    except (ValueError, TypeError, binascii.Error, IndexError):
+        return False
+
+
+def _read(token: str) -> Any:
+    return orjson.loads(base64.urlsafe_b64decode(token + "=" * (-len(token) % 4)))
 
 
 def _mark(search: object) -> str:

@@ -19,6 +19,7 @@ from typing import cast
 import uvicorn
 
 from service.app import create_app, open_store
+from service.http.away import Away
 from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engine import Engine
 from service.queries.keys import any_key
@@ -34,11 +35,13 @@ MAPPED, KEPT = 32 * 2**20, 64 * 2**20  # bytes: memory that is got from the syst
 TURN = 0.001  # seconds that a thread computes while others wait
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h
 TICKS = 10  # of uvicorn in a second
+NICE = 5  # of processes that compute for others: those that answer go first, jobs last
 AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
 
 def serve(settings: Settings) -> None:
     """Serve until interrupted. Raises SettingsError rather than to listen beyond loopback without API keys."""
+    kept.computes, kept.of = kept.number >= settings.processes, kept.number - settings.processes
     with open_store(settings, kept) as store:
         _check_processes(store)
         check_exposure(store)
@@ -46,7 +49,7 @@ def serve(settings: Settings) -> None:
         _prepare_to_answer()
         # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
         with supervised(store, engine_of(settings) if kept.number == 0 else None):
-            _server(store).run(sockets=_listeners(settings, store.database.claim))
+            _run(store)
 
 
 def _check_processes(store: Store) -> None:
@@ -59,14 +62,21 @@ def _check_processes(store: Store) -> None:
         raise SettingsError("several processes share an SQLite file on Linux only; use PostgreSQL")
 
 
-def _listeners(settings: Settings, claim: int | None) -> list[socket.socket]:
-    """Raises SettingsError for an address that cannot be listened on."""
+def _run(store: Store) -> None:
+    """Answer until the end. Raises SettingsError for an address that cannot be listened on."""
+    settings, claim = store.settings, store.database.claim
+    # of a store that processes cannot share there is none that computes for others
+    computing = kept.channel is not None and (claim is not None or not store.database.is_sqlite)
     try:
-        found = listeners(settings.host, settings.port, claim, settings.processes)
+        found = listeners(settings.host, settings.port, claim, settings.processes, computing)
     except OSError as error:
         raise SettingsError(f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}") from None
+    if kept.computes:
+        os.nice(NICE)
+        _server(store).run(sockets=found)
+        return
     logger.info("listening on %s", ", ".join(f"{name[0]}:{name[1]}" for name in (s.getsockname() for s in found)))
-    return found
+    _server(store, Away(kept.path, settings.limits.sync_seconds) if kept.path else None).run(sockets=found)
 
 
 def _prepare_to_answer() -> None:
@@ -154,13 +164,16 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def _server(store: Store) -> uvicorn.Server:
-    settings, connections = store.settings, Connections(store.settings.limits_of_process, kept.note)
+def _server(store: Store, away: Away | None = None) -> uvicorn.Server:
+    settings, limits = store.settings, store.settings.limits_of_process
+    if kept.computes:  # all come from the same address, having been let in
+        limits = limits.model_copy(update={"connections_per_address": limits.connections})
+    connections = Connections(limits, kept.note)
     return _Server(
         store,
         connections,
         uvicorn.Config(
-            create_app(store),
+            create_app(store, away),
             http=cast(type[asyncio.Protocol], partial(Connection, connections)),
             backlog=AT_A_STRETCH if settings.processes == 1 else 1,
             host=settings.host,

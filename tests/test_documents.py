@@ -10,7 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from substructures.documents import MAX_DEPTH, MAX_DIGITS, DocumentPart, read_json, read_model, read_yaml, write_json
+from substructures.documents import (
+    MAX_DEPTH,
+    MAX_DIGITS,
+    DocumentPart,
+    read_json,
+    read_model,
+    read_yaml,
+    write_json,
+    write_yaml,
+)
 from substructures.errors import InvalidDocument
 
 READERS = pytest.mark.parametrize("read", [read_json, read_yaml])
@@ -246,3 +255,41 @@ def test_some_values_may_stand_for_lists_of_one() -> None:
     assert read_model(Many, {"lists": [1, 2]}).lists == [[1], [2]]
     with pytest.raises(InvalidDocument):
         read_model(Many, {"lists": [1] * 1000})
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        {"a": "1e-3", "b": "yes", "c": "null", "d": "0x10", "e": "1:30", "f": "", "g": " x ", "h": "a: b", "i": "- x"},
+        {"a": Decimal("1e-30"), "b": Decimal("0.1"), "c": -3, "d": 10**30, "e": Decimal("123456789.000000001")},
+        {"a": [True, False, None], "b": [[1, 2], [3, 4]], "c": [{"x": [1]}], "d": {}, "e": [], "f": ()},
+        {
+            "a": "line\nline\n",
+            "b": "tab\t",
+            "c": "ä€𝄞",
+            "d": "#x",
+            "e": "'\"",
+            "f": "*a",
+            "g": "&a",
+            "h": "!x",
+            "i": "%",
+        },
+        {"1": "key", "null": 1, "on": 2, "a b": 3, "": 4},
+        [1, "x" * 300, {"y": "z" * 300}],
+    ],
+)
+def test_yaml_that_is_written_is_read_back_exactly(value: Any) -> None:
+    def plain(x: Any) -> Any:
+        if isinstance(x, dict):
+            return {key: plain(y) for key, y in x.items()}
+        return [plain(y) for y in x] if isinstance(x, list | tuple) else x
+
+    text = write_yaml(value)
+    assert read_yaml(text) == plain(value)
+    assert write_yaml(read_yaml(text)) == text
+
+
+@given(st.dictionaries(st.text(), plain, max_size=4))
+def test_any_plain_data_in_yaml(value: dict[str, Any]) -> None:
+    text = write_yaml(value)
+    assert write_json(read_yaml(text)) == write_json(value)

@@ -46,12 +46,16 @@ def run(text: str, folder: Path) -> str:
 
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="the README's requests need curl")
-def test_requests_in_order(tmp_path: Path) -> None:
+def test_requests_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     requests = [line for block in blocks("sh") for line in re.split(r"\n(?=curl)", block.strip()) if line[:4] == "curl"]
     assert len(requests) >= 6
     with background(Settings(database=f"sqlite:///{tmp_path / 'readme.db'}")) as address:
         answers = [curl(request, address, tmp_path) for request in requests]
+        shared = next(block for block in blocks("sh") if "substructures publish" in block).splitlines()
+        monkeypatch.chdir(tmp_path)
+        codes = [main([*shlex.split(line)[1:], "--server", address]) for line in shared]
         shape = run(blocks("python")[0].replace(ADDRESS, address), tmp_path)
+    assert codes == [0] * len(shared)
     assert (tmp_path / "cell.zip").read_bytes()[:2] == b"PK"
     assert '"cell"' in answers[0]
     assert "metric[1, 1]" in answers[1]
@@ -65,10 +69,12 @@ def test_commands_on_robot_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     """In the folder of the clone, but for what is written."""
     commands = [line for block in blocks("sh") for line in block.splitlines() if "interchange/examples" in line]
     commands = [line for line in commands if line.startswith("substructures ")]
-    assert len(commands) == 3
+    assert len(commands) == 4
     monkeypatch.chdir(Path(__file__).parent.parent)
     for line in commands:
-        words = [str(tmp_path / word) if word == "hand.json" else word for word in shlex.split(line)[1:]]
+        words = [
+            str(tmp_path / word) if word in ("hand.json", "puma560.urdf") else word for word in shlex.split(line)[1:]
+        ]
         assert main(words) == 0, line
     assert Definition.read(json.loads((tmp_path / "hand.json").read_text())).name == "franka-hand"
 
@@ -87,7 +93,7 @@ def test_python_example(tmp_path: Path) -> None:
     "word",
     [
         *("demo", "serve", "worker", "derive", "submit", "simulate", "analyse", "backup", "restore", "key create"),
-        *("import", "same"),
+        *("import", "same", "catalogue export", "catalogue import"),
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )

@@ -12,7 +12,7 @@ from service.refusals import unprocessable
 from substructures.certificate.rebuilt import require_same
 from substructures.documents.fields import Quantity, in_si, quantity_of
 from substructures.documents.units import UnknownUnitError, read_unit
-from substructures.errors import Fault, InvalidInput, listed
+from substructures.errors import Fault, InvalidInput, among
 from substructures.expr.bind import bind
 from substructures.expr.dimensions import Dimensioned
 from substructures.expr.program import Program
@@ -50,7 +50,7 @@ def bound(program: Program, parameters: Parameters, text: str) -> Program:
         elif value is None:
             raise unprocessable("bind", f"'{name[:80]}' is not name:value", PLACE)
         elif name not in parameters:
-            message = f"there is no parameter '{name[:80]}'; there are {listed(parameters)}"
+            message = f"there is no parameter '{name[:80]}'{among(name, parameters)}"
             raise unprocessable("unknown-parameter", message, PLACE)
         else:
             values[name] = quantity_of(value)

@@ -40,6 +40,7 @@ OPTIONS = {
     "controls": "inputs that are controlled (adjoint; default all)",
     "running": "cost per second, an expression in coordinates, velocities, inputs, parameters and t (adjoint)",
     "terminal": "cost at the end, an expression in coordinates, velocities, parameters and t (adjoint)",
+    "joints": "coordinates of joints, and instance.base of seats (reactions; default all)",
     "drives": "armature, viscous, coulomb, offset: columns of drives (base_parameters, base_regressor)",
 }
 
@@ -178,7 +179,8 @@ def _sensitivity(source: Source, options: Options) -> Made:
 
 
 def _curvature(source: Source, _: Options) -> Made:
-    return Made(curvature(source.model, source.limits.program_nodes), {"coordinates": list(source.model.coordinates)})
+    members = {"coordinates": list(source.model.coordinates), "symmetry_rule": RIEMANN}
+    return Made(curvature(source.model, source.limits.program_nodes), members)
 
 
 def _adjoint(source: Source, options: Options) -> Made:
@@ -205,6 +207,8 @@ def _base_parameters(source: Source, options: Options) -> Made:
     return Made(found.program, members, found)
 
 
+#: of R_abcd, by which the independent elements that are given determine all others
+RIEMANN = "R_abcd = -R_bacd = -R_abdc = R_cdab, R_abcd + R_acdb + R_adbc = 0"
 _QUANTITIES = {
     "first_integrals": _Quantity(_first_integrals, ("inputs", "zero"), (), {"zero": "parameters"}),
     "routhian": _Quantity(_routhian, ("cyclic",), (), {"cyclic": "coordinates"}),

@@ -15,7 +15,7 @@ from service.analyses.source import Source
 from service.analyses.warnings import warnings_of
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
-from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest
+from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest, WithReactions
 from service.schemas.stability import (
     EquilibriaRequest,
     LinearisationRequest,
@@ -35,6 +35,7 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.errors import Fault, InvalidArgument, TooLarge
+from substructures.quantities.reactions import ReactionModel, read_joints
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model
 
@@ -77,23 +78,40 @@ def _without(given: Mapping[str, Any], *names: str) -> dict[str, Any]:
 def _simulation(source: Source, request: SpanRequest, report: ProgressReport) -> Any:
     model, n, given = source.model, source.model.dof, arguments(request)
     rows = sum(len(closure.rows) for closure in model.closures)
-    numbers = 4 * n + rows + 10 + len(request.series) + len(request.inputs)
+    numbers = 6 * n + rows + 10 + len(request.series) + len(request.inputs)
+    transmitted = _transmitted(source, request)
+    if transmitted is not None:
+        numbers += 12 * len(transmitted.rows)
     _check_size(source, len(request.output_times().grid()), numbers)
-    return simulate(model, request.q, **_without(given, "q"), progress=report, folder=source.folder)
+    rest = _without(given, "q", "reactions")
+    return simulate(model, request.q, **rest, reactions=transmitted, progress=report, folder=source.folder)
+
+
+def _transmitted(source: Source, request: SpanRequest) -> ReactionModel | None:
+    """The reactions that are wanted along a motion. Raises InvalidArgument (``/reactions/i``)."""
+    wanted = request.reactions if isinstance(request, WithReactions) else False
+    if wanted is False:
+        return None
+    if source.reactions is None:
+        raise InvalidArgument.at("/reactions", "needs-parts", "reactions need the parts of the tree")
+    found = source.reactions()
+    return found if wanted is True else found.of(read_joints(wanted, found.rows, "/reactions"))
 
 
 def _sensitivities(source: Source, request: SensitivityRequest, report: ProgressReport) -> Any:
     n, given = source.model.dof, arguments(request)
     faults = [
         Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
-        for name in ("events", "fixed_step", "series")
+        for name in ("events", "fixed_step", "series", "reactions")
         if getattr(request, name)
     ]
+    if request.friction == "exact":
+        faults.append(Fault("/friction", "not-supported", "sensitivities are of the smooth law of friction alone"))
     if faults:
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = _without(given, "q", "events", "fixed_step", "series")
+    rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "friction")
     return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 

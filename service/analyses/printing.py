@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import orjson
 
 from service.analyses.binding import bound, bound_names
-from service.analyses.formulas import OF_PARTS, QUANTITIES, Made
+from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.refusals import not_found
 from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
@@ -17,7 +17,8 @@ from substructures.expr.program import Program
 from substructures.printers import entries
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.evaluation import REGRESSOR, Sources
+from substructures.quantities.canonical import MOMENTA, momentum
+from substructures.quantities.evaluation import REACTIONS, REGRESSOR, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 from substructures.tree.model import Model, require_stored
@@ -33,6 +34,10 @@ GROUPS = {
     "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
 }
 CHRISTOFFEL = "christoffel"
+#: formats that people read, and outputs that programs judge others by: D_k / |g_kk| and |g_kk|
+TO_READ, JUDGES = ("text", "latex", "latex-document", "mathml"), ("pivots", "inertias")
+#: of what has one beside g_ab = g_ba
+SYMMETRY_RULES = {"christoffel_second_kind": "Gamma^a_bc = Gamma^a_cb"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +62,13 @@ def quantities(name: str) -> tuple[str, ...]:
 
 def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity, InvalidDocument for what a large one does not store."""
-    if quantity in (*DERIVED, *OUTPUTS) or any(name in model.program.outputs for name in quantities(quantity)):
+    if quantity in (*DERIVED, *OUTPUTS, REACTIONS) or any(
+        name in model.program.outputs for name in quantities(quantity)
+    ):
         return
     if quantity == CHRISTOFFEL:  # of a large model, which says why
         require_stored(model.program, [quantity])
-    names = [*model.program.outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES]
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
     like = meant(quantity, names)
     raise not_found(f"there is no quantity '{quantity[:80]}'{like or f'; there are {known}'}", "unknown-quantity")
@@ -69,13 +76,33 @@ def check_quantity(model: Model, quantity: str) -> None:
 
 def needs_parts(quantity: str) -> bool:
     """Whether a quantity needs the parts of the tree, beside its formulas."""
-    return quantity in (*OUTPUTS, *OF_PARTS)
+    return quantity in (*OUTPUTS, REACTIONS, *OF_PARTS)
+
+
+def options_of_quantity(quantity: str) -> tuple[str, ...]:
+    """The options that a quantity of a model has."""
+    return ("joints",) if quantity == REACTIONS else ()
+
+
+def with_options(sources: Sources, quantity: str, options: Options) -> Sources:
+    """The sources for a quantity with its options. Raises InvalidDocument (pointers into the query)."""
+    check_options(quantity, options, options_of_quantity(quantity))
+    if not options.get("joints"):
+        return sources
+    found = replace(sources, joints=tuple(options["joints"]))
+    try:
+        found.transmitted()
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: f"/query{pointer}") from None
+    return found
 
 
 def model_quantity(sources: Sources, quantity: str) -> Program:
     """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
     if quantity in DERIVED:
         return sources.program(quantity)
+    if quantity == REACTIONS:
+        return sources.program(REACTIONS)
     if quantity in OUTPUTS:
         return sources.program(REGRESSOR).select([quantity])
     wanted, whole = quantities(quantity), sources.model.program
@@ -84,6 +111,12 @@ def model_quantity(sources: Sources, quantity: str) -> Program:
 
 def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[str, Any]]:
     """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
+    if quantity == REACTIONS:
+        return {"joints": sources.transmitted().rows}, sources.model.parameters
+    if quantity in MOMENTA:
+        return {"momenta": [momentum(name) for name in sources.model.coordinates]}, sources.model.parameters
+    if quantity in SYMMETRY_RULES:
+        return {"symmetry_rule": SYMMETRY_RULES[quantity]}, sources.model.parameters
     if quantity not in OUTPUTS:
         return {}, sources.model.parameters
     found = sources.columns()
@@ -100,6 +133,8 @@ def text_of(
 ) -> str:
     """The program in the format chosen; ``interface``: of what it was made for; ``members`` are put before it in JSON.
     Raises TooLarge for more than ``limit`` nodes, InvalidArgument for a bad name of a function."""
+    if style.format in TO_READ:
+        program = program.select([name for name in program.outputs if name not in JUDGES] or list(program.outputs))
     text = _rendered(program, style, quantity, interface, limit)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, interface.vectors["q"].names)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from service.settings import Limits
 from substructures.quantities.evaluation import Evaluator, interpreted
+from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
@@ -16,7 +17,7 @@ from substructures.tree.plausibility import Plausibility
 @dataclass(frozen=True)
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed.
+    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there.
     """
 
     model: Model
@@ -26,3 +27,4 @@ class Source:
     folder: Path | None = None
     engine: Evaluator = interpreted
     plausibility: Callable[[], Plausibility] | None = None
+    reactions: Callable[[], ReactionModel] | None = None

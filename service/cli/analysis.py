@@ -15,7 +15,7 @@ from service.analyses.printing import NAME
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.cli.options import Add, add_server, read_document, tell_warnings
+from service.cli.options import Add, add_server, named, read_document, tell_warnings
 from service.cli.tree_files import SUFFIXES, parts_beside
 from service.operations import models
 from service.operations.analyses import printed
@@ -23,8 +23,10 @@ from service.operations.models import Style
 from service.settings import Limits
 from substructures.client import Client
 from substructures.export import FORMATS, interface_of_model
+from substructures.part.part import Part
 from substructures.printers import FORMS
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import TreeSpec
@@ -94,12 +96,13 @@ def _formula(options: argparse.Namespace, chosen: Options) -> bytes:
     source = local_source(Path(options.tree))
     if what in QUANTITIES:
         return printed(source, what, chosen, style).body
-    return _model_formula(source, what, style).body
+    return _model_formula(source, what, style, chosen).body
 
 
-def _model_formula(source: Source, what: str, style: Style) -> Answer:
-    sources = Sources(source.model, regressor=source.regressor)
+def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> Answer:
+    sources = Sources(source.model, regressor=source.regressor, reactions=source.reactions)
     models.check_quantity(source.model, what)
+    sources = models.with_options(sources, what, chosen)
     members, parameters = models.described(sources, what)
     program = models.bound(models.model_quantity(sources, what), parameters, style.bind)
     interface = interface_of_model(source.model, digest=source.digest)
@@ -175,12 +178,23 @@ def local_source(path: Path) -> Source:
     """A tree document coupled here. Its parts are inline definitions, files ``<name>.yaml`` or ``.json`` beside the
     document, or entries of the shipped catalogue. Raises InvalidDocument.
     """
-    spec, limits = TreeSpec.read(read_document(path)), Limits()
+    document = read_document(path)
+    with named(path):
+        spec = TreeSpec.read(document)
     parts = parts_beside(spec, path.parent)
+    with named(path):
+        return coupled_source(spec, parts)
+
+
+def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
+    """A tree of parts coupled here; its warnings are told. Raises InvalidDocument."""
+    limits = Limits()
     model = couple(spec, parts, limits.program_nodes)
     # the others come with the result
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
-    return Source(model, spec.digest, lambda: regressor(spec, parts, limits.program_nodes), limits)
+    nodes = limits.program_nodes
+    transmitted = lambda: reactions(spec, parts, nodes)  # noqa: E731 -- made when it is asked for
+    return Source(model, spec.digest, lambda: regressor(spec, parts, nodes), limits, reactions=transmitted)
 
 
 ADD: Add = {"simulate": _add_simulate, "analyse": _add_analyse}

@@ -29,6 +29,7 @@ An item is, for
   assemble             a tree document
   derive               a definition
   verify               substructure (* for all)
+  compare              a, b (a list, or * for the catalogue), coordinates
   evaluate             tree, request, grid or sample, format
   simulate, optimise   tree, request or requests, format
   analyse              tree, analysis, request or requests, format
@@ -37,6 +38,8 @@ An item is, for
 A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
 instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
 document: 'substructures openapi', or /openapi.json of a server.
+
+With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was cancelled.
 """
 
 
@@ -45,7 +48,15 @@ def _add_jobs(jobs: argparse.ArgumentParser) -> None:
     command = add_action(actions, "submit", _submit, "queue the job in a file")
     command.add_argument("file", type=Path, help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML')
     command.formatter_class, command.epilog = argparse.RawDescriptionHelpFormatter, EPILOG
+    command.add_argument("--label", help="what it is for, in words")
     _add_wait(command)
+    add_server(command)
+    command = add_action(actions, "retry", _retry, "once more what of a job failed or was cancelled, as a new job")
+    command.add_argument("id")
+    _add_wait(command)
+    add_server(command)
+    command = add_action(actions, "rm", _remove, "remove jobs that have ended, with their results")
+    command.add_argument("id", nargs="+")
     add_server(command)
     command = add_action(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
     command.add_argument("tree", help="name of a tree")
@@ -107,7 +118,22 @@ def _client(options: argparse.Namespace) -> Client:
 
 def _submit(options: argparse.Namespace) -> int:
     with _client(options) as client:
-        return _queued(client, client.submit_job(read_document(options.file)), options)
+        document = read_document(options.file)
+        if options.label is not None and isinstance(document, dict):
+            document["label"] = options.label
+        return _queued(client, client.submit_job(document), options)
+
+
+def _retry(options: argparse.Namespace) -> int:
+    with _client(options) as client:
+        return _queued(client, client.retry_job(options.id), options)
+
+
+def _remove(options: argparse.Namespace) -> int:
+    with _client(options) as client:
+        for job in options.id:
+            client.remove_job(job)
+    return 0
 
 
 def _evaluate(options: argparse.Namespace) -> int:
@@ -147,7 +173,8 @@ def _list(options: argparse.Namespace) -> int:
     filters = {name: getattr(options, name) for name in ("state", "kind") if getattr(options, name)}
     with _client(options) as client:
         for _, job in zip(range(options.count), client.jobs(**filters), strict=False):
-            print(f"{job['id']}  {job['created'][:19]}  {job['kind']:<9} {job['state']:<10} {counted(job)}")
+            state = f"{job['kind']:<9} {job['state']:<10} {counted(job)}  {job['label']}".rstrip()
+            print(f"{job['id']}  {job['created'][:19]}  {state}")
     return 0
 
 
@@ -176,7 +203,8 @@ def _result(options: argparse.Namespace) -> int:
             return 0
         for item in client.job_items(options.id):
             what = item["problem"]["detail"] if item["problem"] else json.dumps(item["result"] or {})
-            print(f"{item['position']}  {item['state']}  {what}")
+            subject = f"{item['subject']}: " if item["subject"] else ""
+            print(f"{item['position']}  {item['state']}  {subject}{what}")
     return 0
 
 

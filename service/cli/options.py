@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
 from service.settings import Settings, from_environment
-from substructures.documents import read_json, read_yaml
-from substructures.errors import InvalidInput
+from substructures.documents import places, read_json, read_yaml
+from substructures.errors import Fault, InvalidInput
 
+#: endings of documents, in which places are found by line and column
+DOCUMENTS = (".yaml", ".yml", ".json")
+_TOLD = re.compile(r"\(line \d+, column \d+\)$")
 SERVER = "http://127.0.0.1:8000"
 
 CommandFunction = Callable[[argparse.Namespace], int]
@@ -65,8 +70,23 @@ def read_from(path: Path, file: IO[bytes]) -> Any:
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Put the name of the file before the pointers of its faults. Raises InvalidDocument."""
+    """Put the name of the file before the pointers of its faults, and line and column behind what they say. Raises
+    InvalidDocument.
+    """
     try:
         yield
     except InvalidInput as error:
-        raise error.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None
+        known = places(path.read_bytes()) if path.suffix in DOCUMENTS else {}
+        faults = [replace(fault, message=fault.message + _where(fault, known)) for fault in error.faults]
+        moved = type(error)(faults)
+        raise moved.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None
+
+
+def _where(fault: Fault, known: Mapping[str, tuple[int, int]]) -> str:
+    """Line and column of the innermost place there is of a pointer; nothing where the fault says it itself."""
+    pointer = fault.pointer
+    while pointer and pointer not in known:
+        pointer = pointer.rpartition("/")[0]
+    if _TOLD.search(fault.message) or not fault.pointer or pointer not in known:
+        return ""
+    return " (line {}, column {})".format(*known[pointer])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from service.cli.options import Add, add_server, tell_warnings
+from service.cli.options import Add, add_server, named, tell_warnings
 from service.cli.progress import follow
 from service.cli.robots import read_definition
 from substructures.client import Client
@@ -31,7 +31,9 @@ def _add_submit(command: argparse.ArgumentParser) -> None:
 
 
 def _derive(options: argparse.Namespace) -> int:
-    part = derive(Definition.read(read_definition(options.file)))
+    document = read_definition(options.file)
+    with named(options.file):
+        part = derive(Definition.read(document))
     if options.show:
         names = [n for n in part.program.outputs if n == options.show or n.startswith(f"{options.show}.")]
         if not names:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from itertools import islice
 from time import monotonic
 from typing import Any, TextIO
@@ -11,11 +12,16 @@ from substructures.client import Client, ServerLost
 from substructures.client.jobs import PATIENCE
 
 WIDTH = 30
+SHOWN = 3  # items that failed
+#: exit codes of commands that wait for a job
+SOME_FAILED, ALL_FAILED, CANCELLED = 3, 4, 5
 LINES = 10.0  # seconds between lines where there is no terminal
 
 
 def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
-    """Show the progress of a job until it has ended; 0 when all items succeeded. Raises ServerLost."""
+    """Show the progress of a job until it has ended, and what came of it; the exit code says so, too
+    (:func:`outcome`). Raises ServerLost.
+    """
     bar = Bar(sys.stderr)
     try:
         end = client.wait(job, bar.show, lambda waited, reason: bar.lost(waited, patience, reason), patience)
@@ -23,16 +29,39 @@ def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
         bar.leave()
         raise
     bar.end(end)
+    sys.stderr.write(summary(end) + "\n")
     if end["progress"]["failed"]:
         _explain(client, job)
-    return 0 if end["state"] == "succeeded" and not end["progress"]["failed"] else 1
+    return outcome(end)
+
+
+def outcome(job: Mapping[str, Any]) -> int:
+    """The exit code of a job that has ended: 0 all succeeded, 3 some items failed, 4 all did, 5 it was cancelled."""
+    if job["state"] == "cancelled":
+        return CANCELLED
+    progress = job["progress"]
+    return 0 if not progress["failed"] else ALL_FAILED if progress["failed"] == progress["total"] else SOME_FAILED
+
+
+def summary(job: Mapping[str, Any]) -> str:
+    """A line about a job that has ended."""
+    progress = job["progress"]
+    done = progress["done"] - progress["failed"]
+    left = progress["total"] - progress["done"]
+    counts = [f"{done:,} succeeded"]
+    counts += [f"{progress['failed']:,} failed"] if progress["failed"] else []
+    counts += [f"{left:,} cancelled"] if left else []
+    name = f"{job['kind']} '{job['label']}'" if job.get("label") else job["kind"]
+    return f"{name}: {', '.join(counts)} of {progress['total']:,}"
 
 
 def _explain(client: Client, job: str) -> None:
-    """Say why the first item failed that did, and where the others are told."""
-    for item in islice(client.job_items(job, state="failed"), 1):
-        sys.stderr.write(f"item {item['position']}: {item['problem']['detail']}\n")
+    """Say why the first items failed that did, and where the others are told."""
+    for item in islice(client.job_items(job, state="failed"), SHOWN):
+        subject = f" ({item['subject']})" if item.get("subject") else ""
+        sys.stderr.write(f"item {item['position']}{subject}: {item['problem']['detail']}\n")
     sys.stderr.write(f"all items: substructures jobs result {job}\n")
+    sys.stderr.write(f"once more what failed: substructures jobs retry {job}\n")
 
 
 class Bar:

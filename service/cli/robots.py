@@ -13,10 +13,10 @@ from service.cli.tree_files import parts_beside
 from substructures.client import Client
 from substructures.documents import write_json
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
-from substructures.interchange.equivalence import equivalence
+from substructures.interchange.equivalence import Equivalence, equivalence
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS, is_foreign
-from substructures.interchange.sides import Side
+from substructures.interchange.sides import Parts, sides
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import TreeSpec
@@ -81,6 +81,7 @@ def _add_import(command: argparse.ArgumentParser) -> None:
         "--fixed", choices=get_args(Fixed), default="ports", help="what links on fixed joints become (ports)"
     )
     command.add_argument("--base", choices=get_args(Base), default="fixed", help="whether the root moves (fixed)")
+    command.add_argument("--cut", default="", metavar="LINK,...", help="links that begin parts of their own, in a tree")
     command.add_argument("--license", default="", help="licence of the file")
     command.add_argument("--out", type=Path, help="write the definition (or tree) to this JSON file")
     command.add_argument("--submit", action="store_true", help="derive and store it on the server")
@@ -89,7 +90,10 @@ def _add_import(command: argparse.ArgumentParser) -> None:
 
 def _import(options: argparse.Namespace) -> int:
     chosen = Options(options.parameters, options.fixed, options.base)
-    found = read_robot_file(options.file, chosen, kind=options.kind, name=options.name, license_of_file=options.license)
+    links = [text.strip() for text in options.cut.split(",") if text.strip()]
+    found = read_robot_file(
+        options.file, chosen, kind=options.kind, name=options.name, license_of_file=options.license, cut=links
+    )
     document = found.definition if found.tree is None else found.tree
     for line in _told(found):
         print(line, file=sys.stderr)
@@ -116,37 +120,46 @@ def _told(found: Imported) -> Iterator[str]:
         f"{name} {'passed' if told['passed'] else '{warnings} warning(s)'.format(**told)}"
         for name, told in found.checks.items()
     )
-    renamed = sum(a.removeprefix("joint ") != b for a, b in found.names.items())
+    # in a tree they are instance.name
+    plain = {a.removeprefix("joint ").removeprefix("frame "): b.rpartition(".")[2] for a, b in found.names.items()}
+    renamed = sum(a != b for a, b in plain.items())
     yield f"{found.kind}: checks of {checks}; {renamed} of {len(found.names)} names changed"
 
 
 def _add_same(command: argparse.ArgumentParser) -> None:
     command.set_defaults(command=_same)
-    for name in ("a", "b"):
-        command.add_argument(name, type=Path, help="definition or tree (JSON, YAML), or a robot file")
+    command.add_argument("a", type=Path, help="definition or tree (JSON, YAML), or a robot file")
+    command.add_argument("b", type=Path, nargs="+", help="the same; each is compared with the first")
     command.add_argument("--coordinates", default="", metavar="A=B,...", help="names in a that are others in b")
 
 
 def _same(options: argparse.Namespace) -> int:
-    """0 when they are the same, 1 when not."""
-    read = [_part_or_tree(path) for path in (options.a, options.b)]
-    like = next((x.spec for x in read if isinstance(x, Side)), None)
-    a, b = (x if isinstance(x, Side) else Side.of_part(x, like) for x in read)
+    """0 when all are the same as the first, 1 when not."""
     given = dict(pair.strip().partition("=")[::2] for pair in options.coordinates.split(",") if pair.strip())
-    found = equivalence(a, b, given)
-    worst = max((told["error"] for told in found.quantities.values()), default=0.0)
+    ours = part_or_tree(options.a)
+    differing = 0
+    for path in options.b:
+        a, b = sides(ours, part_or_tree(path))
+        found = equivalence(a, b, given)
+        differing += not found.equal
+        for line in _verdict(found):
+            print(f"{path}: {line}" if len(options.b) > 1 else line)
+    return 1 if differing else 0
+
+
+def _verdict(found: Equivalence) -> Iterator[str]:
     if found.equal:
+        worst = max((told["error"] for told in found.quantities.values()), default=0.0)
         how = "as formulas" if found.level == "formulas" else f"in numbers, to {worst:.1e}"
-        print(f"the same {how}: {', '.join(found.quantities)}")
-        return 0
-    print(f"not the same: {write_json(found.first_difference).decode()}")
+        yield f"the same {how}: {', '.join(found.quantities)}"
+        return
+    yield f"not the same: {write_json(found.first_difference).decode()}"
     for culprit in found.culprits:
-        print(f"{culprit.body}: {culprit.parameter} {culprit.a} here, {culprit.b} there")
-    return 1
+        yield f"{culprit.body}: {culprit.parameter} {culprit.a} here, {culprit.b} there"
 
 
-def _part_or_tree(path: Path) -> Part | Side:
-    """A tree is coupled, as by ``simulate``; its parts are found beside it or in the catalogue."""
+def part_or_tree(path: Path) -> Part | Parts:
+    """A definition, derived, or a tree with its parts, found beside it or in the catalogue; also of robot files."""
     if is_foreign(path.read_bytes()):
         found = read_robot_file(path)
         document = found.definition if found.tree is None else found.tree
@@ -155,7 +168,7 @@ def _part_or_tree(path: Path) -> Part | Side:
     with named(path):
         if isinstance(document, dict) and "instances" in document:
             spec = TreeSpec.read(document)
-            return Side.of_tree(spec, parts_beside(spec, path.parent))
+            return spec, parts_beside(spec, path.parent)
         return derive(Definition.read(document))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from service.cli.options import read_document
+from service.cli.options import named, read_document
 from substructures import catalogue
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
@@ -25,7 +25,9 @@ def _part(index: int, instance: Instance, folder: Path) -> Part:
     name = (instance.substructure or "").partition("@")[0]
     files = [file for suffix in SUFFIXES if (file := folder / f"{name}{suffix}").is_file()]
     if files:
-        return derive(Definition.read(read_document(files[0])))
+        document = read_document(files[0])
+        with named(files[0]):
+            return derive(Definition.read(document))
     if name not in catalogue.names():
         message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
         raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)

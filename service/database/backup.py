@@ -70,6 +70,8 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
 
 
 def _check_backup(source: Path) -> None:
+    if not source.is_file():
+        raise DatabaseError(f"there is no file {source}; 'substructures backup FILE' makes one of a store")
     if not _is_sqlite(source):
         raise DatabaseError(f"{source} is no backup")
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -12,6 +13,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
+from service.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch
 from service.database.migrate import upgrade
 
@@ -144,6 +146,7 @@ def _postgres(url: URL) -> Engine:
     given = {name: value for name, value in limits.items() if name not in url.query}
     engine = create_engine(url, pool_size=READERS, pool_pre_ping=True, connect_args=given)
     event.listen(engine, "connect", _watch_client)
+    event.listen(engine, "connect", _set_clock)
     return engine
 
 
@@ -162,6 +165,13 @@ def told(error: DBAPIError) -> str:
 def _snapshots(engine: Engine) -> Engine:
     """Read transactions whose statements all see the same state, as on SQLite."""
     return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+
+
+def _set_clock(connection: Any, _record: object) -> None:
+    asked = datetime.now(UTC)
+    ((told,),) = connection.execute("SELECT clock_timestamp()").fetchall()
+    set_by(asked, told, datetime.now(UTC))
+    connection.commit()
 
 
 def _configure(connection: Any, _record: object) -> None:

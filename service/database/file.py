@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import fcntl
+import logging
 import os
 import sqlite3
 import sys
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
+from threading import Thread
 
 from sqlalchemy.exc import OperationalError
 
 PRIVATE = 0o600
+LARGE = 256 * 2**20  # bytes that a server looks at before it answers
 FAULTS, TOLD = 3, 300  # of a damaged file that are named, and in how many characters
+_log = logging.getLogger(__name__)
 
 
 class DatabaseError(Exception):
@@ -88,34 +92,62 @@ def make_private(path: Path) -> None:
 
 
 class Watch:
-    """Notices when the file, or the log that SQLite keeps beside it, is deleted or replaced while it is open."""
+    """Notices when the file, or the log that SQLite keeps beside it, is damaged, deleted or replaced."""
 
     def __init__(self, path: Path) -> None:
-        """Raises DatabaseError for a damaged file."""
-        self._paths = [path, path.with_name(f"{path.name}-wal")]
+        """Raises DatabaseError for a damaged file; a large one is looked at in the background."""
+        self._path, self._paths = path, [path, path.with_name(f"{path.name}-wal")]
+        self._damage, self._looker = "", Thread(target=self._look_later, name="look for damage", daemon=True)
+        self._reader: sqlite3.Connection | None = None  # of the background
         # as long as one connection is open, nobody removes the log
         self._anchor = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         try:
-            found = [row[0] for row in self._anchor.execute(f"PRAGMA quick_check({FAULTS})")]
-            if found != ["ok"]:
-                told = "; ".join("; ".join(found).splitlines())[:TOLD]
-                raise DatabaseError(f"{path} is damaged: {told}; restore a backup")
+            is_large = path.stat().st_size > LARGE
+            if not is_large:
+                self._look(self._anchor)
             self._anchor.execute("PRAGMA journal_mode=WAL")
             self._anchor.execute("SELECT count(*) FROM sqlite_schema").fetchone()
             self._known = [_identity(name) for name in self._paths]
+            if is_large:
+                self._looker.start()
         except (sqlite3.Error, DatabaseError) as error:
             self._anchor.close()
             raise DatabaseError(str(error) if isinstance(error, DatabaseError) else f"{path}: {error}") from None
 
     def check(self) -> None:
-        """Raise OperationalError when what is open is not what is there: what is written would be lost."""
+        """Raise OperationalError when what is open is damaged, or not what is there: what is written would be lost."""
+        if self._damage:
+            raise OperationalError(None, None, sqlite3.DatabaseError(self._damage))
         for name, known in zip(self._paths, self._known, strict=True):
             if _identity(name) != known:
                 reason = sqlite3.OperationalError(f"{name} was deleted or replaced; restart the server")
                 raise OperationalError(None, None, reason)
 
+    def _look(self, connection: sqlite3.Connection) -> None:
+        """Raise DatabaseError for a damaged file."""
+        found = [row[0] for row in connection.execute(f"PRAGMA quick_check({FAULTS})")]
+        if found != ["ok"]:
+            told = "; ".join("; ".join(found).splitlines())[:TOLD]
+            raise DatabaseError(f"{self._path} is damaged: {told}; restore a backup")
+
+    def _look_later(self) -> None:
+        """Look while the server answers; from then on it answers no more when there is damage."""
+        address = f"{self._path.absolute().as_uri()}?mode=ro"
+        try:
+            with closing(sqlite3.connect(address, uri=True, check_same_thread=False)) as self._reader:
+                self._look(self._reader)
+        except (sqlite3.DatabaseError, DatabaseError) as error:
+            if str(error) != "interrupted":
+                self._damage = str(error)
+                _log.exception("the store is damaged")
+
     def close(self) -> None:
         """Close the connection that keeps the log."""
+        while self._looker.is_alive():
+            if self._reader is not None:
+                with suppress(sqlite3.ProgrammingError):  # it has just closed it
+                    self._reader.interrupt()
+            self._looker.join(0.1)
         self._anchor.close()
 
 

@@ -64,6 +64,8 @@ jobs = Table(
     Column("error", Text, nullable=True),  # problem document
     Column("shared", Boolean, nullable=False, server_default=false()),  # whether every key may see it
     Column("owner", Text, nullable=False, server_default="local"),
+    Column("label", Text, nullable=False, server_default=""),  # what it is for, in words
+    Column("retry_of", Text, nullable=True),  # the job whose items are tried again
     _known("ck_jobs_state", JOB_STATES),
     CheckConstraint("failed <= done AND done <= total", name="ck_jobs_counts"),
     Index(None, "state", "id"),

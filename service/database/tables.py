@@ -7,7 +7,8 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
 ::
 
     substructures --< versions >-- parts --- programs
-          '--< aliases --< history   '--< tags
+          '--< aliases --< history   |--< tags
+                                     '--< part_uses >-- parts
     tree_names --< trees --< tree_parts >-- parts
                      '------------------- programs
 """
@@ -90,6 +91,7 @@ tags = Table(
     metadata,
     _text("part", ForeignKey("parts.digest"), primary_key=True),
     _text("tag", primary_key=True),
+    Index("ix_tags_tag", "tag", "part"),
 )
 
 substructures = Table(  # one row a name; locked while a version number is allocated
@@ -97,8 +99,20 @@ substructures = Table(  # one row a name; locked while a version number is alloc
     metadata,
     _text("name", primary_key=True),
     _number("latest", nullable=True),  # highest version that is not yanked
+    # of that version, so that searches read narrow rows
+    _text("digest", nullable=True),
+    _text("created", nullable=True),
+    _number("dof", nullable=True),
+    _text("joints", nullable=True),
+    _text("searchable", nullable=True),
+    _number("number", nullable=True),  # by which SQLite's index of words knows it
     _default("owner", "local"),
     _default("visibility", "public"),
+    Index("ix_substructures_dof", "dof", "name"),
+    Index("ix_substructures_created", "created", "name"),
+    Index("ix_substructures_number", "number", unique=True),
+    Index("ix_substructures_digest", "digest"),
+    Index("ix_substructures_seen", "visibility", "owner", "latest"),
 )
 
 versions = Table(
@@ -111,8 +125,25 @@ versions = Table(
     _text("yanked", nullable=True),
     _text("yank_reason", nullable=True),
     _default("author", ""),  # id of an API key
+    _default("note", ""),  # of whoever submitted it
+    _default("origin", ""),  # what it came as
+    _text("derived_name", nullable=True),  # the version that it was made from
+    _number("derived_version", nullable=True),
+    _text("successor_name", nullable=True),  # what to take in place of a version that was withdrawn
+    _number("successor_version", nullable=True),
+    _text("tree", nullable=True),  # the revision of a tree that was published as this version
+    _number("tree_revision", nullable=True),
     UniqueConstraint("digest"),
     Index(None, "created"),
+)
+
+part_uses = Table(  # what a part that was published of a tree is built of
+    "part_uses",
+    metadata,
+    _text("part", ForeignKey("parts.digest"), primary_key=True),
+    _text("instance", primary_key=True),
+    _text("used", ForeignKey("parts.digest")),
+    Index(None, "used"),
 )
 
 aliases = Table(
@@ -161,6 +192,7 @@ trees = Table(
     _number("based_on", nullable=True),  # the revision that was changed
     Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of ``summary``
     _default("author", ""),
+    _default("note", ""),
     Index(None, "digest"),
     Index(None, "created"),
 )

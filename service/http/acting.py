@@ -34,6 +34,8 @@ Commit = Callable[[Connection], Answer]
 Result = TypeVar("Result")
 IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
 ATTEMPTS = 8
+#: tasks for the process that computes, where there is one
+AWAY: tuple[Task, ...] = ("derive", "analyse")
 
 
 class Act:
@@ -41,7 +43,7 @@ class Act:
 
     def __init__(self, request: Request, body: Callable[[], Iterable[bytes]], store: Store, key: str | None) -> None:
         """``body``: gives the pieces of the request body."""
-        self.store, self._request = store, request
+        self.store, self._request, self._body = store, request, body
         self.viewer: Viewer = request.state.viewer
         self.principal = self.viewer.key
         limits = store.settings.limits
@@ -77,6 +79,10 @@ class Act:
 
     async def within_time(self, task: Task, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
+        away = self._request.app.state.away
+        if away is not None and task in AWAY:
+            found: Response = await away.answer(self._request, self._body(), stores=task == "derive")
+            return found
         threads, self._task = self.store.runtime.threads[task], task
         return await self._deadline.within(partial(threads.submit, self.principal), endpoint)
 

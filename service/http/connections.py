@@ -40,6 +40,7 @@ from service.http.request_id import begin_request
 from service.refusals import Refused
 from service.settings import Limits
 
+AHEAD = 2**20  # bytes of a body that wait to be taken
 RATE = 500  # bytes a second that a body has to have in the long run
 _log = logging.getLogger(__name__)
 
@@ -180,10 +181,16 @@ class Connection(HttpToolsProtocol):
         super()._start_asgi_task(cycle, cast(Any, Chunked(cycle, app, self.transport)))
 
     def on_body(self, body: bytes) -> None:
-        """Note that a body goes on."""
+        """Note that a body goes on; more of it is read ahead than uvicorn would, in fewer turns of the loop."""
         self._unused = 0
         self._received += len(body)
-        super().on_body(body)
+        cycle = self.cycle
+        if cycle is None or cycle.response_complete:
+            return
+        cycle.body += body
+        if len(cycle.body) > AHEAD:
+            self.flow.pause_reading()
+        cycle.message_event.set()
 
     def on_message_complete(self) -> None:
         """Note the end of a body."""

@@ -14,8 +14,9 @@ from pydantic.json_schema import models_json_schema
 from service.analyses.numbers import ANALYSES
 from service.schemas.entries import SubmittedDefinition, SubmittedTree, VisibilityRequest
 from service.schemas.equivalences import EquivalenceRequest
-from service.schemas.jobs import CancelRequest, JobRequest
+from service.schemas.jobs import CancelRequest, JobRequest, RetryRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
+from service.schemas.publishing import PublishRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.part.definition import Definition
@@ -46,6 +47,8 @@ _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for
 _REQUESTS = (
     *(AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest),
     EquivalenceRequest,
+    PublishRequest,
+    RetryRequest,
 )
 _READ_BY_US: tuple[type[BaseModel], ...] = (
     Definition,

@@ -27,7 +27,7 @@ def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
     sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility)
+    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility, sources.reactions)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:

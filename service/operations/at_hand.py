@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from service.answers import Answer
+from service.answers import Answer, json_answer
+from service.operations import evaluations
 from service.operations.exchange import TreeEvaluation
 from service.queries.trees import Tree
 from service.schemas.numbers import EvaluationRequest
@@ -19,12 +20,14 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import REGRESSOR, Sources, cost, steps
+from substructures.quantities.evaluation import REACTIONS, REGRESSOR, Sources, cost, steps
+from substructures.quantities.one_state import OneState, prepared
 from substructures.quantities.states import longest
 
 EVERYBODY = ""  # no owner
 BODY = 4096  # bytes of the request
 OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds
+KEPT = 4_000  # operations whose memory is that of what is prepared for one state
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +36,15 @@ class AtHand:
 
     evaluation: TreeEvaluation
     programs: Mapping[str, tuple[Program, list[str]]]
+    one_state: OneState | None
 
     def is_ready(self, store: Store) -> bool:
         """Whether all kernels are in memory."""
         return all(store.kernels.has(program, names) for program, names in self.programs.values())
 
     def weight(self) -> int:
-        """Operations."""
-        return sum(len(program) for program, _ in self.programs.values())
+        """Operations, and what memory of kernels is kept beside them counts as much as."""
+        return sum(len(program) for program, _ in self.programs.values()) + (0 if self.one_state is None else KEPT)
 
 
 def answer(store: Store, viewer: Viewer, ref: str, body: bytes) -> Answer | None:
@@ -53,6 +57,9 @@ def answer(store: Store, viewer: Viewer, ref: str, body: bytes) -> Answer | None
         found = kept.get(_key(EVERYBODY, ref, names)) or kept.get(_key(viewer.owner, ref, names))
     if found is None or not found.is_ready(store):
         return None
+    quick = None if found.one_state is None else found.one_state.at(data)
+    if quick is not None:
+        return json_answer(evaluations.as_json(quick, found.evaluation.digest))
     arguments = EvaluationRequest.read(data).arguments()
     return found.evaluation.json(arguments) if longest(arguments) == 1 else None
 
@@ -65,15 +72,17 @@ def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, eva
     """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
-    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures:
+    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or REACTIONS in names:
         return
     programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
     columns = sources.columns() if REGRESSOR in programs else None
     regressor = None if columns is None else lambda: columns
     derived = lambda _, source: programs[source][0]  # noqa: E731 -- nothing is derived anew
     at_hand = Sources(sources.model, derived, regressor, sources.plausibility)
-    found = AtHand(replace(evaluation, sources=at_hand), programs)
+    found = AtHand(replace(evaluation, sources=at_hand), programs, None)
     if found.is_ready(store):
+        one_state = prepared(at_hand, names, lambda program, outputs: store.kernels.compiled(program, outputs)[0])
+        found = replace(found, one_state=one_state)
         whose = EVERYBODY if tree.is_public else tree.owner
         store.caches.evaluations.put(_key(whose, ref, names), found)
 

@@ -20,7 +20,7 @@ from substructures.tree.model import (
     Model,
 )  #: fields that the metadata of an Arrow schema may give, as JSON: what is the same for all states
 
-_CONSTANTS = ("quantities", "parameters", "inputs", "along", "t", "packed", "float32")
+_CONSTANTS = ("quantities", "parameters", "inputs", "along", "t", "packed", "float32", "joints")
 
 
 def npz_request(file: IO[bytes], limits: Limits) -> EvaluationRequest:

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from service.database.connections import Connection
 from service.operations import owners
-from service.paging import read_token, write_token
-from service.queries import aliases, audit, catalogue, content
+from service.operations.provenance import Origin, derived_from, pinned, provenance
+from service.paging import is_of, read_token, write_token
+from service.queries import aliases, audit, catalogue, content, search, uses
 from service.queries.formulas import FormulaRow
 from service.queries.owners import is_version, ownership
+from service.queries.search import CatalogueSearch
 from service.references import ALIAS, Reference, parse_reference
 from service.refusals import Refused, not_found, unprocessable
-from service.schemas.entries import PLAIN, Entry
+from service.schemas.entries import PLAIN, PartEntry
 from service.store import Store
 from service.summaries import PartContent, part_content
 from service.viewer import Viewer
 from substructures.part.definition import Definition
-from substructures.part.part import derive
+from substructures.part.part import Part, derive
+
+SUBMITTED = Origin()
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,35 +35,47 @@ class PartSubmission:
     digest: str
     content: PartContent | None
     is_mended: bool = False
-    entry: Entry = PLAIN
+    entry: PartEntry = PLAIN
+    origin: Origin = SUBMITTED
 
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A page of versions, their aliases, the counts of the whole search, and where the next page begins."""
+    """A page of versions, where the next one begins, the counts of the whole search, and words that were taken in
+    place of those that are nowhere.
+    """
 
     versions: Sequence[catalogue.Version]
-    facets: Mapping[str, Mapping[str, int]]
     next_token: str | None
+    facets: Mapping[str, Mapping[str, int]] | None = None
+    instead: Mapping[str, str] = field(default_factory=dict)
 
 
-def prepare(store: Store, viewer: Viewer, definition: Definition, entry: Entry) -> PartSubmission:
-    """Derive, verify and certify a definition unless its content is known and sound.
+def prepare(
+    store: Store,
+    viewer: Viewer,
+    definition: Definition,
+    entry: PartEntry,
+    origin: Origin = SUBMITTED,
+    made: Callable[[], Part] | None = None,
+) -> PartSubmission:
+    """Derive, verify and certify a definition unless its content is known and sound; ``made``: what does so.
 
-    Raises InvalidDocument, TooLarge, LongWork, Refused 403 for a name of others, 409.
+    Raises InvalidDocument, TooLarge, LongWork, Refused 403 for a name of others, 409, 422.
     """
     is_mended = False
     with store.database.read() as connection:
         if not _is_there(connection, viewer, definition.name, definition.digest):
             owners.wanted(connection, viewer, "substructure", definition.name, entry)
+        derived_from(connection, viewer, entry)
         try:
             if content.get_part(connection, definition.digest) is not None:
-                return PartSubmission(definition.name, definition.digest, None, entry=entry)
+                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
         except Refused:  # damaged, or gone in part
             is_mended = True
-    part = derive(definition, store.settings.limits.program_nodes, store.admit)
+    part = made() if made else derive(definition, store.settings.limits.program_nodes, store.admit)
     store.remember_part(part)
-    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended, entry)
+    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended, entry, origin)
 
 
 def _is_there(connection: Connection, viewer: Viewer, name: str, digest: str) -> bool:
@@ -88,8 +104,11 @@ def submit(connection: Connection, viewer: Viewer, submission: PartSubmission) -
         owners.claimed(connection, viewer, "substructure", name, submission.entry)
     if submission.content is not None:
         (mend_part if submission.is_mended else store_part)(connection, submission.content)
-    number, is_new = catalogue.add_version(connection, name, digest, viewer.key)
+    origin = submission.origin
+    told = provenance(connection, viewer, submission.entry, origin)
+    number, is_new = catalogue.add_version(connection, name, digest, viewer.key, told)
     if is_new:
+        uses.put(connection, digest, origin.uses)
         audit.note(connection, viewer, "substructure.submit", f"{name}@{number}", digest=digest)
     return _resolved(connection, viewer, Reference(name, number=number)), is_new
 
@@ -110,16 +129,32 @@ def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str 
     return version
 
 
-def search(
-    connection: Connection, viewer: Viewer, wanted: catalogue.CatalogueSearch, size: int, token: str | None
+def found(
+    connection: Connection, viewer: Viewer, wanted: CatalogueSearch, size: int, token: str | None, facets: bool = False
 ) -> Page:
-    """A page of the latest versions. Raises Refused 422 for a token of another search."""
-    column = wanted.sort.lstrip("-")
-    after = read_token(wanted, token, int if column == "dof" else str, str)
-    found = catalogue.page(connection, viewer, wanted, after, size + 1)
-    last = found[size - 1] if len(found) > size else None
-    following = write_token(wanted, getattr(last, column), last.name) if last else None
-    return Page(found[:size], catalogue.facets(connection, viewer, wanted), following)
+    """A page of the latest versions, of the most similar words where there is nothing with the words themselves.
+    ``facets``: also counts of the whole search. Raises Refused 422 for a token of another search.
+    """
+    instead: dict[str, str] = {}
+    is_of_words = token is None or is_of(wanted, token)
+    shown = _page(connection, viewer, wanted, size, token) if is_of_words else None
+    if wanted.words and not (shown and shown.versions):
+        instead = search.corrected(connection, viewer, wanted)
+        wanted = search.with_words(wanted, instead)
+        shown = _page(connection, viewer, wanted, size, token) if instead or shown is None else shown
+    if shown is None:
+        shown = _page(connection, viewer, wanted, size, token)
+    counted = search.facets(connection, viewer, wanted) if facets else None
+    return replace(shown, facets=counted, instead=instead)
+
+
+def _page(connection: Connection, viewer: Viewer, wanted: CatalogueSearch, size: int, token: str | None) -> Page:
+    is_number = wanted.sort.lstrip("-") == "dof" or (wanted.sort == search.RELEVANCE and bool(wanted.words))
+    after = read_token(wanted, token, int if is_number else str, str)
+    versions, places = search.page(connection, viewer, wanted, after, size + 1)
+    more = len(versions) > size
+    following = write_token(wanted, places[size - 1], versions[size - 1].name) if more else None
+    return Page(versions[:size], following)
 
 
 def set_alias(
@@ -163,10 +198,18 @@ def alias_tag(alias: aliases.Alias) -> str:
     return f'"{alias.revision}"'
 
 
-def yank(connection: Connection, viewer: Viewer, text: str, reason: str) -> catalogue.Version:
-    """Withdraw a version: it stays where it is used, and no longer is anybody's latest. Raises Refused 404, 403."""
+def yank(
+    connection: Connection, viewer: Viewer, text: str, reason: str, successor: str | None = None
+) -> catalogue.Version:
+    """Withdraw a version: it stays where it is used, and no longer is anybody's latest; ``successor``: reference to
+    what to take instead. Raises Refused 404, 403, 422.
+    """
     version = find(connection, viewer, text)
     owners.require(viewer, version.owner, version.name, "withdraws its versions")
-    catalogue.yank(connection, version.name, version.version, reason)
-    audit.note(connection, viewer, "substructure.yank", f"{version.name}@{version.version}", reason=reason)
+    instead = None if successor is None else pinned(connection, viewer, successor, "/successor")
+    if instead == (version.name, version.version):
+        raise unprocessable("own-successor", f"'{text[:80]}' cannot take its own place", "/successor")
+    catalogue.yank(connection, version.name, version.version, reason, instead)
+    told = {"reason": reason} | ({} if instead is None else {"successor": "{}@{}".format(*instead)})
+    audit.note(connection, viewer, "substructure.yank", f"{version.name}@{version.version}", **told)
     return _resolved(connection, viewer, Reference(version.name, number=version.version))

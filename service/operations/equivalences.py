@@ -14,14 +14,11 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.interchange.equivalence import Equivalence, equivalence
-from substructures.interchange.importing import import_file
-from substructures.interchange.sides import Side
+from substructures.interchange.importing import document_of
+from substructures.interchange.sides import Parts, sides
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import TreeSpec
-
-#: a tree and the parts of its instances
-Parts = tuple[TreeSpec, Mapping[str, Part]]
 
 
 def compared(store: Store, viewer: Viewer, a: Any, b: Any, coordinates: Mapping[str, str]) -> Equivalence:
@@ -36,9 +33,8 @@ def compared(store: Store, viewer: Viewer, a: Any, b: Any, coordinates: Mapping[
             found.append(_read(store, viewer, given))
         except InvalidInput as error:
             raise error.below(f"/{name}") from None
-    like = next((x[0] for x in found if not isinstance(x, Part)), None)
-    sides = [Side.of_part(x, like) if isinstance(x, Part) else Side.of_tree(*x) for x in found]
-    return equivalence(sides[0], sides[1], coordinates)
+    ours, theirs = sides(*found)
+    return equivalence(ours, theirs, coordinates)
 
 
 def _read(store: Store, viewer: Viewer, given: Any) -> Part | Parts:
@@ -46,11 +42,7 @@ def _read(store: Store, viewer: Viewer, given: Any) -> Part | Parts:
         return _stored(store, viewer, given)
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("", "object-expected", "a reference, a definition, a tree or a file is needed")
-    if "file" in given:
-        if set(given) - {"file", "kind"} or not isinstance(given["file"], str):
-            raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
-        read = import_file(given["file"].encode("utf-8", "replace"), kind=given.get("kind"))
-        given = read.definition if read.tree is None else read.tree
+    given = document_of(given)
     if "instances" in given:
         spec = TreeSpec.read(given)
         with store.database.read() as connection:

@@ -2,10 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from service.database.connections import Connection
+from service.operations import catalogue, trees
+from service.operations.provenance import Origin
+from service.queries.trees import Tree
+from service.schemas.entries import PLAIN
+from service.store import Store
+from service.viewer import Viewer
 from substructures.documents import write_json
 from substructures.interchange.importing import Imported
+
+IMPORTED = Origin("import")
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedTree:
+    """A tree ready to be stored, after the parts that it names."""
+
+    parts: Sequence[catalogue.PartSubmission]
+    revision: trees.Revision
+
+
+def prepare(store: Store, viewer: Viewer, found: Imported) -> ImportedTree:
+    """Derive the parts of a file and couple them. Raises as submissions of parts and trees."""
+    revision = trees.prepare(store, viewer, found.tree, PLAIN, named=True)
+    made = [
+        catalogue.prepare(store, viewer, part.definition, PLAIN, IMPORTED, lambda part=part: part)  # type: ignore[misc]
+        for part in revision.parts.values()
+    ]
+    return ImportedTree(made, revision)
+
+
+def commit(connection: Connection, viewer: Viewer, made: ImportedTree) -> tuple[Tree, bool]:
+    """Store the parts and the tree: the tree, and whether it is new. Raises as submissions of parts and trees."""
+    for part in made.parts:
+        catalogue.submit(connection, viewer, part)
+    return trees.commit(connection, viewer, made.revision)
 
 
 def answer_of(found: Imported, stored: dict[str, Any] | None = None) -> bytes:

@@ -12,10 +12,11 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import ENTRY
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
+from service.operations.provenance import Origin
 from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
-from service.schemas.entries import Entry
+from service.schemas.entries import Entry, PartEntry
 from service.summaries import PartContent
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
@@ -71,7 +72,8 @@ def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outco
 
 def _version(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     part = PartContent.of_files(outcome.files)
-    submission = PartSubmission(part.name, part.digest, part, entry=_entry(item))
+    entry, origin = PartEntry(**item.get(ENTRY, {})), Origin.of_item(item)
+    submission = PartSubmission(part.name, part.digest, part, entry=entry, origin=origin)
     version, _ = catalogue.submit(connection, viewer, submission)
     return {"version": version.version, "location": version_path(version)}
 

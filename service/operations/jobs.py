@@ -14,6 +14,7 @@ from service.operations.library import StoreLibrary
 from service.operations.owners import require
 from service.queries import audit, jobs, uploads
 from service.queries.jobs import Job, NewItem
+from service.queries.removal import remove_job
 from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
 from service.store import Store
@@ -23,6 +24,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 STORING = ("assemble", "derive")  # kinds whose results are trees and versions
 YIELD = 8  # items that are resolved at a stretch
+LONGEST_LABEL = 200
 RECENT = 30.0  # seconds over which the rate is measured
 
 
@@ -43,6 +45,8 @@ class JobSubmission:
     uploads: Sequence[str] = ()  # digests of the states that the items refer to
     shared: bool = False  # whether every key may see it
     skipped: Sequence[Skipped] = ()
+    label: str = ""
+    retry_of: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +71,9 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
     shared = body.get("shared", False)
     if not isinstance(shared, bool):
         raise InvalidDocument.at("/shared", "boolean-expected", "true or false is needed")
+    label = body.get("label", "")
+    if not isinstance(label, str) or len(label) > LONGEST_LABEL:
+        raise InvalidDocument.at("/label", "bad-label", f"a label is a text of at most {LONGEST_LABEL} characters")
     with store.database.read() as connection:
         library = StoreLibrary(connection, viewer)
         skipped: list[Skipped] = []
@@ -79,7 +86,7 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
             private = ", ".join(f"'{name}'" for name in sorted(library.private)[:SHOWN])
             message = f"every key would see the results, and private is {private}; make it public, or do not share"
             raise InvalidDocument.at("/shared", "private-part", message)
-        return JobSubmission(kind, items, shared=shared, skipped=skipped)
+        return JobSubmission(kind, items, shared=shared, skipped=skipped, label=label)
 
 
 def _skips(body: Mapping[str, Any]) -> bool:
@@ -202,7 +209,8 @@ def require_room(connection: Connection, new: int, principal: str, limits: Limit
 def submit(connection: Connection, viewer: Viewer, submission: JobSubmission, limits: Limits) -> Job:
     """Queue a job. Raises Refused 503 when the queue is full."""
     require_room(connection, len(submission.items), viewer.key, limits)
-    identifier = jobs.add_job(connection, submission.kind, viewer, submission.items, submission.shared)
+    about = submission.shared, submission.label, submission.retry_of
+    identifier = jobs.add_job(connection, submission.kind, viewer, submission.items, *about)
     uploads.refer(connection, identifier, submission.uploads)
     told = {"kind": submission.kind, "items": len(submission.items)}
     audit.note(connection, viewer, "job.submit", f"job {identifier}", **told)
@@ -227,12 +235,40 @@ def find_item(connection: Connection, viewer: Viewer, identifier: str, position:
 
 def cancel(connection: Connection, viewer: Viewer, identifier: str) -> Job:
     """Cancel what is not finished. Raises Refused 404, 403 for a shared job of others."""
-    job = find(connection, viewer, identifier)
-    if viewer.key != job.principal:
-        require(viewer, job.owner, f"job {job.id}", "cancels it")
+    job = _own(connection, viewer, identifier, "cancels it")
     jobs.cancel(connection, job.id)
     audit.note(connection, viewer, "job.cancel", f"job {job.id}")
     return find(connection, viewer, identifier)
+
+
+def again(connection: Connection, viewer: Viewer, identifier: str) -> JobSubmission:
+    """What of a job failed or was cancelled, as another job. Raises Refused 404, 403, 409 where there is nothing."""
+    job = _own(connection, viewer, identifier, "tries it again")
+    if job.kind in STORING:
+        viewer.require("write")
+    items = jobs.unsuccessful(connection, job.id)
+    if not items:
+        left = "all its items succeeded" if job.is_final else "none of its items has failed so far"
+        raise Refused(409, "nothing-failed", f"there is nothing of the job {job.id} to try again: {left}")
+    states = uploads.of_job(connection, job.id)
+    return JobSubmission(job.kind, items, states, bool(job.shared), label=job.label, retry_of=job.id)
+
+
+def remove(connection: Connection, viewer: Viewer, identifier: str) -> None:
+    """Remove a job with its results and uploads. Raises Refused 404, 403, 409 for one that has not ended."""
+    job = _own(connection, viewer, identifier, "removes it")
+    if not job.is_final:
+        raise Refused(409, "job-not-ended", f"the job {job.id} is {job.state}: cancel it first (POST .../cancel)")
+    remove_job(connection, job.id, job.principal)
+    audit.note(connection, viewer, "job.remove", f"job {job.id}", items=job.total)
+
+
+def _own(connection: Connection, viewer: Viewer, identifier: str, what: str) -> Job:
+    """A job that the viewer may change. Raises Refused 404, 403."""
+    job = find(connection, viewer, identifier)
+    if viewer.key != job.principal:
+        require(viewer, job.owner, f"job {job.id}", what)
+    return job
 
 
 def progress(connection: Connection, job: Job) -> Progress:

@@ -9,13 +9,14 @@ from service.database.connections import Connection
 from service.jobs.kinds.kind import ENTRY
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.operations.owners import private_parts, wanted
+from service.operations.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
 from service.queries.owners import Kind
 from service.queries.trees import Tree
 from service.references import parse_reference
 from service.refusals import Refused
-from service.schemas.entries import Entry
+from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.viewer import OPEN, PUBLIC, Viewer
 from substructures.errors import InvalidDocument
@@ -59,10 +60,11 @@ class StoreLibrary:
         """The members of an item of kind ``assemble`` or ``derive`` that say for whom it stores what; equal items of
         others are others. Raises InvalidDocument for a name or a part that may not be used.
         """
-        entry, what = Entry(**item.get(ENTRY, {})), item["definition" if kind == "derive" else "tree"]
+        entry, what = PartEntry(**item.get(ENTRY, {})), item["definition" if kind == "derive" else "tree"]
         named: Kind = "substructure" if kind == "derive" else "tree"
         try:
             whose = wanted(self._connection, self._viewer, named, what["name"], entry)
+            derived_from(self._connection, self._viewer, entry)
         except Refused as error:
             raise InvalidDocument.at("/name", error.code, error.detail) from None
         if whose.visibility != PUBLIC:

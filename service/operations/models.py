@@ -10,7 +10,16 @@ from typing import Any
 import orjson
 
 from service.analyses.binding import bound
-from service.analyses.printing import Style, check_quantity, described, model_quantity, quantities, text_of
+from service.analyses.printing import (
+    Style,
+    check_quantity,
+    described,
+    model_quantity,
+    options_of_quantity,
+    quantities,
+    text_of,
+    with_options,
+)
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.queries.formulas import FormulaRow
@@ -26,9 +35,11 @@ __all__ = [
     "check_quantity",
     "described",
     "model_quantity",
+    "options_of_quantity",
     "part_formulas",
     "printed",
     "quantities",
+    "with_options",
 ]
 
 

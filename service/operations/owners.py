@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from service.database.connections import Connection
-from service.queries import audit, owners
+from service.queries import audit, owners, uses
 from service.queries.owners import Kind, Ownership
 from service.refusals import Refused, not_found
 from service.schemas.entries import Entry
@@ -34,6 +34,7 @@ def _checked(viewer: Viewer, kind: Kind, name: str, found: Ownership, entry: Ent
         # of a private name nothing is told but that it cannot be had
         whose = f"belongs to '{found.owner}'" if found.visibility == PUBLIC else "is taken"
         advice = f"take another name, for example '{_suggested(name, viewer.owner)}'"
+        advice += ", and 'derived_from' to say what it was made from" if kind == "substructure" else ""
         raise Refused(403, "name-taken", f"the name '{name}' of a {kind} {whose}; {advice}")
     if entry.visibility not in (None, found.visibility):
         way = "what was public stays public" if found.visibility == PUBLIC else _way(kind, name)
@@ -79,7 +80,9 @@ def set_visibility(connection: Connection, viewer: Viewer, kind: Kind, name: str
     if visibility == PRIVATE:
         raise Refused(409, "was-public", f"'{name}' is public, and others may have used it: it stays public")
     owners.claim(connection, kind, name, found)  # locked, so that no private part comes in meanwhile
-    hidden = owners.private_parts_of_tree(connection, name) if kind == "tree" else {}
+    hidden = (
+        owners.private_parts_of_tree(connection, name) if kind == "tree" else uses.private_parts_of(connection, name)
+    )
     for part, _ in hidden.values():
         raise Refused(409, "private-part", f"'{name}' is built of '{part}', which is private: make that public first")
     changed = Ownership(found.owner, PUBLIC)

@@ -7,6 +7,7 @@ from time import perf_counter
 
 from service.operations import catalogue as operations
 from service.operations.owners import ship
+from service.operations.provenance import Origin
 from service.queries.owners import ownership
 from service.schemas.entries import PLAIN
 from service.store import Store
@@ -28,7 +29,7 @@ def import_catalogue(store: Store) -> int:
         if not _is_ours(store, definition):
             _log.warning("'%s' of the shipped catalogue is left out: the name belongs to somebody else", name)
             continue
-        submission = operations.prepare(store, SHIPPED, definition, PLAIN)
+        submission = operations.prepare(store, SHIPPED, definition, PLAIN, Origin("catalogue"))
         with store.database.write() as connection:
             added += operations.submit(connection, SHIPPED, submission)[1]
     if added:

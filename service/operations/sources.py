@@ -1,4 +1,4 @@
-"""What evaluations of a stored tree work with: derived programs and the regressor, and the way over its parts."""
+"""What evaluations of a stored tree work with: programs, regressor, reactions, and the way over its parts."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, Sources
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
@@ -25,6 +26,7 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
         lambda: _regressor(store, tree),
         lambda: plausibility_of(store, tree, model),
         lambda values, names, states: _numeric(store, tree).answer(values, names, states),
+        lambda: _reactions(store, tree),
     )
 
 
@@ -63,6 +65,14 @@ def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         with store.database.read() as connection:
             return spec, parts_of(store, connection, ANYBODY, spec)  # the tree was found for whoever asks
+
+
+def _reactions(store: Store, tree: Tree) -> ReactionModel:
+    found = store.caches.reactions.get(tree.digest)
+    if found is None:
+        found = reactions(*tree_parts(store, tree), store.settings.limits.program_nodes)
+        store.caches.reactions.put(tree.digest, found)
+    return found
 
 
 def _regressor(store: Store, tree: Tree) -> RegressorModel:

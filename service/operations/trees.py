@@ -11,10 +11,11 @@ from service.database.connections import Connection
 from service.database.packed import pack
 from service.integrity import digest_of
 from service.operations import catalogue, owners
-from service.queries import audit, content, trees
+from service.queries import audit, content, trees, uses
 from service.queries import catalogue as versions
 from service.queries.common import now
 from service.queries.owners import private_parts
+from service.queries.uses import Withdrawn
 from service.references import Reference, is_pinned, parse_reference
 from service.refusals import Refused, StaleError, not_found
 from service.schemas.entries import PLAIN, Entry
@@ -70,9 +71,11 @@ class TreeChange:
     step: str
 
 
-def prepare(store: Store, viewer: Viewer, data: Any, entry: Entry) -> Revision:
-    """Resolve, pin and couple a tree. Raises InvalidDocument, TooLarge, LongWork, Refused 403 or 409."""
-    return _coupled(store, viewer, TreeSpec.read(data), entry)
+def prepare(store: Store, viewer: Viewer, data: Any, entry: Entry, named: bool = False) -> Revision:
+    """Resolve, pin and couple a tree; ``named``: parts that it brings along are called by name, too, for they are
+    stored before it. Raises InvalidDocument, TooLarge, LongWork, Refused 403 or 409.
+    """
+    return _coupled(store, viewer, TreeSpec.read(data), entry, named=named)
 
 
 def coupling(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
@@ -122,18 +125,25 @@ def prepare_change(store: Store, viewer: Viewer, change: TreeChange) -> Revision
         raise error.moved(lambda pointer: pointer.removeprefix(change.step)) from None
 
 
-def tree_tag(tree: trees.Tree) -> str:
-    """The ETag of a tree."""
-    return etag(tree.digest, str(tree.revision), *([] if tree.is_public else [tree.visibility]))
+def tree_tag(tree: trees.Tree, withdrawn: Sequence[Withdrawn] = ()) -> str:
+    """The ETag of a tree; ``withdrawn``: those of its instances whose parts are withdrawn."""
+    gone = [f"{each.instance}:{each.successor}" for each in withdrawn]
+    return etag(tree.digest, str(tree.revision), *([] if tree.is_public else [tree.visibility]), *gone)
+
+
+def withdrawn(connection: Connection, viewer: Viewer, tree: trees.Tree) -> Sequence[Withdrawn]:
+    """The instances of a tree whose parts are withdrawn, with reason and successor."""
+    return uses.withdrawn(connection, viewer, tree.name, tree.revision)
 
 
 def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> tuple[trees.Tree, dict[str, Any]]:
     with store.database.read() as connection:
         base = find(connection, viewer, text)
+        tag = tree_tag(base, withdrawn(connection, viewer, base)) if if_match else ""
     owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
-    if if_match not in (None, "*", tree_tag(base)):
-        detail = f"the tree '{text}' is not what If-Match says; it is {tree_tag(base)} now"
-        raise Refused(412, "precondition-failed", detail, headers={"ETag": tree_tag(base)})
+    if if_match not in (None, "*", tag):
+        detail = f"the tree '{text}' is not what If-Match says; it is {tag} now"
+        raise Refused(412, "precondition-failed", detail, headers={"ETag": tag})
     return base, _current(base)
 
 
@@ -158,6 +168,7 @@ def _coupled(
     entry: Entry,
     base: trees.Tree | None = None,
     is_exact: bool = False,
+    named: bool = False,
 ) -> Revision:
     with store.database.read() as connection:
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
@@ -166,7 +177,7 @@ def _coupled(
         faults = list(owners.private_parts(connection, whose, list(map(_shown, spec.instances)), digests))
     if faults:
         raise InvalidDocument(faults)
-    pinned = tuple(_pin(instance, parts[instance.name]) for instance in spec.instances)
+    pinned = tuple(_pin(instance, parts[instance.name], named) for instance in spec.instances)
     spec = spec.model_copy(update={"instances": pinned})
     model = couple(spec, parts, store.settings.limits.program_nodes, store.admit)
     store.remember_model(spec.digest, model)
@@ -212,10 +223,11 @@ def _derived(store: Store, index: int, instance: Instance) -> Part:
     return part
 
 
-def _pin(instance: Instance, part: Part) -> Instance:
-    if instance.definition is not None:
+def _pin(instance: Instance, part: Part, named: bool) -> Instance:
+    if instance.definition is not None and not named:
         return instance
-    return instance.model_copy(update={"substructure": f"{part.definition.name}@{part.definition.digest}"})
+    reference = f"{part.definition.name}@{part.definition.digest}"
+    return instance.model_copy(update={"definition": None, "substructure": reference})
 
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:
@@ -257,7 +269,7 @@ def store(
         catalogue.store_part(connection, part)
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
-    whom = viewer.key, whose.owner, whose.visibility
+    whom = viewer.key, whose.owner, whose.visibility, entry.note or ""
     tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom)
     trees.add_revision(connection, tree, coupled.parts)
     audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)

@@ -6,11 +6,13 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 import orjson
 
 from service.addresses import version_path
-from service.pages.html import Content, Html, joined, link, tag
+from service.operations.catalogue import Page
+from service.pages.html import Html, joined, link, tag
 from service.pages.layout import SCRIPT, document
 from service.pages.trees import trees_table
 from service.queries.catalogue import Version
@@ -25,9 +27,12 @@ PREFERRED = ("puma560", "parallel-gripper", "flange")
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """What the page lists. ``total`` and ``more``: how many parts there are, whether there are more trees."""
+    """What the page lists: ``page`` of the parts found for ``q``. ``total`` and ``more``: how many parts there are,
+    whether there are more trees.
+    """
 
-    versions: Sequence[Version]
+    page: Page
+    q: str
     total: int
     trees: Sequence[Tree]
     more: bool
@@ -45,8 +50,7 @@ def page(shown: Shown, address: str, with_key: bool) -> bytes:
             EQUATION,
             " of the whole, as formulas or as numbers, with any parameters left open.",
         ),
-        *_example(shown.versions, address, with_key),
-        *_upload(),
+        *(() if shown.q else (*_example(shown.page.versions, address, with_key), *_upload())),
         *_catalogue(shown),
         *_trees(shown),
         script=SCRIPT,
@@ -75,7 +79,15 @@ def _upload() -> list[Html]:
     kinds = "URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO"
     label = f"A robot file of yours ({kinds}): it is read, derived and stored, and every remark is told"
     chosen = tag("input", id="file", type="file", accept=".urdf,.xml,.mjcf,.sdf,.csv,.json,.par", aria_label=label)
-    return [tag("h2", "Bring a robot"), tag("p", label, ". ", chosen), tag("ul", id="report", role="status")]
+    asked = "Links that begin parts of their own, separated by commas (before the file is chosen)"
+    cut = tag(
+        "input",
+        id="cut",
+        placeholder="cut at links, such as left_shoulder, right_shoulder",
+        aria_label=asked,
+        title=asked,
+    )
+    return [tag("h2", "Bring a robot"), tag("p", label, ". ", chosen, " ", cut), tag("ul", id="report", role="status")]
 
 
 def _pair(versions: Sequence[Version]) -> tuple[str, str, str] | None:
@@ -88,14 +100,32 @@ def _pair(versions: Sequence[Version]) -> tuple[str, str, str] | None:
 
 
 def _catalogue(shown: Shown) -> list[Html]:
-    count = tag("span", len(shown.versions), id="count")
-    note: Content = [count, f" of {shown.total:,} parts"]
-    if shown.total > len(shown.versions):
-        note = [note, "; search all of them with ", tag("code", "GET /v1/substructures?q=")]
-    label = "Filter by name, title, tag, joints"
-    box = tag("input", id="filter", type="search", placeholder=label, aria_label=label, autocomplete="off")
-    bar = tag("div", box, tag("span", note, class_="quiet", role="status"), class_="bar")
-    return [tag("h2", "Catalogue"), bar, tag("div", [_card(v) for v in shown.versions], class_="cards")]
+    versions = shown.page.versions
+    note = [tag("span", len(versions), id="count"), f" of {shown.total:,} parts"]
+    label = "Name, title, tag or words of the description"
+    box = tag(
+        "input",
+        id="filter",
+        type="search",
+        name="q",
+        value=shown.q,
+        placeholder=label,
+        aria_label=label,
+        autocomplete="off",
+    )
+    form = tag(
+        "form",
+        box,
+        tag("button", "Search all", type="submit"),
+        tag("span", note, class_="quiet", role="status"),
+        method="get",
+        action="/",
+        class_="bar",
+    )
+    told = [tag("p", f"'{word}' is nowhere; this is '{other}'.") for word, other in shown.page.instead.items()]
+    query = urlencode({"q": shown.q, "after": shown.page.next_token or ""})
+    more = tag("p", link("More parts", f"/?{query}")) if shown.page.next_token else Html()
+    return [tag("h2", "Catalogue"), form, *told, tag("div", [_card(v) for v in versions], class_="cards"), more]
 
 
 def _card(version: Version) -> Html:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from service.addresses import tree_path, version_path
+from service.cache import Cache
 from service.pages import words
 from service.pages.catalogue import links, size
-from service.pages.html import Content, Html, facts, joined, link, table, tag
+from service.pages.html import Content, Html, facts, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
@@ -19,12 +20,16 @@ from substructures.part.part import Part
 from substructures.tree.model import Model
 
 QUANTITIES = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
+#: sections of a page, before and after those that are always there
+Notes = tuple[Sequence[Html], Sequence[Html]]
 OF_PART = "total: the whole stored program, with what coupling needs."
 OF_TREE = "total: metric, Christoffel symbols and forces together."
 
 
-def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Program | None) -> bytes:
-    """The bytes of the page of a version; ``metric`` is None when there are no coordinates."""
+def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Html, notes: Notes = ((), ())) -> bytes:
+    """The bytes of the page of a version; ``metric``: its formulas (:func:`metric_section`); ``notes``: what is said
+    before and after its sections.
+    """
     path, definition = version_path(version), part.definition
     reference = f"{version.name}@{version.version}"
     about = facts(
@@ -38,6 +43,12 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
             ("License", definition.license),
             ("Source", definition.source),
             ("Owner", _owner(version)),
+            ("Note", version.note),
+            ("Published from", link(version.tree, f"/trees/{version.tree}") if version.tree else None),
+            (
+                "Derived from",
+                link(version.derived_from, f"/substructures/{version.derived_from}") if version.derived_from else None,
+            ),
             ("Stored", version.created[:10]),
             ("Digest", tag("code", version.digest, class_="small")),
             ("As data", joined([link("JSON", path), *links(version)], " · ")),
@@ -47,6 +58,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
         f"{reference} - substructures",
         tag("h1", version.title or version.name),
         _withdrawn(version),
+        *notes[0],
         tag("p", version.description) if version.description else Html(),
         _split(path, reference, about),
         *_sections(
@@ -54,13 +66,14 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Prog
             words.parameters(read_json(version.parameters.encode())),
             words.operations(read_json(version.operations.encode()), OF_PART),
             {**read_json(version.certificate.encode()), "warnings": part_warnings(version)},
-            _metric(metric, f"{path}/formulas/metric?format=text"),
+            metric,
         ),
+        *notes[1],
     )
 
 
-def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
-    """The bytes of the page of a revision of a tree; ``metric`` is None when there are no coordinates."""
+def tree_page(tree: Tree, model: Model, metric: Html, notes: Notes = ((), ())) -> bytes:
+    """The bytes of the page of a revision of a tree; arguments as of :func:`part_page`."""
     path, summary = tree_path(tree), read_json(tree.summary.encode())
     reference = f"{tree.name}@{tree.revision}"
     printed = [link(name, f"{path}/{name}?format=text") for name in QUANTITIES if tree.dof]
@@ -72,6 +85,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             ("Gravity", f"{', '.join(map(_number, summary['gravity']))} (world axes, m/s^2)"),
             ("Changed from", link(base, f"/trees/{base}") if base else None),
             ("Owner", _owner(tree)),
+            ("Note", tree.note),
             ("Stored", tree.created[:10]),
             ("Digest", tag("code", tree.digest, class_="small")),
             ("As data", link("JSON", path)),
@@ -81,6 +95,7 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
     return document(
         f"{reference} - substructures",
         tag("h1", f"Tree {tree.name}"),
+        *notes[0],
         _split(path, reference, about),
         tag("h2", "Instances"),
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
@@ -90,8 +105,9 @@ def tree_page(tree: Tree, model: Model, metric: Program | None) -> bytes:
             words.parameters(summary["parameters"]),
             words.operations(summary["operations"], OF_TREE),
             summary["certificate"],
-            _metric(metric, f"{path}/metric?format=text"),
+            metric,
         ),
+        *notes[1],
     )
 
 
@@ -124,7 +140,9 @@ def _withdrawn(version: Version) -> Html:
     if version.yanked is None:
         return Html()
     reason = f": {version.yank_reason}" if version.yank_reason else ""
-    return tag("p", f"Withdrawn on {version.yanked[:10]}{reason}", class_="warn")
+    instead = html("; take ", link(version.successor, f"/substructures/{version.successor}"))
+    said = f"Withdrawn on {version.yanked[:10]}{reason}"
+    return tag("p", said, instead if version.successor else None, class_="warn")
 
 
 def _split(path: str, reference: str, about: Html) -> Html:
@@ -144,5 +162,9 @@ def _sections(
     ]
 
 
-def _metric(metric: Program | None, address: str) -> Html:
-    return tag("p", "There are no coordinates.", class_="quiet") if metric is None else words.formula(metric, address)
+def metric_section(found: Version | Tree, make: Callable[[], Program], kept: Cache[str]) -> Html:
+    """The formulas of the metric; ``make`` is called where they are not ``kept``, for to print them takes a while."""
+    if not found.dof:
+        return tag("p", "There are no coordinates.", class_="quiet")
+    path = tree_path(found) if isinstance(found, Tree) else f"{version_path(found)}/formulas"
+    return Html(kept.once((found.digest, path), lambda: words.formula(make(), f"{path}/metric?format=text")))

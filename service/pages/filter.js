@@ -6,4 +6,3 @@ function filter() {
   count.textContent = cards.filter(card => !card.hidden).length;
 }
 box.addEventListener("input", filter);
-filter();

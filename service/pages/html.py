@@ -32,22 +32,22 @@ def html(*content: Content) -> Html:
 
 
 def _one(content: Content) -> str:
-    match content:
-        case None:
-            return ""
-        case Html():
-            return content
-        case str():
-            return escape(_INVISIBLE.sub("\ufffd", content))
-        case int():
-            return str(content)
-    return "".join(map(_one, content))
+    if isinstance(content, Html):
+        return content
+    if isinstance(content, str):
+        return escape(_INVISIBLE.sub("\ufffd", content))
+    if content is None:
+        return ""
+    return str(content) if isinstance(content, int) else "".join(map(_one, content))
 
 
 def tag(name: str, /, *content: Content, **attributes: str | int | None) -> Html:
     """An element. ``class_`` is the attribute class, ``data_text`` is data-text; None leaves an attribute out."""
-    given = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
-    start = "".join([f"<{name}", *(f' {key}="{html(value)}"' for key, value in given.items()), ">"])
+    if attributes:
+        given = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
+        start = "".join([f"<{name}", *(f' {key}="{html(value)}"' for key, value in given.items()), ">"])
+    else:
+        start = f"<{name}>"
     return Html(start if name in _VOID else f"{start}{html(*content)}</{name}>")
 
 

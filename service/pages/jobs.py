@@ -10,7 +10,7 @@ from service.operations.jobs import Progress
 from service.pages.html import Content, Html, facts, html, link, table, tag
 from service.pages.layout import document
 from service.queries.jobs import Job, JobItem
-from service.views.jobs import job_path
+from service.views.jobs import job_path, subject
 
 AGAIN = 2  # seconds until a page of what changes is loaded again
 STATES = {"failed": "warn", "cancelled": "quiet", "queued": "quiet"}
@@ -29,7 +29,7 @@ def jobs_page(jobs: Sequence[Job], progress: Sequence[Progress], more: bool) -> 
 def _row(job: Job, progress: Progress) -> list[Content]:
     return [
         link(tag("code", job.id[:16]), f"/jobs/{job.id}"),
-        job.kind,
+        f"{job.kind}: {job.label}" if job.label else job.kind,
         _state(job.state),
         _bar(progress),
         _counted(job),
@@ -42,6 +42,8 @@ def job_page(job: Job, progress: Progress, bad: Sequence[JobItem], more: bool) -
     path = job_path(job.id)
     about = facts(
         [
+            ("Label", job.label),
+            ("Tries again", link(tag("code", job.retry_of[:16]), f"/jobs/{job.retry_of}") if job.retry_of else None),
             ("State", _state(job.state)),
             ("Items", _counted(job)),
             ("Rate", f"{progress.rate:.3g} items per second" if progress.rate else None),
@@ -69,9 +71,9 @@ def job_page(job: Job, progress: Progress, bad: Sequence[JobItem], more: bool) -
 def _problems(bad: Sequence[JobItem], more: bool, path: str) -> list[Html]:
     if not bad:
         return []
-    rows = [(item.position, item.attempts, _detail(item)) for item in bad]
+    rows = [(item.position, subject(item), item.attempts, _detail(item)) for item in bad]
     note = tag("p", "There are more: ", link("all", f"{path}/items?state=failed"), ".") if more else Html()
-    return [tag("h2", "Items that failed"), table(("item", "attempts", "what was seen"), rows), note]
+    return [tag("h2", "Items that failed"), table(("item", "of", "attempts", "what was seen"), rows), note]
 
 
 def _detail(item: JobItem) -> str:

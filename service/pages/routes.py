@@ -7,38 +7,57 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
-from service.operations import catalogue, jobs, trees
+from service.operations import catalogue, differences, jobs, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
 from service.pages.account import PageRoute
 from service.pages.catalogue import Shown, page
-from service.pages.details import part_page, tree_page
+from service.pages.details import metric_section, part_page, tree_page
 from service.pages.jobs import job_page, jobs_page
 from service.pages.layout import answer
 from service.pages.trees import trees_page
-from service.queries import aliases
+from service.pages.versions import (
+    SHOWN,
+    difference_page,
+    revisions_section,
+    uses_section,
+    versions_section,
+    withdrawn_section,
+)
+from service.queries import aliases, search, uses, versions
 from service.queries import jobs as job_rows
 from service.queries import trees as revisions
-from service.queries.catalogue import CatalogueSearch
+from service.queries.search import CatalogueSearch
 from service.queries.trees import TreeSearch
 from service.settings import Settings
 from service.viewer import ANYBODY
 from substructures.part.outputs import with_own_inertia
 
-CARDS, TREES, JOBS, BAD = 500, 100, 100, 50
+To = Annotated[str, Query(min_length=1, max_length=160)]
+ADVICE = "compare smaller ones"
+CARDS, TREES, JOBS, BAD = 60, 100, 100, 50
 _HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
 
 
 @router.get("/")
-def first_page(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+def first_page(
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    q: Annotated[str, Query(max_length=200)] = "",
+    after: Annotated[str | None, Query(max_length=2000)] = None,
+) -> Response:
     """The catalogue."""
+    wanted = CatalogueSearch(search.words_of(q), sort=search.RELEVANCE)
     with store.database.read() as connection:
-        found = catalogue.search(connection, viewer, CatalogueSearch(), CARDS, None)
+        found = catalogue.found(connection, viewer, wanted, CARDS, after)
+        total = search.count(connection, viewer, CatalogueSearch())
         some = revisions.page(connection, viewer, TreeSearch(), None, TREES + 1)
-    shown = Shown(found.versions, sum(found.facets["dof"].values()), some[:TREES], len(some) > TREES)
+    shown = Shown(found, q, total, some[:TREES], len(some) > TREES)
     with_key = viewer != ANYBODY
     return answer(request, page(shown, _address(request, store.settings), with_key))
 
@@ -56,8 +75,41 @@ def substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -
         version = catalogue.find(connection, viewer, ref)
         names = aliases.aliases_of(connection, (version.name, version.version))[0]
         part = store.required_part(connection, version.digest)
-    metric = with_own_inertia(part, part.program.select(["metric"])) if part.dof else None
-    return answer(request, part_page(version, names, part, metric))
+        gone = uses.withdrawn_in_part(connection, viewer, version.digest)
+        all_of_it = versions.page_versions(connection, viewer, version.name, None, SHOWN + 1)
+        used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
+    reference = f"{version.name}@{version.version}"
+    notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, reference)]
+    metric = metric_section(
+        version, lambda: with_own_inertia(part, part.program.select(["metric"])), store.caches.sections
+    )
+    return answer(request, part_page(version, names, part, metric, notes))
+
+
+@router.get("/substructures/{ref}/difference")
+async def part_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+    """What changed between two versions."""
+
+    def shown() -> Response:
+        """The page, made in a thread."""
+        a, b = differences.versions(store, viewer, ref, to)
+        names = f"{a.name}@{a.version}", f"{b.name}@{b.version}"
+        return answer(request, difference_page("substructures", *names, differences.of_versions(store, a, b)))
+
+    return await in_time(request, shown, ADVICE)
+
+
+@router.get("/trees/{ref}/difference")
+async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+    """What changed between two revisions of a tree."""
+
+    def shown() -> Response:
+        """The page, made in a thread."""
+        a, b = differences.revisions(store, viewer, ref, to)
+        names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
+        return answer(request, difference_page("trees", *names, differences.of_revisions(store, a, b)))
+
+    return await in_time(request, shown, ADVICE)
 
 
 @router.get("/trees")
@@ -81,8 +133,12 @@ def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Respon
     with store.database.read() as connection:
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)
-    metric = model_quantity(sources_of(store, found, model), "metric") if found.dof else None
-    return answer(request, tree_page(found, model, metric))
+        gone = trees.withdrawn(connection, viewer, found)
+        all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
+    metric = metric_section(
+        found, lambda: model_quantity(sources_of(store, found, model), "metric"), store.caches.sections
+    )
+    return answer(request, tree_page(found, model, metric, (withdrawn_section(gone), revisions_section(all_of_it))))
 
 
 @router.get("/jobs")

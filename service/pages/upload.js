@@ -10,7 +10,8 @@ async function upload() {
   const chosen = file.files[0];
   report.replaceChildren();
   line("reading " + chosen.name + " ...");
-  const address = "/v1/imports?store=true&file=" + encodeURIComponent(chosen.name.slice(0, 200));
+  const told_of = {store: "true", file: chosen.name.slice(0, 200)}, cut = document.getElementById("cut").value.trim();
+  const address = "/v1/imports?" + new URLSearchParams(cut ? {...told_of, cut} : told_of);
   const answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: chosen});
   const told = await answer.json();
   report.replaceChildren();
@@ -20,4 +21,4 @@ async function upload() {
   line("stored as " + told.stored.name + "@" + told.stored.version, kind + told.stored.name + "@" + told.stored.version);
   told.report.forEach(remark => line(remark.level + ": " + remark.place + ": " + remark.message));
 }
-file.addEventListener("change", () => upload().catch(error => line("no answer: " + error)));
+file?.addEventListener("change", () => upload().catch(error => line("no answer: " + error)));

@@ -1,16 +1,16 @@
-"""Versions of substructures: allocate, resolve, search, yank."""
+"""Versions of substructures: allocate, resolve, yank."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, and_, bindparam, func, insert, or_, select, update
+from sqlalchemy import Connection, and_, bindparam, func, insert, select, update
 
-from service.database.tables import aliases, parts, substructures, tags, versions
+from service.database.tables import aliases, parts, substructures, tree_names, versions
 from service.integrity import missing
 from service.queries.common import now
-from service.queries.owners import seen_by, visible
+from service.queries.owners import reference, seen_by, visible
 from service.references import Reference
 from service.viewer import PUBLIC, Viewer
 
@@ -18,25 +18,29 @@ _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "auth
 _DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")
 _REPORTS = ("operations", "certificate", "program")
 _OWNED = ("owner", "visibility")
-_COLUMNS = [
+COLUMNS = [
     *(versions.c[name] for name in _NAMES),
     *(parts.c[name] for name in _DETAILS + _REPORTS),
     *(substructures.c[name] for name in _OWNED),
+    *(versions.c[name] for name in ("note", "origin")),
+    reference(substructures, versions.c.derived_name, versions.c.derived_version),
+    reference(substructures, versions.c.successor_name, versions.c.successor_version),
+    reference(tree_names, versions.c.tree, versions.c.tree_revision),
 ]
-_STORED = versions.join(parts, parts.c.digest == versions.c.digest).join(
+STORED = versions.join(parts, parts.c.digest == versions.c.digest).join(
     substructures, substructures.c.name == versions.c.name
 )
+#: what searches read of the latest version of a name
+_NARROW = (versions.c.digest, versions.c.created, *(parts.c[x] for x in ("dof", "joints", "searchable")))
 _VISIBLE, _IS_LATEST = visible(substructures), substructures.c.latest == versions.c.version
-_SORTABLE: dict[str, ColumnElement[Any]] = {
-    "name": versions.c.name,
-    "dof": parts.c.dof,
-    "created": versions.c.created,
-}
 
 
 @dataclass(frozen=True, slots=True)
 class Version:
-    """A version with what depends on its content; JSON columns as stored text."""
+    """A version with what depends on its content; JSON columns as stored text.
+
+    ``derived_from``, ``successor``, ``tree``: references, None where there is none that the viewer sees.
+    """
 
     name: str
     version: int
@@ -59,6 +63,11 @@ class Version:
     program: str
     owner: str
     visibility: str
+    note: str
+    origin: str
+    derived_from: str | None
+    successor: str | None
+    tree: str | None
 
     @property
     def is_public(self) -> bool:
@@ -67,22 +76,30 @@ class Version:
 
 
 @dataclass(frozen=True, slots=True)
-class CatalogueSearch:
-    """Which versions to list. All conditions must hold; ``sort`` is a name of ``SORTS``."""
+class Provenance:
+    """Where a version comes from: ``origin``: what it came as; ``derived_from``: name and number of the version that it
+    was made from; ``tree``: name and revision of the tree that was published as it.
+    """
 
-    words: tuple[str, ...] = ()
-    tags: tuple[str, ...] = ()
-    dof_min: int | None = None
-    dof_max: int | None = None
-    joints: str | None = None
-    owner: str | None = None
-    sort: str = "name"
+    note: str = ""
+    origin: str = "definition"
+    derived_from: tuple[str, int] | None = None
+    tree: tuple[str, int] | None = None
+
+    def values(self) -> dict[str, Any]:
+        """Its columns."""
+        told: dict[str, Any] = {"note": self.note, "origin": self.origin}
+        for given, columns in ((self.derived_from, ("derived_name", "derived_version")), (self.tree, _TREE)):
+            told |= dict(zip(columns, given or (None, None), strict=True))
+        return told
 
 
-SORTS = tuple(sign + name for name in _SORTABLE for sign in ("", "-"))
+_TREE = ("tree", "tree_revision")
 
 
-def add_version(connection: Connection, name: str, digest: str, author: str) -> tuple[int, bool]:
+def add_version(
+    connection: Connection, name: str, digest: str, author: str, provenance: Provenance
+) -> tuple[int, bool]:
     """The number of the version with this content, and whether it is new; the name is claimed, and so locked."""
     known = select(versions.c.version).where(versions.c.digest == digest)
     number = connection.execute(known).scalar()
@@ -90,22 +107,29 @@ def add_version(connection: Connection, name: str, digest: str, author: str) -> 
         return number, False
     highest = select(func.coalesce(func.max(versions.c.version), 0)).where(versions.c.name == name)
     number = connection.execute(highest).scalar_one() + 1
-    connection.execute(insert(versions).values(name=name, version=number, digest=digest, created=now(), author=author))
+    row = {"name": name, "version": number, "digest": digest, "created": now(), "author": author}
+    connection.execute(insert(versions).values(**row, **provenance.values()))
     _set_latest(connection, name)
     return number, True
 
 
 def _set_latest(connection: Connection, name: str) -> None:
-    highest = select(func.max(versions.c.version)).where(versions.c.name == name, versions.c.yanked.is_(None))
-    connection.execute(
-        update(substructures).where(substructures.c.name == name).values(latest=highest.scalar_subquery())
-    )
+    # from the highest number down: of 10,000 versions one row is read
+    offered = select(versions.c.version).where(versions.c.name == name, versions.c.yanked.is_(None))
+    latest = connection.execute(offered.order_by(versions.c.version.desc()).limit(1)).scalar()
+    query = select(*_NARROW).join(parts, parts.c.digest == versions.c.digest)
+    row = connection.execute(query.where(versions.c.name == name, versions.c.version == latest)).mappings().first()
+    shown = dict.fromkeys(column.name for column in _NARROW) if row is None else dict(row)
+    connection.execute(update(substructures).where(substructures.c.name == name).values(latest=latest, **shown))
 
 
-def yank(connection: Connection, name: str, version: int, reason: str) -> None:
+def yank(
+    connection: Connection, name: str, version: int, reason: str, successor: tuple[str, int] | None = None
+) -> None:
     """Mark a version as withdrawn; the first mark stays."""
     chosen = and_(versions.c.name == name, versions.c.version == version, versions.c.yanked.is_(None))
-    connection.execute(update(versions).where(chosen).values(yanked=now(), yank_reason=reason))
+    instead = dict(zip(("successor_name", "successor_version"), successor or (None, None), strict=True))
+    connection.execute(update(versions).where(chosen).values(yanked=now(), yank_reason=reason, **instead))
     _set_latest(connection, name)
 
 
@@ -158,56 +182,8 @@ def all_versions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]
     return [(name, number) for name, number in connection.execute(query, seen_by(viewer))]
 
 
-def page(
-    connection: Connection, viewer: Viewer, search: CatalogueSearch, after: tuple[Any, ...] | None, size: int
-) -> list[Version]:
-    """Up to ``size`` latest versions that follow the position ``after`` (sort value, name) in the order of ``sort``."""
-    column = _SORTABLE[search.sort.lstrip("-")]
-    descending = search.sort.startswith("-")
-    query = _matching(select(*_COLUMNS), search)
-    if after is not None:
-        value, name = after
-        beyond = column < value if descending else column > value
-        query = query.where(or_(beyond, and_(column == value, versions.c.name > name)))
-    query = query.order_by(column.desc() if descending else column, versions.c.name).limit(size)
-    return [Version(*row) for row in connection.execute(query, seen_by(viewer))]
-
-
-def facets(connection: Connection, viewer: Viewer, search: CatalogueSearch) -> dict[str, dict[str, int]]:
-    """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
-    return {
-        "tags": _counted(connection, viewer, _matching(select(tags.c.tag, func.count()), search, join_tags=True)),
-        "joints": _counted(connection, viewer, _matching(select(parts.c.joints, func.count()), search)),
-        "dof": _counted(connection, viewer, _matching(select(parts.c.dof, func.count()), search)),
-    }
-
-
-def _counted(connection: Connection, viewer: Viewer, query: Select[Any]) -> dict[str, int]:
-    value = query.selected_columns[0]
-    rows = connection.execute(query.group_by(value).order_by(value), seen_by(viewer))
-    return {str(row[0]): row[1] for row in rows}
-
-
-def _matching(query: Select[Any], search: CatalogueSearch, join_tags: bool = False) -> Select[Any]:
-    query = query.select_from(_STORED.join(tags, tags.c.part == parts.c.digest) if join_tags else _STORED)
-    query = query.where(_IS_LATEST, _VISIBLE)
-    if search.owner is not None:
-        query = query.where(substructures.c.owner == search.owner)
-    for word in search.words:
-        query = query.where(parts.c.searchable.contains(word.lower(), autoescape=True))
-    for tag in search.tags:
-        query = query.where(parts.c.digest.in_(select(tags.c.part).where(tags.c.tag == tag)))
-    if search.dof_min is not None:
-        query = query.where(parts.c.dof >= search.dof_min)
-    if search.dof_max is not None:
-        query = query.where(parts.c.dof <= search.dof_max)
-    if search.joints is not None:
-        query = query.where(parts.c.joints == search.joints)
-    return query
-
-
 # Built once: to build a statement takes longer than to execute it.
-_NAMED = select(*_COLUMNS).select_from(_STORED).where(versions.c.name == bindparam("name"), _VISIBLE)
+_NAMED = select(*COLUMNS).select_from(STORED).where(versions.c.name == bindparam("name"), _VISIBLE)
 _BY_DIGEST = _NAMED.where(versions.c.digest == bindparam("digest"))
 _BY_NUMBER = _NAMED.where(versions.c.version == bindparam("number"))
 _BY_ALIAS = _NAMED.join(

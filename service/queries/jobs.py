@@ -5,12 +5,13 @@ from __future__ import annotations
 import secrets
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from time import time_ns
 from typing import Any
 
 from sqlalchemy import Connection, and_, bindparam, case, exists, func, insert, or_, select, update
 
+from service.clock import time_now
 from service.database.job_tables import job_items, jobs, results
 from service.queries.common import now
 from service.queries.job_events import add_event
@@ -36,6 +37,8 @@ class Job:
     error: str | None
     shared: bool
     owner: str
+    label: str
+    retry_of: str | None
 
     def is_seen_by(self, viewer: Viewer) -> bool:
         """Whether the job is there for a viewer."""
@@ -49,7 +52,9 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class JobItem:
-    """An item as stored, with the summary of its result; ``deaths``, ``problem`` and ``summary`` are JSON."""
+    """An item as stored, with the summary of its result; ``deaths``, ``problem``, ``summary`` and ``item``, which is
+    read of those that failed, are JSON.
+    """
 
     position: int
     key: str
@@ -60,6 +65,7 @@ class JobItem:
     problem: str | None
     started: str | None
     finished: str | None
+    item: str | None
     summary: str | None
 
 
@@ -77,13 +83,21 @@ def new_id() -> str:
     return f"{time_ns() // 10**6:012x}{secrets.token_hex(8)}"
 
 
-def add_job(connection: Connection, kind: str, viewer: Viewer, items: Sequence[NewItem], shared: bool = False) -> str:
+def add_job(
+    connection: Connection,
+    kind: str,
+    viewer: Viewer,
+    items: Sequence[NewItem],
+    shared: bool = False,
+    label: str = "",
+    retry_of: str | None = None,
+) -> str:
     """Queue a job. Items whose result is known already have succeeded at once."""
     share_results(connection)
     identifier = new_id()
     counts = {"total": len(items), "done": 0, "failed": 0, "attempts": 0}
     row = {"id": identifier, "kind": kind, "state": "queued", "created": now(), **counts}
-    row |= {"principal": viewer.key, "owner": viewer.owner, "shared": shared}
+    row |= {"principal": viewer.key, "owner": viewer.owner, "shared": shared, "label": label, "retry_of": retry_of}
     connection.execute(insert(jobs).values(**row))
     common = {"job": identifier, "state": "queued", "attempts": 0, "deaths": "[]", "fraction": 0.0}
     rows = [
@@ -189,14 +203,22 @@ def page_jobs(
 
 def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[JobItem]:
     """Up to ``size`` items that follow the position ``after``."""
-    names = [name for name in JobItem.__slots__ if name != "summary"]
+    names = [name for name in JobItem.__slots__ if name not in ("summary", "item")]
     summary = case((job_items.c.state == "succeeded", results.c.summary))
-    columns: list[Any] = [*(job_items.c[name] for name in names), summary]
+    item = case((job_items.c.state == "failed", job_items.c.item))
+    columns: list[Any] = [*(job_items.c[name] for name in names), item, summary]
     query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
     query = query.where(job_items.c.job == job, job_items.c.position > after)
     if state is not None:
         query = query.where(job_items.c.state == state)
     return [JobItem(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
+
+
+def unsuccessful(connection: Connection, job: str) -> list[NewItem]:
+    """The items of a job that failed or were cancelled, as they were submitted."""
+    chosen = (job_items.c.job == job) & job_items.c.state.in_(("failed", "cancelled"))
+    query = select(job_items.c.key, job_items.c.item, job_items.c.blobs).where(chosen)
+    return [NewItem(*row) for row in connection.execute(query.order_by(job_items.c.position))]
 
 
 def finished_since(connection: Connection, job: str, seconds: float) -> int:
@@ -208,7 +230,7 @@ def finished_since(connection: Connection, job: str, seconds: float) -> int:
 
 def seconds_since(time: str) -> float:
     """The age of a time of the store."""
-    return (datetime.now(UTC) - datetime.fromisoformat(time)).total_seconds()
+    return (time_now() - datetime.fromisoformat(time)).total_seconds()
 
 
 def partial_work(connection: Connection, job: str) -> float:

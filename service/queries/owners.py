@@ -6,7 +6,20 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sqlalchemy import Boolean, ColumnElement, Connection, Table, bindparam, or_, select, update
+from sqlalchemy import (
+    Boolean,
+    ColumnElement,
+    Connection,
+    FromClause,
+    Table,
+    Text,
+    bindparam,
+    case,
+    cast,
+    or_,
+    select,
+    update,
+)
 
 from service.database.tables import substructures, tree_names, tree_parts, versions
 from service.queries.common import insert_missing
@@ -27,7 +40,7 @@ class Ownership:
     visibility: str
 
 
-def visible(table: Table) -> ColumnElement[bool]:
+def visible(table: FromClause) -> ColumnElement[bool]:
     """The condition that a name is there for a viewer; its values are those of :func:`seen_by`."""
     return or_(table.c.visibility == PUBLIC, table.c.owner == bindparam("viewer"), bindparam("sees_all", type_=Boolean))
 
@@ -35,6 +48,13 @@ def visible(table: Table) -> ColumnElement[bool]:
 def seen_by(viewer: Viewer) -> dict[str, Any]:
     """The values of :func:`visible`."""
     return {"viewer": viewer.owner, "sees_all": viewer.is_admin}
+
+
+def reference(table: Table, name: ColumnElement[str], number: ColumnElement[int]) -> ColumnElement[str | None]:
+    """``name@3`` out of two columns; NULL where the name is none that the viewer of :func:`seen_by` sees."""
+    named = table.alias()
+    is_seen = select(named.c.name).where(named.c.name == name, visible(named)).exists()
+    return case((is_seen, name + "@" + cast(number, Text)))
 
 
 def ownership(connection: Connection, kind: Kind, name: str) -> Ownership | None:

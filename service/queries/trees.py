@@ -32,6 +32,7 @@ class Tree:
     author: str
     owner: str
     visibility: str
+    note: str = ""
 
     @property
     def is_public(self) -> bool:

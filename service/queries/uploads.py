@@ -35,6 +35,17 @@ def refer(connection: Connection, job: str, digests: Iterable[str]) -> None:
         connection.execute(insert(job_uploads), rows)
 
 
+def of_job(connection: Connection, job: str) -> list[str]:
+    """The digests of the chunks that a job needs."""
+    return list(connection.execute(select(job_uploads.c.digest).where(job_uploads.c.job == job)).scalars())
+
+
+def remove(connection: Connection, digests: Iterable[str], principal: str) -> None:
+    """Remove those of some chunks that a principal uploaded and that no job refers to."""
+    unused = (uploads.c.principal == principal) & ~exists().where(job_uploads.c.digest == uploads.c.digest)
+    connection.execute(delete(uploads).where(uploads.c.digest.in_(list(digests)), unused))
+
+
 def remove_unused(connection: Connection, before: str, most: int) -> int:
     """Remove up to ``most`` chunks that no job refers to and that were uploaded before a time: how many."""
     unused = (uploads.c.touched < before) & ~exists().where(job_uploads.c.digest == uploads.c.digest)

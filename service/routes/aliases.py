@@ -43,7 +43,13 @@ def get_alias(name: str, alias: str, store: StoreOf, viewer: ViewerOf) -> Respon
     return response_of(json_answer(dump(view), headers={"ETag": catalogue.alias_tag(row), "Cache-Control": REVALIDATE}))
 
 
-@router.put("/{alias}", response_model=AliasView, dependencies=WRITE, openapi_extra=body_of("AliasRequest"))
+@router.put(
+    "/{alias}",
+    response_model=AliasView,
+    dependencies=WRITE,
+    openapi_extra=body_of("AliasRequest"),
+    responses={201: {"description": "The alias is new", "model": AliasView}},
+)
 def put_alias(
     name: str,
     alias: str,

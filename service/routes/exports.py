@@ -3,45 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from service.analyses.exporting import ZIP, ExportRequest, Package, part_package
+from service.analyses.exporting import ALL_TARGETS, ZIP, ExportRequest, Package, part_package
 from service.answers import Answer, etag
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
-from service.http.responses import conditional
+from service.http.responses import remembered
 from service.operations import catalogue
 from service.references import is_pinned
 from service.routes.bodies import binary
 from service.store import Store
 from service.viewer import Viewer
 from substructures.errors import InvalidInput
-from substructures.export import TARGETS
 
 router = APIRouter(prefix="/v1/substructures/{ref}", tags=["formulas"])
 READ = [needs("read")]
 EXPORTED: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "The file, or a zip of several",
-        "content": {ZIP: binary(), "text/plain": {"schema": {"type": "string"}}},
+        "content": {
+            ZIP: binary(),
+            **{media: {"schema": {"type": "string"}} for media in ("text/plain", "application/xml")},
+        },
     }
 }
 
 
 async def export_of(
-    target: Annotated[str, Query(max_length=40, json_schema_extra={"enum": list(TARGETS)})],
+    target: Annotated[str, Query(max_length=40, json_schema_extra={"enum": list(ALL_TARGETS)})],
     quantities: Annotated[
         str, Query(max_length=5_000, description="names, ...; default metric, christoffel, forces")
     ] = "",
     name: Annotated[str, Query(max_length=80, description="prefix of functions; default the name of the tree")] = "",
     bind: Annotated[str, Query(max_length=50_000, description="name:value,... or defaults")] = "",
     together: Annotated[bool, Query(description="also a function with all quantities, NAME_all")] = False,
+    packed: Annotated[bool, Query(description="of metric and christoffel the independent elements alone")] = False,
+    fmi: Annotated[Literal["3.0", "2.0"], Query(description="of target=fmu: version of the interface")] = "3.0",
+    precision: Annotated[Literal["double", "single"], Query(description="of target=c")] = "double",
+    stages: Annotated[bool, Query(description="of target=c: NAME_prepare(p, w), once per set of parameters")] = False,
 ) -> ExportRequest:
     """The export that a request asks for."""
     names = tuple(text.strip() for text in quantities.split(",") if text.strip())
-    return ExportRequest(target, names, name, bind, together)
+    return ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages)
 
 
 ExportOf = Annotated[ExportRequest, Depends(export_of)]
@@ -65,7 +71,7 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
         return package_answer(lambda: part_package(part, reference, version.digest, wanted, limit))
 
     lasting = is_pinned(ref) and version.is_public
-    return conditional(request, etag(version.digest, reference, *wanted.identity), lasting, make)
+    return remembered(request, etag(version.digest, reference, *wanted.identity), lasting, make)
 
 
 def package_answer(make: Callable[[], Package]) -> Answer:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 
 from service.answers import Answer, etag, json_answer
+from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
-from service.http.responses import conditional
+from service.http.responses import conditional, remembered
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
 from service.queries import formulas as index
@@ -17,6 +19,8 @@ from service.refusals import not_found
 from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
+from service.store import Store
+from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
@@ -39,34 +43,62 @@ def list_formulas(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) 
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """Which formulas of a quantity are wanted: all, or those of one body, coordinate and component."""
+
+    body: str | None
+    coordinate: str | None
+    component: str | None
+    inertia: Literal["own", "symbols"]
+
+
+async def chosen_of(
+    body: Filter = None,
+    coordinate: Filter = None,
+    component: Annotated[str | None, Query(max_length=200, description="index from 0, e.g. 2 or 0,1")] = None,
+    inertia: Annotated[Literal["own", "symbols"], Query(description=INERTIA)] = "own",
+) -> Chosen:
+    """What a request chooses."""
+    return Chosen(body, coordinate, component, inertia)
+
+
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
-def get_formula(
+async def get_formula(
     ref: str,
     quantity: str,
     request: Request,
     store: StoreOf,
     viewer: ViewerOf,
     style: StyleOf,
-    body: Filter = None,
-    coordinate: Filter = None,
-    component: Annotated[str | None, Query(max_length=200, description="index from 0, e.g. 2 or 0,1")] = None,
-    inertia: Annotated[Literal["own", "symbols"], Query(description=INERTIA)] = "own",
+    chosen: Annotated[Chosen, Depends(chosen_of)],
 ) -> Response:
     """The formulas of one quantity, all or those of one body, coordinate and component."""
+    advice = "ask for one body, coordinate or component, or for form=compact"
+    return await in_time(request, lambda: _formula(ref, quantity, request, store, viewer, style, chosen), advice)
+
+
+def _formula(
+    ref: str, quantity: str, request: Request, store: Store, viewer: Viewer, style: models.Style, chosen: Chosen
+) -> Response:
+    """The formulas in a thread."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
-        rows = index.list_formulas(connection, version.digest, models.quantities(quantity), body, coordinate)
+        rows = index.list_formulas(
+            connection, version.digest, models.quantities(quantity), chosen.body, chosen.coordinate
+        )
         part = store.required_part(connection, version.digest)
-    wanted = models.Wanted(quantity, body, coordinate, component)
-    chosen = models.part_formulas(part, rows, wanted, first_index(style.format))
-    if chosen is None:
+    wanted = models.Wanted(quantity, chosen.body, chosen.coordinate, chosen.component)
+    found = models.part_formulas(part, rows, wanted, first_index(style.format))
+    if found is None:
         raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
-    tag = etag(version.digest, quantity, str((body, coordinate, component, inertia)), *style.identity)
+    identity = str((chosen.body, chosen.coordinate, chosen.component, chosen.inertia))
+    tag = etag(version.digest, quantity, identity, *style.identity)
 
     def make() -> Answer:
         """Bind and print."""
-        found = with_own_inertia(part, chosen) if inertia == "own" else chosen
-        program = models.bound(found, part.parameters, style.bind)
+        own = with_own_inertia(part, found) if chosen.inertia == "own" else found
+        program = models.bound(own, part.parameters, style.bind)
         return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest))
 
-    return conditional(request, tag, is_pinned(ref) and version.is_public, make)
+    return remembered(request, tag, is_pinned(ref) and version.is_public, make)

@@ -11,12 +11,14 @@ from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs
-from service.operations import catalogue, imports, trees
+from service.operations import catalogue, imports
+from service.operations.imports import IMPORTED
 from service.refusals import Refused
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import PLAIN
 from service.schemas.imports import ImportView
+from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS
@@ -43,6 +45,9 @@ def read_file(
     parameters: Parameters = "inertia",
     fixed: Fixed = "ports",
     base: Base = "fixed",
+    cut: Annotated[
+        str, Query(max_length=20_000, description="links, separated by commas: each begins a part of its own")
+    ] = "",
     stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
 ) -> Response:
     """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
@@ -50,7 +55,11 @@ def read_file(
         accepted = ", ".join(MEDIA_TYPES)
         raise Refused(415, "unsupported-media-type", f"send one of {accepted}", headers={"Accept": accepted})
     options = Options(parameters, fixed, base)
-    found = import_file(body, options, kind=kind, name=name, file=file, license_of_file=license)
+    links = [text.strip() for text in cut.split(",") if text.strip()]
+    try:
+        found = import_file(body, options, kind=kind, name=name, file=file, license_of_file=license, cut=links)
+    except InvalidArgument as error:
+        raise error.below("/query") from None
     if not stored:
         return act.compute(lambda: json_answer(imports.answer_of(found)))
     act.require("write")
@@ -63,7 +72,7 @@ def _part(store: StoreOf, act: ActOf, found: Imported) -> Response:
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
-        submission = catalogue.prepare(store, act.viewer, definition, PLAIN)
+        submission = catalogue.prepare(store, act.viewer, definition, PLAIN, IMPORTED)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and tell of it."""
@@ -75,19 +84,19 @@ def _part(store: StoreOf, act: ActOf, found: Imported) -> Response:
 
         return commit
 
-    return act.run(prepare, deferred(act, "derive", found.definition))
+    return act.run(prepare, deferred(act, "derive", found.definition, members=IMPORTED.members()))
 
 
 def _tree(store: StoreOf, act: ActOf, found: Imported) -> Response:
-    """Coupled and stored as a tree, at once or by a job."""
+    """Its parts stored as substructures, coupled and stored as a tree, at once or by a job."""
 
     def prepare() -> Any:
-        """Couple."""
-        ready = trees.prepare(store, act.viewer, found.tree, PLAIN)
+        """Derive the parts and couple them."""
+        ready = imports.prepare(store, act.viewer, found)
 
         def commit(connection: Connection) -> Answer:
-            """Store the revision and tell of it."""
-            tree, is_new = trees.commit(connection, act.viewer, ready)
+            """Store the parts and the revision, and tell of it."""
+            tree, is_new = imports.commit(connection, act.viewer, ready)
             told = {"name": tree.name, "version": tree.revision, "digest": tree.digest, "href": tree_path(tree)}
             return json_answer(imports.answer_of(found, told), 201 if is_new else 200, {"Location": tree_path(tree)})
 

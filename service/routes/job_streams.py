@@ -15,12 +15,13 @@ from starlette.types import Receive, Scope, Send
 
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.operations import jobs
-from service.queries import job_events, results
+from service.queries import content, job_events, results
 from service.queries import jobs as rows
 from service.routes.bodies import binary
 from service.store import Store
 from service.views.jobs import event_text, item_view
 from service.views.resources import dump
+from substructures.documents import read_json
 
 EVENTS, ITEMS = 500, 100  # of one read
 HEARTBEAT = 15.0  # seconds
@@ -98,7 +99,8 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 
 @router.get("/archive", response_class=Response, responses=ZIP)
 def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
-    """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it."""
+    """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it; of a tree
+    or part that was stored all its formulas, ``<position>/program.json``."""
     with store.database.read() as connection:
         jobs.find(connection, viewer, job)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
@@ -108,8 +110,8 @@ def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
 def _archive(store: Store, job: str) -> Iterator[bytes]:
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as packed:
-        for name, content in _members(store, job):
-            packed.writestr(name, content)
+        for name, data in _members(store, job):
+            packed.writestr(name, data)
             yield sink.taken()
     yield sink.taken()
 
@@ -125,6 +127,11 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
                 continue
             there = files.get(item.key, []) if item.summary is not None else []
             yield f"{item.position}/item.json", dump(item_view(job, item, there))
+            stored = read_json(item.summary.encode()).get("program") if item.summary is not None else None
+            with store.database.read() as connection:
+                formulas = content.get_program(connection, stored) if isinstance(stored, str) else None
+            if formulas is not None:
+                yield f"{item.position}/program.json", formulas
             for file in there:
                 with store.database.read() as connection:
                     yield f"{item.position}/{file.name}", results.get_file(connection, file.key, file.name) or b""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
-from service.http.acting import ActOf
+from service.http.acting import ActOf, Commit
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
 from service.operations import jobs
@@ -18,7 +19,7 @@ from service.queries import results
 from service.refusals import not_found
 from service.routes.bodies import binary, body_of
 from service.routes.deferred import FRESH, answer, committed
-from service.schemas.jobs import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView
+from service.schemas.jobs import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView, RetryRequest
 from service.views.jobs import BINARY, item_view, job_view, media_type
 from service.views.resources import dump
 from substructures.documents import read_model
@@ -89,6 +90,34 @@ def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Resp
     response = act.submit(lambda: commit)
     store.runtime.wake.set()
     return response
+
+
+@router.post(
+    "/{job}/retry",
+    status_code=202,
+    response_model=JobView,
+    dependencies=JOBS,
+    openapi_extra=body_of("RetryRequest", False),
+)
+def retry(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+    """What of a job failed or was cancelled once more, as a job of its own."""
+    label = read_model(RetryRequest, body).label
+
+    def prepare() -> Commit:
+        """Look what there is to be done."""
+        with store.database.read() as connection:
+            found = jobs.again(connection, act.viewer, job)
+        return committed(store, act.viewer, found if label is None else replace(found, label=label))
+
+    return act.submit(prepare)
+
+
+@router.delete("/{job}", status_code=204, dependencies=JOBS)
+def remove(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
+    """Remove a job that has ended, with its results and with the states that were uploaded for it alone."""
+    with store.database.write() as connection:
+        jobs.remove(connection, viewer, job)
+    return Response(status_code=204)
 
 
 @router.get("/{job}/items", response_model=ItemPage, dependencies=READ)

@@ -27,7 +27,7 @@ router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
     dependencies=[needs("read")],
     openapi_extra=body_of("KernelsRequest"),
 )
-@timed("analyse")
+@timed("evaluate")
 def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Compile a tree for evaluations of these quantities together. 201 when something was compiled, else 200.
 

@@ -11,11 +11,11 @@ from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
-from service.http.responses import conditional
+from service.http.responses import remembered
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
-from service.operations.sources import engine_of, sources_of
+from service.operations.sources import engine_of, sources_of, tree_parts
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
@@ -113,10 +113,18 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
         """Bind, print, and pack."""
         limit = store.settings.limits.program_nodes
         return package_answer(
-            lambda: tree_package(sources_of(store, tree, model), tree.name, reference, tree.digest, wanted, limit)
+            lambda: tree_package(
+                sources_of(store, tree, model),
+                tree.name,
+                reference,
+                tree.digest,
+                wanted,
+                limit,
+                lambda: tree_parts(store, tree),
+            )
         )
 
-    return conditional(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref) and tree.is_public, make)
+    return remembered(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref) and tree.is_public, make)
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -144,17 +152,17 @@ def _quantity(
     if quantity in QUANTITIES:
         source = analyses.source_of(store, tree, model)
         tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
-        return conditional(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
+        return remembered(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
-    check_options(quantity, options)
-    tag = etag(tree.digest, quantity, *style.identity)
+    check_options(quantity, options, models.options_of_quantity(quantity))
+    tag = etag(tree.digest, quantity, *(f"{name}={x}" for name, x in options.items()), *style.identity)
 
     def make() -> Answer:
         """Form, bind and print."""
-        sources = sources_of(store, tree, model)
+        sources = models.with_options(sources_of(store, tree, model), quantity, options)
         members, parameters = models.described(sources, quantity)
         program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
         interface = interface_of_model(model, digest=tree.digest)
         return models.printed(program, style, quantity, interface, members)
 
-    return conditional(request, tag, lasting, make)
+    return remembered(request, tag, lasting, make)

@@ -26,11 +26,13 @@ async def options_of(
     running: Annotated[Texts, _query("running")] = None,
     terminal: Annotated[Texts, _query("terminal")] = None,
     drives: Annotated[Texts, _query("drives")] = None,
+    joints: Annotated[Texts, _query("joints")] = None,
 ) -> Options:
     """The options of a request; those that are not given are left out."""
     given = {
         "inputs": inputs, "zero": zero, "cyclic": cyclic, "outputs": outputs, "parameters": parameters,
         "quantities": quantities, "controls": controls, "running": running, "terminal": terminal, "drives": drives,
+        "joints": joints,
     }  # fmt: skip
     return {name: tuple(_split(texts)) for name, texts in given.items() if texts}
 

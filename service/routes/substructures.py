@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -15,14 +16,17 @@ from service.http.responses import conditional, link_header, next_link, response
 from service.integrity import missing
 from service.operations import catalogue
 from service.paging import limited
-from service.queries import aliases, content
-from service.queries.catalogue import SORTS, CatalogueSearch, Version
+from service.queries import aliases, content, uses
+from service.queries.catalogue import Version
+from service.queries.search import RELEVANCE, SORTS, CatalogueSearch, words_of
+from service.queries.uses import Withdrawn
 from service.references import is_pinned
 from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
-from service.schemas.entries import Entry
+from service.schemas.entries import PartEntry
 from service.schemas.resources import VersionPage, VersionView, YankRequest
+from service.viewer import Viewer
 from service.views.resources import dump, page_view, version_view
 from substructures.documents import read_model
 from substructures.part.definition import Definition
@@ -37,6 +41,12 @@ def names_of(connection: Connection, version: Version) -> list[str]:
     return aliases.aliases_of(connection, (version.name, version.version))[0]
 
 
+def whole_view(connection: Connection, viewer: Viewer, version: Version) -> dict[str, Any]:
+    """A version with all that is told of it alone."""
+    withdrawn = uses.withdrawn_in_part(connection, viewer, version.digest)
+    return version_view(version, names_of(connection, version), withdrawn)
+
+
 @router.post(
     "",
     status_code=201,
@@ -48,7 +58,7 @@ def names_of(connection: Connection, version: Version) -> list[str]:
 @timed("derive")
 def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
-    entry, document = Entry.parted(body)
+    entry, document = PartEntry.parted(body)
     definition = Definition.read(document)
 
     def prepare() -> Any:
@@ -58,12 +68,15 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         def commit(connection: Connection) -> Answer:
             """Store the version and answer it."""
             version, is_new = catalogue.submit(connection, act.viewer, submission)
-            view = version_view(version, names_of(connection, version))
+            view = whole_view(connection, act.viewer, version)
             return json_answer(dump(view), 201 if is_new else 200, {"Location": version_path(version)})
 
         return commit
 
     return act.run(prepare, deferred(act, "derive", body))
+
+
+SORTED = ", ".join(SORTS)
 
 
 @router.get("", response_model=VersionPage, dependencies=READ)
@@ -72,25 +85,35 @@ def search(
     store: StoreOf,
     viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200, description="words in name, title, description and tags")] = "",
-    tag: Annotated[list[str] | None, Query(max_length=10)] = None,
+    tag: Annotated[list[str], Query(max_length=10)] = [],  # noqa: B006 -- read only
     dof_min: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     dof_max: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     joints: Annotated[str | None, Query(pattern="^[RP]*$", max_length=1000)] = None,
     owner: Annotated[str | None, Query(max_length=64)] = None,
-    sort: Annotated[str, Query(description=f"one of {', '.join(SORTS)}")] = "name",
+    sort: Annotated[str | None, Query(description=f"one of {SORTED}; default: relevance with q, name without")] = None,
+    facets: Annotated[bool, Query(description="also count tags, joints and degrees of freedom of all found")] = False,
     page_size: Annotated[int, Query(ge=1)] = 50,
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
-    """A page of the latest versions, with facets."""
+    """A page of the latest versions. Words that are nowhere are taken for the most similar ones, told in `instead`."""
+    words = words_of(q)
+    sort = sort or (RELEVANCE if words else "name")
     if sort not in SORTS:
-        raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {', '.join(SORTS)}", "/query/sort")
-    wanted = CatalogueSearch(tuple(q.split()), tuple(tag or ()), dof_min, dof_max, joints, owner, sort)
+        raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {SORTED}", "/query/sort")
+    wanted = CatalogueSearch(words, tuple(tag), dof_min, dof_max, joints, owner, sort)
     size = limited(page_size, store.settings.limits)
     with store.database.read() as connection:
-        page = catalogue.search(connection, viewer, wanted, size, page_token)
+        page = catalogue.found(connection, viewer, wanted, size, page_token, facets)
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.versions))
     link = next_link(request, page.next_token)
     return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))
+
+
+def version_tag(version: Version, names: Sequence[str], withdrawn: Sequence[Withdrawn]) -> str:
+    """The ETag of a version: what it refers to may become visible, or be withdrawn."""
+    seen = (version.derived_from, version.successor, version.tree)
+    shown = [*(each for each in seen if each), *(f"{each.instance}:{each.successor}" for each in withdrawn)]
+    return etag(version.digest, str(version.version), str(version.yanked), version.visibility, *shown, *names)
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)
@@ -99,8 +122,9 @@ def get_version(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) ->
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
         names = names_of(connection, version)
-    tag = etag(version.digest, str(version.version), str(version.yanked), version.visibility, *names)
-    return conditional(request, tag, False, lambda: json_answer(dump(version_view(version, names))))
+        gone = uses.withdrawn_in_part(connection, viewer, version.digest)
+    tag = version_tag(version, names, gone)
+    return conditional(request, tag, False, lambda: json_answer(dump(version_view(version, names, gone))))
 
 
 @router.get("/{ref}/definition", dependencies=READ, responses=content_of("Definition"))
@@ -122,7 +146,7 @@ def yank(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
 
     def commit(connection: Connection) -> Answer:
         """Withdraw the version and answer it."""
-        version = catalogue.yank(connection, act.viewer, ref, wanted.reason)
-        return json_answer(dump(version_view(version, names_of(connection, version))))
+        version = catalogue.yank(connection, act.viewer, ref, wanted.reason, wanted.successor)
+        return json_answer(dump(whole_view(connection, act.viewer, version)))
 
     return act.submit(lambda: commit)

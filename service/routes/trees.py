@@ -17,7 +17,6 @@ from service.operations import trees
 from service.operations.job_results import BASE_REVISION, IS_EXACT
 from service.paging import limited, read_token, write_token
 from service.queries.trees import TreeSearch, page
-from service.references import is_pinned
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
 from service.schemas.entries import Entry
@@ -39,7 +38,8 @@ def revision(act: Act, prepare: Callable[[], trees.Revision]) -> Callable[[], Co
         def commit(connection: Connection) -> Answer:
             """Store the revision and answer it."""
             tree, is_new = trees.commit(connection, act.viewer, ready)
-            return json_answer(tree_view(tree), 201 if is_new else 200, {"Location": tree_path(tree)})
+            view = tree_view(tree, trees.withdrawn(connection, act.viewer, tree))
+            return json_answer(view, 201 if is_new else 200, {"Location": tree_path(tree)})
 
         return commit
 
@@ -98,12 +98,11 @@ def list_trees(
 
 @router.get("/{ref}", response_model=TreeView, dependencies=READ)
 def get_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
-    """A revision of a tree, the latest for a bare name."""
+    """A revision of a tree, the latest for a bare name. Its parts may be withdrawn, so clients revalidate by ETag."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-    return conditional(
-        request, trees.tree_tag(tree), is_pinned(ref) and tree.is_public, lambda: json_answer(tree_view(tree))
-    )
+        gone = trees.withdrawn(connection, viewer, tree)
+    return conditional(request, trees.tree_tag(tree, gone), False, lambda: json_answer(tree_view(tree, gone)))
 
 
 @router.post(

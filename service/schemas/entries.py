@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from pydantic import ConfigDict, Field
 
 from service.schemas.shapes import Shape
 from substructures.documents import read_model
 from substructures.part.definition import Definition
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import REFERENCE, TreeSpec
 
 Visibility = Literal["public", "private"]
 VISIBILITY = "who sees the name: everybody (the default of a new name), or the keys of its owner"
+NOTE = "why it is submitted, in words; kept with the version or revision that it becomes"
+DERIVED_FROM = "reference to the version that it was made from"
 
 
 class Entry(Shape):
@@ -22,9 +24,10 @@ class Entry(Shape):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     visibility: Visibility | None = None
+    note: str | None = Field(None, max_length=2000)
 
     @classmethod
-    def parted(cls, document: Any) -> tuple[Entry, Any]:
+    def parted(cls, document: Any) -> tuple[Self, Any]:
         """The entry of a document, and the document without it. Raises InvalidDocument."""
         if not isinstance(document, Mapping):
             return cls(), document
@@ -32,19 +35,28 @@ class Entry(Shape):
         return read_model(cls, given), {name: value for name, value in document.items() if name not in given}
 
 
-PLAIN = Entry()  # nothing is said
+class PartEntry(Entry):
+    """Of a definition."""
+
+    derived_from: str | None = Field(None, pattern=REFERENCE)
+
+
+PLAIN = PartEntry()  # nothing is said
 
 
 class SubmittedDefinition(Definition):
     """A definition as it is sent."""
 
     visibility: Visibility = Field("public", description=VISIBILITY)
+    note: str = Field("", max_length=2000, description=NOTE)
+    derived_from: str | None = Field(None, pattern=REFERENCE, description=DERIVED_FROM)
 
 
 class SubmittedTree(TreeSpec):
     """A tree as it is sent."""
 
     visibility: Visibility = Field("public", description=VISIBILITY)
+    note: str = Field("", max_length=2000, description=NOTE)
 
 
 class VisibilityRequest(Shape):

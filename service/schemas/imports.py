@@ -28,12 +28,13 @@ class CheckView(Shape):
 
 
 class BindingView(Shape):
-    """A mimic joint, which is not built in: coordinate = multiplier * of + offset."""
+    """A bound coordinate, which is free here: coordinate = multiplier * of + offset."""
 
     coordinate: str
     of: str
     multiplier: float
     offset: float
+    constraint: dict[str, str] = Field(description="velocity constraint; in a tree, with `instance.` before names")
 
 
 class StoredView(Shape):
@@ -46,7 +47,7 @@ class StoredView(Shape):
 
 
 class ImportView(Shape):
-    """A robot file, read: a definition, or a tree where the file has loops."""
+    """A robot file, read: a definition, or a tree where the file has loops or is cut."""
 
     kind: str
     definition: dict[str, Any] | None = None

@@ -11,6 +11,8 @@ KINDS = """What every item is, its optional fields in brackets. `tree` and `subs
 - `derive`: a definition, the body of `POST /v1/substructures` (`Definition`); the version is stored.
 - `verify`: `substructure` or `tree`, a reference, or `*` for the whole catalogue or all revisions of trees; the \
 certificate is made anew from what is stored.
+- `compare`: `a`, `b`, [`coordinates`], the body of `POST /v1/equivalences` (`EquivalenceRequest`), whose answer is \
+the result. `b` may be a list, one against many, or `*` for all versions of the catalogue: an item each.
 - `evaluate`: `tree`, `request`, [`grid` or `sample`], [`format`: `npz` (default), `arrow`]. `request` is the body of \
 `POST /v1/trees/{ref}/evaluations` (`EvaluationRequest`); its states are `q` and `qd` there, or come from a grid or a \
 sample, in which coordinates that are not named are 0. Names are coordinates (`rod.q1`), velocities (`rod.q1'`), \
@@ -26,7 +28,7 @@ numbers, such as `linearisations`, `root-loci`; a request is the body of that en
 - `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
 `request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
-`together`], as of `GET /v1/trees/{ref}/export`."""
+`together`, `packed`, `fmi`, `precision`, `stages`], as of `GET /v1/trees/{ref}/export`."""
 
 CHOICES = """Lists of values by place in the template; every combination makes an item, the last choice varies \
 fastest. A place is a JSON pointer (RFC 6901) into the template (`/request/parameters/rod.m1`, `/request/q/0`), all \
@@ -75,4 +77,5 @@ EXAMPLES: tuple[dict[str, Any], ...] = (
     {"kind": "export", "items": [{"tree": "swing", "quantity": "metric", "format": "latex", "form": "expanded"}]},
     {"kind": "export", "items": [{"tree": "swing", "target": "c", "quantities": ["metric", "forces"]}]},
     {"kind": "verify", "items": [{"substructure": "*"}]},
+    {"kind": "compare", "items": [{"a": "swing", "b": ["acrobot", "puma560"], "coordinates": {"rod.q1": "q1"}}]},
 )

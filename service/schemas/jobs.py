@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
 from service.schemas.shapes import Links, Shape, Time
 
-JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "simulate", "optimise", "analyse"]
+JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "compare", "simulate", "optimise", "analyse"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemDocument = dict[str, Any]
 ChoiceValues = Annotated[list[Any], Field(min_length=1)]
@@ -34,6 +34,7 @@ class JobRequest(Shape):
     )
     choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
     shared: bool = Field(False, description="whether every API key may see the job, not only those of its owner")
+    label: str = Field("", max_length=200, description="what it is for, in words")
     on_invalid: Literal["refuse", "skip"] = Field(
         "refuse", description="one bad item: refuse all, or leave it out and tell of it in `skipped` of the answer"
     )
@@ -58,6 +59,12 @@ class CancelRequest(Shape):
     """Nothing needs to be said."""
 
 
+class RetryRequest(Shape):
+    """What is tried again of a job."""
+
+    label: str | None = Field(None, max_length=200, description="of the new job (default: that of the old one)")
+
+
 class JobProgress(Shape):
     """How far a job is."""
 
@@ -74,6 +81,8 @@ class JobView(Shape):
 
     id: str
     kind: JobKind
+    label: str = Field(description="what it is for, in words")
+    retry_of: str | None = Field(description="the job of which it tries again what failed")
     state: JobState
     progress: JobProgress
     attempts: int = Field(description="attempts on all items")
@@ -110,6 +119,7 @@ class ItemView(BaseModel):
     """An item of a job: its result, or the problem document of its own."""
 
     position: int
+    subject: str | None = Field(description="of what failed: the tree or part that it is about")
     state: ItemState
     attempts: int
     deaths: list[str] = Field(description="what was seen of attempts whose worker died")

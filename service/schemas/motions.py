@@ -150,11 +150,22 @@ class SpanRequest(StateRequest):
         return OutputTimes(self.span, self.times, self.step, self.count)
 
 
-class SimulationRequest(SpanRequest):
+class WithReactions(SpanRequest):
+    """``reactions``: those of all joints, or of some, by coordinates and ``instance.base``."""
+
+    reactions: bool | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
+        False, description="force and moment that joints transmit: of all, or of these"
+    )
+
+
+class SimulationRequest(WithReactions):
     """q'' = g^-1 (Q - Gamma q' q') of a tree without closures."""
 
     method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
     fixed_step: FixedStep | None = None
+    friction: Literal["regularised", "exact"] = Field(
+        "regularised", description="of joints: by the smooth law of the formulas, or set-valued at rest"
+    )
 
 
 class LoopRequest(StateRequest):
@@ -167,7 +178,7 @@ class LoopRequest(StateRequest):
     prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
 
 
-class ClosedRequest(SpanRequest):
+class ClosedRequest(WithReactions):
     """A motion with closures from the closed state nearest to ``q``, ``qd``; see LoopRequest.
 
     ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.

@@ -74,6 +74,9 @@ class EvaluationRequest(Shape):
     along: Direction | None = Field(None, description="direction of inverse_ and forward_dynamics_derivative")
     packed: StrictBool = Field(False, description="of metric and christoffel the independent elements alone")
     float32: StrictBool = Field(False, description="results in single precision")
+    joints: list[str] | None = Field(
+        None, description="rows of reactions: coordinates, and instance.base; all by default"
+    )
 
     @classmethod
     def read(cls, data: Any) -> EvaluationRequest:
@@ -120,6 +123,7 @@ class EvaluationRequest(Shape):
             "t": self.t,
             "packed": self.packed,
             "float32": self.float32,
+            "joints": self.joints,
             "along": None
             if along is None
             else derivative_directions.Direction(along.q, along.qd, along.qdd, along.inputs),
@@ -156,6 +160,7 @@ class EvaluationResult(BaseModel):
     warnings: list[Warned] = []
     frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
+    joints: list[str] = Field([], description="with reactions: coordinates of joints, and instance.base, by row")
 
 
 class KernelsRequest(Shape):

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.schemas.entries import Visibility
 from service.schemas.shapes import Digest, Links, Shape, Time, Warned
+from substructures.tree.document import REFERENCE
 
 
 class ProblemError(Shape):
@@ -43,6 +44,15 @@ class ParameterView(BaseModel):
     given: dict[str, Any] | None = Field(None, description="value and unit, where they were given in another unit")
 
 
+class WithdrawnView(Shape):
+    """An instance whose part is withdrawn."""
+
+    instance: str
+    substructure: str = Field(description="name and version")
+    reason: str
+    successor: str | None = Field(description="what to take instead")
+
+
 class VersionView(Shape):
     """A version of a substructure."""
 
@@ -68,6 +78,14 @@ class VersionView(Shape):
     yanked_at: Time | None
     yank_reason: str | None
     author: str = Field(description="id of the API key that submitted it; empty in older stores")
+    note: str = Field(description="why it was submitted, in words")
+    origin: str = Field(description="what it came as: definition, import, catalogue, tree; empty in older stores")
+    derived_from: str | None = Field(description="the version that it was made from")
+    tree: str | None = Field(description="the revision of a tree that was published as this version")
+    successor: str | None = Field(description="what to take in place of a withdrawn version")
+    withdrawn: list[WithdrawnView] = Field(
+        [], description="of a published tree, its instances whose parts are withdrawn; in the answer about one version"
+    )
     owner: str = Field(description="whose the name is; catalogue: shipped")
     visibility: Visibility
     links: Links
@@ -77,7 +95,10 @@ class VersionPage(Shape):
     """A page of latest versions."""
 
     items: list[VersionView]
-    facets: dict[Literal["tags", "joints", "dof"], dict[str, int]] = Field(description="counts over all pages")
+    facets: dict[Literal["tags", "joints", "dof"], dict[str, int]] | None = Field(
+        None, description="counts over all pages, with facets=true"
+    )
+    instead: dict[str, str] | None = Field(None, description="words that were taken in place of those that are nowhere")
     next_page_token: str | None
     links: Links
 
@@ -144,6 +165,7 @@ class YankRequest(Shape):
     """Why a version is withdrawn."""
 
     reason: str = Field("", max_length=2000)
+    successor: str | None = Field(None, pattern=REFERENCE, description="reference to what to take instead")
 
 
 class TreeView(Shape):
@@ -172,6 +194,8 @@ class TreeView(Shape):
     created: Time
     based_on: int | None = Field(description="the revision that was changed")
     author: str = Field(description="id of the API key that made it; empty in older stores")
+    note: str = Field(description="why it was made, in words")
+    withdrawn: list[WithdrawnView] = Field(description="instances whose parts are withdrawn")
     owner: str = Field(description="whose the name is; catalogue: shipped")
     visibility: Visibility
     links: Links

@@ -14,6 +14,7 @@ from service.queries.jobs import Job, JobItem
 from service.queries.results import File
 
 BINARY = "application/octet-stream"
+SHOWN = 6  # parts of a tree
 MEDIA_TYPES = {"certificate": "application/json", "result": "application/x-npz", "text": "text/plain; charset=utf-8"}
 MEDIA_TYPES |= {"archive": "application/zip"}
 
@@ -29,6 +30,8 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
     return {
         "id": job.id,
         "kind": job.kind,
+        "label": job.label,
+        "retry_of": job.retry_of,
         "state": job.state,
         "progress": {
             "done": job.done,
@@ -47,7 +50,8 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         "finished": job.finished,
         "error": None if job.error is None else orjson.Fragment(job.error),
         "result": f"{path}/result",
-        "links": {"self": path} | {name: f"{path}/{name}" for name in ("items", "events", "archive", "cancel")},
+        "links": {"self": path}
+        | {name: f"{path}/{name}" for name in ("items", "events", "archive", "cancel", "retry")},
     }
 
 
@@ -61,6 +65,7 @@ def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:
     """An item with its result or its problem."""
     return {
         "position": item.position,
+        "subject": subject(item),
         "state": item.state,
         "attempts": item.attempts,
         "deaths": orjson.Fragment(item.deaths),
@@ -72,6 +77,18 @@ def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:
         "result": None if item.summary is None else orjson.Fragment(item.summary),
         "files": [_file(job, item, file) for file in files],
     }
+
+
+def subject(item: JobItem) -> str | None:
+    """What an item that failed is about: its tree with the parts that were chosen, its part."""
+    if item.item is None:
+        return None
+    about = orjson.loads(item.item)
+    given = about.get("definition") or about.get("tree") or about.get("substructure")
+    if not isinstance(given, dict):
+        return None if given is None else str(given).partition("@")[0]
+    parts = [each.get("substructure", "").partition("@")[0] for each in given.get("instances", ())]
+    return f"{given['name']} ({', '.join(parts[:SHOWN])})" if any(parts) else str(given["name"])
 
 
 def _file(job: str, item: JobItem, file: File) -> dict[str, Any]:

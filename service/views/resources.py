@@ -14,6 +14,7 @@ from service.queries.audit import AuditEntry
 from service.queries.catalogue import Version
 from service.queries.formulas import FormulaRow
 from service.queries.trees import Tree
+from service.queries.uses import Withdrawn
 from substructures.expr.unit_check import Notice
 from substructures.part.parameters import uncounted
 
@@ -33,10 +34,13 @@ def tree_warnings(tree: Tree) -> list[Notice]:
     return found
 
 
-def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
-    """A version (contract.md, section 2)."""
+def version_view(
+    version: Version, aliases: Sequence[str], withdrawn: Sequence[Withdrawn] | None = None
+) -> dict[str, Any]:
+    """A version (contract.md, section 2); ``withdrawn``: of the parts that it is built of, where that was looked up."""
     path = version_path(version)
-    return {
+    built_of = {} if withdrawn is None else {"withdrawn": withdrawn_view(withdrawn)}
+    return built_of | {
         "name": version.name,
         "version": version.version,
         "digest": version.digest,
@@ -52,7 +56,7 @@ def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
         "yanked": version.yanked is not None,
         "yanked_at": version.yanked,
         "yank_reason": version.yank_reason,
-        "author": version.author,
+        **provenance_view(version),
         "owner": version.owner,
         "visibility": version.visibility,
         "links": {
@@ -62,15 +66,23 @@ def version_view(version: Version, aliases: Sequence[str]) -> dict[str, Any]:
             "picture": f"{path}/picture",
             "latest": f"{BASE}/substructures/{version.name}",
             "aliases": f"{BASE}/substructures/{version.name}/aliases",
+            "versions": f"{BASE}/substructures/{version.name}/versions",
+            "uses": f"{path}/uses",
         },
     }
 
 
+def provenance_view(version: Version) -> dict[str, Any]:
+    """Where a version comes from, and what takes its place."""
+    names = ("author", "note", "origin", "derived_from", "tree", "successor")
+    return {name: getattr(version, name) for name in names}
+
+
 def page_view(page: Page, aliases: Sequence[Sequence[str]], next_link: str | None) -> dict[str, Any]:
-    """A page of versions with facets."""
-    return {
+    """A page of versions."""
+    told = {"facets": page.facets, "instead": page.instead or None}
+    return {name: x for name, x in told.items() if x is not None} | {
         "items": [version_view(version, names) for version, names in zip(page.versions, aliases, strict=True)],
-        "facets": page.facets,
         "next_page_token": page.next_token,
         "links": {"next": next_link},
     }
@@ -119,7 +131,20 @@ def alias_view(name: str, alias: Alias, history: Sequence[AliasHistoryEntry]) ->
     }
 
 
-def tree_view(tree: Tree) -> bytes:
+def withdrawn_view(withdrawn: Sequence[Withdrawn]) -> list[dict[str, Any]]:
+    """Instances whose parts are withdrawn."""
+    return [
+        {
+            "instance": each.instance,
+            "substructure": f"{each.name}@{each.version}",
+            "reason": each.reason,
+            "successor": each.successor,
+        }
+        for each in withdrawn
+    ]
+
+
+def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
     """The JSON of a tree (contract.md, section 3): names and links, then the stored summary as it is."""
     path = tree_path(tree)
     quantities = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
@@ -132,9 +157,11 @@ def tree_view(tree: Tree) -> bytes:
         "created": tree.created,
         "based_on": tree.based_on,
         "author": tree.author,
+        "note": tree.note,
         "owner": tree.owner,
         "visibility": tree.visibility,
         "warnings": tree_warnings(tree),
+        "withdrawn": withdrawn_view(withdrawn),
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
         | {"kernels": f"{path}/kernels"}
         | {name: f"{path}/{name}" for name in (*quantities, "picture")},

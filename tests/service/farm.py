@@ -17,6 +17,7 @@ from typing import Any, Self
 import httpx2
 import numpy as np
 
+from service.respawn import VARIABLE
 from substructures.client import Client, ProblemError
 
 START = 60.0
@@ -46,6 +47,7 @@ class Server:
         self.port, self.log = free_port(), log
         command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(self.port), "--database", database]
         self.command = [*command, *settings]
+        self.count = int(settings[settings.index("--processes") + 1]) if "--processes" in settings else 1
         self.environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"}
         self.process: subprocess.Popen[bytes] | None = None
         self.kills = 0
@@ -83,8 +85,20 @@ class Server:
         return self.process.wait(30)
 
     def serving(self) -> list[int]:
-        """The process that answers, while there is one: the child of the one that was started."""
-        return children(self.process.pid) if self.process is not None and self.process.poll() is None else []
+        """The processes that answer, while there are some: children of the one that was started."""
+        return [pid for pid, number in self._numbered() if number < self.count]
+
+    def computing(self) -> list[int]:
+        """The processes that compute for those that answer."""
+        return [pid for pid, number in self._numbered() if number >= self.count]
+
+    def _numbered(self) -> list[tuple[int, int]]:
+        found = []
+        for pid in children(self.process.pid) if self.process is not None and self.process.poll() is None else []:
+            with contextlib.suppress(OSError):
+                told = dict(x.split("=", 1) for x in Path(f"/proc/{pid}/environ").read_text().split("\0") if "=" in x)
+                found += [(pid, int(told[VARIABLE].split()[1]))] if VARIABLE in told else []
+        return found
 
     def workers(self) -> list[int]:
         """The processes that compute for it."""

@@ -74,7 +74,7 @@ def test_nothing_is_overwritten_unasked(tmp_path: Path) -> None:
         assert make_client(store).get("/v1/substructures/pendulum").status_code == 200
     (tmp_path / "bad").write_bytes((tmp_path / "one").read_bytes()[:20_000])
     (tmp_path / "text").write_text("no database")
-    for name, words in (("bad", "damaged|usable"), ("text", "no backup"), ("none", "no backup")):
+    for name, words in (("bad", "damaged|usable"), ("text", "no backup"), ("none", "no file")):
         with pytest.raises(DatabaseError, match=words):
             restore(tmp_path / name, other)
     assert not list(tmp_path.glob("b.db*"))

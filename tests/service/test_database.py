@@ -30,13 +30,15 @@ def database(tmp_path: Path) -> Iterator[Database]:
 
 def test_migrated_schema_is_the_one_in_the_code(database: Database) -> None:
     with database.read() as connection:
-        assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+        differences = compare_metadata(MigrationContext.configure(connection), metadata)
+    index = "substructure_words"  # of words; SQLite keeps it in tables of its own
+    assert [each for each in differences if each[0] != "remove_table" or not each[1].name.startswith(index)] == []
 
 
 def test_migrating_again_changes_nothing(database: Database) -> None:
     upgrade(database.writer)
     with database.read() as connection:
-        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0009"]
+        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0011"]
 
 
 def test_newer_databases_are_refused(tmp_path: Path) -> None:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import subprocess
 import zipfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from service.analyses.exporting import ALL_TARGETS
 from service.cli.main import main
-from substructures.export import TARGETS
 
 TREE = {
     "name": "to-go",
@@ -40,7 +42,7 @@ def members(data: bytes) -> dict[str, str]:
         return {name: packed.read(name).decode("latin-1") for name in packed.namelist()}
 
 
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", ALL_TARGETS)
 def test_every_target(made: TestClient, target: str) -> None:
     first, second = (exported(made, target=target, together=target == "c") for _ in range(2))
     assert first.content == second.content
@@ -50,6 +52,30 @@ def test_every_target(made: TestClient, target: str) -> None:
     assert "sha256:" in text
     assert "to-go version 1" in text or '"reference": "to-go@1"' in text
     assert 'filename="to_go' in first.headers["content-disposition"]
+
+
+def test_a_tree_and_a_part_as_urdf(made: TestClient) -> None:
+    """What comes back in is the same; numbers that are bound are in it."""
+    for path in ("trees/to-go@1", "substructures/pendulum"):
+        first, second = (exported(made, path, target="urdf", name="clock") for _ in range(2))
+        assert first.content == second.content
+        assert first.headers["content-type"].startswith("application/xml")
+        assert 'filename="clock.urdf"' in first.headers["content-disposition"]
+        assert b'<robot name="clock">' in first.content
+        read = made.post("/v1/imports", content=first.content, headers={"Content-Type": "application/xml"}).json()
+        name = next(name for name in read["names"] if name.startswith("joint "))
+        told = {"a": path.partition("/")[2], "b": read["definition"]}
+        told["coordinates"] = {name.rpartition(".")[2].removeprefix("joint "): read["names"][name]}
+        assert made.post("/v1/equivalences", json=told).json()["equal"], path
+    assert b'mass value="7"' in exported(made, target="urdf", bind="arm.m:7").content
+
+
+def test_urdf_is_no_set_of_functions(made: TestClient) -> None:
+    for query in ({"quantities": "metric"}, {"together": True}, {"packed": True}):
+        problem = exported(made, target="urdf", status=422, **query).json()
+        assert problem["errors"][0]["code"] == "not-of-target"
+        assert problem["errors"][0]["pointer"] == f"/query/{next(iter(query))}"
+    assert "nowhere" in exported(made, target="urdf", status=422, bind="nowhere:1").text
 
 
 def test_c_of_a_tree_compiles_and_is_right(made: TestClient, tmp_path: Path) -> None:
@@ -67,6 +93,27 @@ def test_bound_parameters_are_left_out(made: TestClient) -> None:
     whole = exported(made, target="interface").json()
     assert set(whole["vectors"]["p"]["names"]) - set(told["vectors"]["p"]["names"]) == {"g"}
     assert exported(made, target="interface", bind="defaults").json()["vectors"]["p"]["length"] == 0
+
+
+def test_packed_as_evaluations_have_it(made: TestClient, tmp_path: Path) -> None:
+    asked = {"target": "python", "quantities": "metric,christoffel", "name": "lean"}
+    hand = {"name": "hand", "substructure": "pendulum", "at": "arm.tip"}
+    made.post("/v1/trees", json={**TREE, "name": "two", "instances": [*TREE["instances"], hand]})
+    q = [0.3, 0.7]
+    path = tmp_path / "lean.py"
+    path.write_text(members(exported(made, "trees/two@1", packed=True, **asked).content)["lean.py"])
+    spec = importlib.util.spec_from_file_location("lean", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    request = {"quantities": ["metric", "christoffel"], "q": q, "packed": True}
+    answer = made.post("/v1/trees/two@1/evaluations", json=request).json()
+    for quantity in request["quantities"]:
+        found = getattr(module, f"lean_{quantity}")(q)
+        assert found.ravel().tolist() == pytest.approx(np.ravel(answer[quantity]).tolist(), rel=1e-12)
+    whole, packed = (exported(made, "trees/two@1", packed=flag, **asked) for flag in (False, True))
+    assert whole.headers["etag"] != packed.headers["etag"]
 
 
 def test_parts(made: TestClient) -> None:
@@ -101,5 +148,47 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert "swing_python.zip" in capsys.readouterr().out
     files = members(Path("swing_python.zip").read_bytes())
     assert "def swing_forces(t, q, qd, u, p=P):" in files["swing.py"]
+    assert main(["export", "swing.yaml", "--target", "interface", "--packed"]) == 0
+    assert '"packed"' in Path("swing_interface.json").read_text()
     assert main(["export", "swing.yaml", "--target", "maxima", "--out", "model.mac"]) == 0
     assert "swing_metric(q, p) :=" in Path("model.mac").read_text()
+    assert main(["export", "swing.yaml", "--target", "urdf"]) == 0
+    assert main(["export", "swing.urdf", "--target", "interface"]) == 0
+    assert "arm_q1" in Path("swing_interface.json").read_text()
+
+
+def test_an_fmu_of_either_version_and_floats_in_c(made: TestClient) -> None:
+    found = {}
+    for fmi in ("3.0", "2.0"):
+        answer = exported(made, target="fmu", fmi=fmi)
+        assert (answer.status_code, answer.headers["content-type"]) == (200, "application/zip")
+        with zipfile.ZipFile(io.BytesIO(answer.content)) as packed:
+            found[fmi] = packed.read("modelDescription.xml").decode()
+        assert f'fmiVersion="{fmi}"' in found[fmi]
+    single = members(exported(made, target="c", precision="single").content)
+    header = next(text for name, text in single.items() if name.endswith(".h"))
+    assert "const float *q" in header
+    assert "// rounding of metric: at most" in header
+    both = members(exported(made, target="c", stages=True).content)
+    header = next(text for name, text in both.items() if name.endswith(".h"))
+    assert "_prepare(const double *p, double *w" in header
+
+
+@pytest.mark.parametrize(
+    ("query", "pointer"),
+    [
+        ({"target": "python", "precision": "single"}, "/query/precision"),
+        ({"target": "rust", "stages": "true"}, "/query/stages"),
+        ({"target": "c", "fmi": "2.0"}, "/query/fmi"),
+        ({"target": "urdf", "precision": "single"}, "/query/precision"),
+    ],
+)
+def test_options_of_other_targets_are_refused(made: TestClient, query: dict[str, str], pointer: str) -> None:
+    problem = exported(made, status=422, **query).json()
+    assert (problem["errors"][0]["pointer"], problem["errors"][0]["code"]) == (pointer, "not-of-target")
+
+
+def test_a_part_is_no_fmu(made: TestClient) -> None:
+    part = made.get("/v1/substructures").json()["items"][0]["name"]
+    answer = exported(made, f"substructures/{part}", 422, target="fmu")
+    assert "make a tree of the part" in answer.json()["detail"]

@@ -10,6 +10,8 @@ from fastapi.testclient import TestClient
 
 from service.cli.main import main
 
+from .conftest import PENDULUM
+
 LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 ARM = f"""<robot name="My Arm">
 <link name="base"/><link name="upper-arm">{LINK}</link><link name="tool"/>
@@ -21,6 +23,14 @@ LOOP = """<mujoco model="four bar"><worldbody>
 <body name="a"><joint name="p" axis="0 1 0"/><geom size=".1" pos="1 0 0"/></body>
 <body name="b" pos="2 0 0"><joint name="q" axis="0 1 0"/><geom size=".1" pos="1 0 0"/></body>
 </worldbody><equality><connect name="pin" body1="a" body2="b" anchor="1 0 0"/></equality></mujoco>"""
+BONE = LINK.replace("<mass", '<origin xyz=".1 .2 .3"/><mass')
+LONG = f"""<robot name="long"><link name="ground"/>
+{"".join(f'<link name="{name}">{BONE}</link>' for name in ("upperarm", "forearm", "hand"))}
+<joint name="shoulder" type="continuous"><parent link="ground"/><child link="upperarm"/><axis xyz="0 1 0"/></joint>
+<joint name="elbow" type="continuous"><parent link="upperarm"/><child link="forearm"/><axis xyz="0 1 0"/>
+<origin xyz="0 0 .4" rpy="0 .2 .3"/></joint>
+<joint name="wrist" type="continuous"><parent link="forearm"/><child link="hand"/><origin xyz="0 0 .3"/></joint>
+</robot>"""
 XML = {"Content-Type": "application/xml"}
 
 
@@ -69,15 +79,64 @@ def test_a_file_with_loops_is_a_tree(client: TestClient) -> None:
         ("", "", 422, "no element found"),
         ("\x00\x01", "", 422, "not well-formed"),
         (" " * 3_000_000, "", 413, "larger than"),
+        (ARM.replace('value="2"', 'value="nan"'), "", 422, "line 2: <mass>: 'value' is no finite number: 'nan'"),
+        (ARM.replace('value="2"', 'value="-2"'), "", 422, "the mass -2 kg is negative"),
+        (ARM.replace('child link="tool"', 'child link="gone"'), "", 422, "there is no link 'gone'"),
+        (ARM.replace("<robot", '<!DOCTYPE r [<!ENTITY a "b">]><robot'), "", 422, "entities and external"),
+        (ARM.encode("utf-16")[3:], "", 422, "line 1"),
+        ('<mujoco><include file="../../etc/passwd"/></mujoco>', "", 422, "'../../etc/passwd' is not followed"),
         (ARM, "?parameters=some", 422, "parameters"),
     ],
 )  # fmt: skip
 def test_bad_files_are_refused_with_line_and_element(
-    client: TestClient, content: str, query: str, status: int, said: str
+    client: TestClient, content: str | bytes, query: str, status: int, said: str
 ) -> None:
-    answer = client.post(f"/v1/imports{query}", content=content, headers=XML)
+    answer = client.post(f"/v1/imports{query}{'&' if query else '?'}store=true", content=content, headers=XML)
     assert answer.status_code == status
     assert said in answer.text
+    assert client.get("/v1/substructures").json()["items"] == client.get("/v1/trees").json()["items"] == []
+
+
+def test_a_file_is_cut_into_parts_of_a_tree(client: TestClient) -> None:
+    client.post("/v1/imports?store=true&name=arm", content=LONG, headers=XML)
+    made = client.post("/v1/imports?store=true&name=two&cut=forearm,%20hand&parameters=none", content=LONG, headers=XML)
+    assert made.status_code == 201, made.text
+    assert [i["name"] for i in made.json()["tree"]["instances"]] == ["robot", "forearm", "hand"]
+    assert [i.get("at") for i in made.json()["tree"]["instances"]][1:] == ["robot.forearm_mount", "forearm.hand_mount"]
+    assert made.json()["names"]["joint wrist"] == "hand.wrist"
+    names = {
+        joint: f"{link}.{joint}" for link, joint in (("robot", "shoulder"), ("forearm", "elbow"), ("hand", "wrist"))
+    }
+    told = client.post("/v1/equivalences", json={"a": "arm", "b": "two", "coordinates": names}).json()
+    assert told["equal"], told
+    # the parts are in the catalogue, and the tree is made of them
+    tree = client.get("/v1/trees/two").json()
+    assert [i["substructure"].partition("@")[0] for i in tree["instances"]] == ["two-robot", "two-forearm", "two-hand"]
+    for instance in tree["instances"]:
+        part = client.get(f"/v1/substructures/{instance['substructure']}/definition").json()
+        assert "sha256:" in part["source"]
+        assert client.get(f"/v1/substructures/{part['name']}/uses").json()["items"]
+    again = client.post("/v1/imports?store=true&name=two&cut=forearm,hand&parameters=none", content=LONG, headers=XML)
+    assert again.status_code == 200
+    other = {"name": "other", "instances": [{"name": "h", "substructure": "two-hand"}]}
+    assert client.post("/v1/trees", json=other).status_code == 201
+
+
+def test_parts_of_a_cut_file_are_versions_of_their_names(client: TestClient) -> None:
+    taken = {**PENDULUM, "name": "arm-hand"}
+    assert client.post("/v1/substructures", json=taken).status_code == 201
+    made = client.post("/v1/imports?store=true&name=arm&cut=hand&parameters=none", content=LONG, headers=XML)
+    assert made.status_code == 201  # a version more of one's own name
+    assert client.get("/v1/substructures/arm-hand").json()["version"] == 2
+
+
+def test_a_cut_that_cannot_be_stores_nothing(client: TestClient) -> None:
+    for cut, said in (("fore arm", "did you mean 'forearm'"), ("ground", "nothing remains")):
+        answer = client.post(f"/v1/imports?store=true&cut={cut}", content=LONG, headers=XML)
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["pointer"] == "/query/cut"
+        assert said in answer.json()["errors"][0]["message"]
+    assert client.get("/v1/trees").json()["items"] == []
 
 
 @pytest.mark.parametrize("sent", ["text/plain", "multipart/form-data", "application/x-www-form-urlencoded", ""])
@@ -101,6 +160,11 @@ def test_import_prints_the_definition_and_tells_of_the_file(tmp_path: Path, caps
     out = tmp_path / "arm.json"
     assert main(["import", str(path), "--out", str(out)]) == 0
     assert main(["derive", str(out)]) == 0
+    path.write_text(LONG)
+    assert main(["import", str(path), "--cut", "hand", "--out", str(out)]) == 0
+    assert [i["name"] for i in json.loads(out.read_text())["instances"]] == ["robot", "hand"]
+    assert main(["import", str(path), "--cut", "hnad"]) == 1
+    assert "there is no link 'hnad' to be cut at; did you mean 'hand'" in capsys.readouterr().err
 
 
 def test_derive_takes_robot_files_by_their_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,5 +237,12 @@ def test_same_compares_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     (tmp_path / "tree.json").write_text(json.dumps(tree))
     assert main(["import", str(ours), "--out", str(tmp_path / "a.json")]) == 0
     assert main(["same", str(tmp_path / "tree.json"), str(ours)]) == 0
+    assert main(["same", str(ours), str(ours), str(theirs), str(tmp_path / "tree.json")]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(": ")[2][:8] for line in lines if "here" not in line][-3:] == [
+        "the same",
+        "not the ",
+        "the same",
+    ]
     theirs.write_text(ARM.replace('"shoulder"', '"other"'))
     assert main(["same", str(ours), str(theirs), "--coordinates", "shoulder=other"]) == 0

@@ -68,15 +68,51 @@ def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
 def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wrong.yaml"
     file.write_text("kind: export\nitems:\n  - {tree: cell, quantity: metric, format: text, bind: 'arm.l:nose'}\n")
-    assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 1
+    assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 4
     shown = capsys.readouterr()
-    assert "1 failed" in shown.err
+    assert "export: 0 succeeded, 1 failed of 1" in shown.err
     job = shown.out.strip()
-    assert "item 0: " in shown.err
+    assert "item 0 (cell): " in shown.err
     assert "'nose'" in shown.err
     assert f"substructures jobs result {job}" in shown.err
     assert main(["jobs", "result", shown.out.strip(), "--server", address]) == 0
-    assert "0  failed  " in capsys.readouterr().out
+    assert "0  failed  cell: " in capsys.readouterr().out
+
+
+def test_a_label_what_failed_once_more_and_removal(
+    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, server = tmp_path / "half.yaml", ["--server", address]
+    good = "{tree: cell, quantity: metric, format: text}"
+    file.write_text(f"kind: export\nitems:\n  - {good}\n  - {good[:-1]}, bind: 'arm.l:nose'}}\n")
+    assert main(["jobs", "submit", str(file), "--wait", "--label", "for the paper", *server]) == 3
+    shown = capsys.readouterr()
+    assert "export 'for the paper': 1 succeeded, 1 failed of 2" in shown.err
+    first = shown.out.strip()
+    assert f"substructures jobs retry {first}" in shown.err
+    assert main(["jobs", "retry", first, "--wait", *server]) == 4
+    second = capsys.readouterr().out.strip()
+    with Client(address) as client:
+        again = client.job(second)
+        assert (again["progress"]["total"], again["label"], again["retry_of"]) == (1, "for the paper", first)
+        assert [item["subject"] for item in client.job_items(first)] == [None, "cell"]
+    assert main(["jobs", "rm", first, second, *server]) == 0
+    assert main(["jobs", "show", first, *server]) == 1
+    capsys.readouterr()
+    assert main(["jobs", "list", *server]) == 0
+    assert "for the paper" not in capsys.readouterr().out
+
+
+def test_there_is_nothing_to_try_again(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, server = tmp_path / "cells.json", ["--server", address]
+    file.write_text(json.dumps(CELLS))
+    assert main(["jobs", "submit", str(file), "--wait", *server]) == 0
+    job = capsys.readouterr().out.strip()
+    assert main(["jobs", "retry", job, *server]) == 1
+    assert "all its items succeeded" in capsys.readouterr().err
+    file.write_text(json.dumps({**CELLS, "label": "x" * 201}))
+    assert main(["jobs", "submit", str(file), *server]) == 1
+    assert "at most 200 characters" in capsys.readouterr().err
 
 
 def test_client(address: str) -> None:

@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 from service.jobs.kinds import KINDS
 from service.schemas.jobs import JobKind
 from service.store import Store
+from substructures.expr.program import read_program
 
 from .conftest import PENDULUM, SLIDER
 from .fake_engine import FakeEngine, eventually, export, finished, items, running, submitted
@@ -51,6 +52,24 @@ def test_export(filled: TestClient, store: Store) -> None:
     for position in (-(10**20), -1, 2, 2**31, 10**20):
         answer = filled.get(f"/v1/jobs/{job}/items/{position}/files/text")
         assert (answer.status_code, answer.json()["code"]) == (404, "unknown-item")
+
+
+def test_an_archive_has_the_formulas_of_trees_and_parts(filled: TestClient, store: Store) -> None:
+    derived = {"kind": "derive", "items": [{**PENDULUM, "title": "another"}]}
+    with running(store, FakeEngine()):
+        for body, of_job in ((CELLS, "/v1/trees/{tree}"), (derived, "")):
+            job = submitted(filled, body)
+            assert finished(filled, job)["state"] == "succeeded"
+            data = filled.get(f"/v1/jobs/{job}/archive").content
+            with zipfile.ZipFile(io.BytesIO(data)) as archive:
+                for position, item in enumerate(items(filled, job)):
+                    formulas = archive.read(f"{position}/program.json")
+                    program = read_program(json.loads(formulas))
+                    assert program.digest == item["result"]["program"]
+                    if of_job:
+                        tree = filled.get(of_job.format(tree=item["result"]["tree"])).json()
+                        assert tree["program"] == program.digest
+                        assert {"metric", "christoffel", "forces"} <= set(program.outputs)
 
 
 def test_filters_are_checked(client: TestClient) -> None:

@@ -110,6 +110,36 @@ def test_verify_finds_damaged_programs(library: MemoryLibrary) -> None:
     assert outcome.problem is not None
 
 
+def test_compare_is_one_against_many(library: MemoryLibrary) -> None:
+    """References, documents and files; the differing one is told, and a file beside it is read at once."""
+    longer = {**PENDULUM, "parameters": {**PENDULUM["parameters"], "l": {"value": 3}}}
+    told = outcomes(library, "compare", {"items": [{"a": "pendulum", "b": ["pendulum@1", PENDULUM, longer, "cell"]}]})
+    assert [o.summary.get("equal") for o in told] == [True, True, False, True]
+    assert [o.summary["b"] for o in told] == ["pendulum", "pendulum", "pendulum", "cell"]
+    file = {"file": "# convention: standard\na,alpha,d,theta,name\n0.1,0,0.2,0,q\n"}
+    (drawn,) = outcomes(library, "compare", {"items": [{"a": file, "b": file}]})
+    assert drawn.summary["level"] == "formulas"
+    assert len(library.items("compare", {"items": [{"a": "pendulum", "b": "*"}]})) == len(library.parts)
+
+
+@pytest.mark.parametrize(
+    ("item", "pointer"),
+    [
+        ({"a": "pendulum"}, "/b"),
+        ({"a": "pendulum", "b": ["nothing"]}, "/b"),
+        ({"a": "pendulum", "b": []}, "/b"),
+        ({"a": "pendulum", "b": ["pendulum", 5]}, "/b/1"),
+        ({"a": {"file": "<html/>"}, "b": "pendulum"}, "/a"),
+        ({"a": "pendulum", "b": {"name": "x", "bodies": 3}}, "/b/bodies"),
+        ({"a": "pendulum", "b": "pendulum", "coordinates": ["q"]}, "/coordinates"),
+    ],
+)
+def test_compare_refuses_what_cannot_be_compared(library: MemoryLibrary, item: Any, pointer: str) -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        library.items("compare", {"items": [item]})
+    assert caught.value.faults[0].pointer.removeprefix("/items/0") == pointer
+
+
 def test_export_prints_what_the_service_prints(library: MemoryLibrary) -> None:
     item = {"tree": "cell", "quantity": "metric", "format": "latex"}
     numbers = {**item, "format": "text", "form": "expanded", "bind": "defaults"}
@@ -127,6 +157,8 @@ def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
     assert "cell_metric(q, p) := block(" in first.files["text"].decode()
     assert second.files["archive"].startswith(b"PK")
     assert second.summary["media_type"] == "application/zip"
+    (robot,) = outcomes(library, "export", {"items": [{"tree": "cell", "target": "urdf", "name": "clock"}]})
+    assert b'<robot name="clock">' in robot.files["text"]
 
 
 @pytest.mark.parametrize(
@@ -134,7 +166,10 @@ def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
     [
         ({"target": "exe"}, "/target"),
         ({"quantities": "metric"}, "/quantities"),
+        ({"target": "urdf", "quantities": ["metric"]}, "/quantities"),
         ({"together": 1}, "/together"),
+        ({"packed": "yes"}, "/packed"),
+        ({"target": "urdf", "packed": True}, "/packed"),
         ({"bind": 1}, "/bind"),
         ({"name": []}, "/name"),
     ],
@@ -163,7 +198,8 @@ def test_faults_of_formulas_point_into_the_item(library: MemoryLibrary, given: d
 
 def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
-    assert KINDS[5:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[5] == "compare"
+    assert KINDS[6:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import socket
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -124,3 +125,49 @@ def test_angles_that_are_meant_in_degrees(client: TestClient) -> None:
         warnings = client.post("/v1/substructures", json=part).json()["warnings"]
         assert [each["pointer"] for each in warnings] == pointers
         assert all('{"value": 90, "unit": "deg"}' in each["message"] for each in warnings)
+
+
+def test_faults_of_files_have_line_and_column(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Those of the text as well as those of what it says, in YAML and in JSON."""
+    texts = {
+        "syntax.yaml": ("name: x\ntags: [a\n", "(line 3, column 1)"),
+        "syntax.json": ('{"name": "x",\n "bodies": [1,,2]}', "(line 2, column 15)"),
+        "parent.yaml": (
+            "name: x\nbodies:\n  - name: a\n    joint: {type: fixed}\n    parent: basse\n",
+            "parent.yaml#/bodies/0/parent: unknown parent 'basse' of body 'a' (line 5, column 13)",
+        ),
+        "mass.json": (
+            '{"name": "x", "bodies": [{"name": "a", "parent": "base",\n  "joint": {"type": "fixed"}, "mass": "2*k"}]}',
+            "mass.json#/bodies/0/mass: unknown name 'k' (column 3) (line 2, column 39)",
+        ),
+        "field.yaml": (
+            "name: x\nbodys: []\n",
+            "field.yaml#/bodys: unknown field 'bodys'; did you mean 'body'? (line 2, column 8)",
+        ),
+    }
+    for name, (text, said) in texts.items():
+        (tmp_path / name).write_text(text)
+        assert main(["derive", str(tmp_path / name)]) == 1
+        assert said in capsys.readouterr().err
+
+
+def test_restoring_what_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    database = ["--database", f"sqlite:///{tmp_path / 'x.db'}"]
+    assert main(["restore", str(tmp_path / "nothing.db"), *database]) == 1
+    assert "there is no file" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"quantities": ["metrik"]}, "unknown quantity 'metrik'; did you mean 'metric'?"),
+        ({"parameters": {"arm.mm": 1}}, "unknown parameter 'arm.mm'; did you mean 'arm.m'?"),
+        ({"inputs": {"tau.arm.p": 1}}, "unknown input 'tau.arm.p'; did you mean 'tau.arm.q'?"),
+        ({"q": {"arm.qq": [0]}}, "unknown coordinate 'arm.qq'; did you mean 'arm.q'?"),
+        ({"parameters": {"xyz": 1}}, "unknown parameter 'xyz'; there are arm.l, arm.m"),
+    ],
+)
+def test_evaluations_say_which_name_was_meant(more: dict[str, Any], said: str, filled: TestClient) -> None:
+    answer = filled.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0.1], **more})
+    assert (answer.status_code, said in answer.json()["detail"]) == (422, True), answer.text

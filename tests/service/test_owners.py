@@ -83,6 +83,14 @@ TABLE: dict[str, Row] = {
     "put /v1/substructures/{name}/visibility": Row(
         PART + "/{part}/visibility", (200, 403, 404), (200, 403, 403), {"visibility": "public"}
     ),
+    "get /v1/substructures/{name}/versions": Row(PART + "/{part}/versions", *READ),
+    "get /v1/substructures/{ref}/uses": Row(PART + "/{part}/uses", *READ),
+    "get /v1/substructures/{ref}/difference": Row(PART + "/{part}/difference?to={part}@1", *READ),
+    "get /v1/trees/{ref}/difference": Row(TREE + "/{tree}/difference?to={tree}@1", *READ),
+    "get /v1/trees/{name}/revisions": Row(TREE + "/{tree}/revisions", *READ),
+    "post /v1/trees/{ref}/publish": Row(
+        TREE + "/{tree}@1/publish", (201, 403, 404), (201, 403, 403), {"name": "{part}"}
+    ),
     "get /v1/trees": Row(TREE, *LISTED),
     "post /v1/trees": Row(TREE, (201, 403, 403), (201, 403, 403), FORM),
     "get /v1/trees/{ref}": Row(TREE + "/{tree}", *READ),
@@ -116,6 +124,8 @@ TABLE: dict[str, Row] = {
     "get /v1/jobs/{job}/items": Row(JOBS + "/items", *READ),
     "get /v1/jobs/{job}/items/{position}/files/{name}": Row(JOBS + "/items/0/files/text", *READ),
     "get /v1/jobs/{job}/result": Row(JOBS + "/result", *READ),
+    "post /v1/jobs/{job}/retry": Row(JOBS + "/retry", (409, 403, 404), (409, 403, 403), {}),
+    "delete /v1/jobs/{job}": Row(JOBS, (204, 403, 404), (204, 403, 403)),
     "post /v1/jobs/{job}/cancel": Row(JOBS + "/cancel", (200, 403, 404), (200, 403, 403), {}),
     # pages are not in the document
     "page /": Row("/", *LISTED),
@@ -123,6 +133,8 @@ TABLE: dict[str, Row] = {
     "page /jobs": Row("/jobs", *LISTED),
     "page /substructures/{ref}": Row("/substructures/{part}", *READ),
     "page /trees/{ref}": Row("/trees/{tree}", *READ),
+    "page /substructures/{ref}/difference": Row("/substructures/{part}/difference?to={part}", *READ),
+    "page /trees/{ref}/difference": Row("/trees/{tree}/difference?to={tree}@1", *READ),
     "page /jobs/{job}": Row("/jobs/{job}", *READ),
     "page /account": Row("/account", *LISTED),
 }
@@ -249,7 +261,7 @@ def test_what_is_private_is_not_there_for_others(endpoint: str, served: TestClie
 
 def test_lists_have_what_one_sees(served: TestClient, world: World) -> None:
     acme, reads, bolt = world.keys
-    for address, names in ((PART, ("hush", "known")), (TREE, ("hush-cell", "known-cell"))):
+    for address, names in ((f"{PART}?facets=true", ("hush", "known")), (TREE, ("hush-cell", "known-cell"))):
         for headers, expected in ((acme, names), (reads, names), (bolt, names[1:]), (world.admin, names)):
             found = served.get(address, headers=headers).json()
             assert tuple(item["name"] for item in found["items"]) == expected
@@ -349,7 +361,7 @@ def test_what_becomes_public(served: TestClient, world: World) -> None:
 
 def test_what_is_private_is_not_kept_by_caches(served: TestClient, world: World) -> None:
     acme = world.keys[0]
-    for address in (f"{PART}/{{}}@1/definition", f"{TREE}/{{}}-cell@1", f"{TREE}/{{}}-cell@1/picture"):
+    for address in (f"{PART}/{{}}@1/definition", f"{TREE}/{{}}-cell@1/metric", f"{TREE}/{{}}-cell@1/picture"):
         kept = {
             name: served.get(address.format(name), headers=acme).headers["cache-control"] for name in NAMES.values()
         }

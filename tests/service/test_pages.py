@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -227,3 +228,19 @@ def test_certificates_of_older_versions_are_told() -> None:
     for words in ("2 quantities", "older version", "2.0e-16, in Christoffel symbols", "bias could not be compared"):
         assert words in told, told
     assert "own text" in str(certificate({**older, "compared_with": "documents"}))
+
+
+def test_the_catalogue_is_searched_and_has_pages(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = filled.get("/?q=sliding").text
+    assert 'data-text="slider' in found
+    assert 'data-text="pendulum' not in found
+    slipped = filled.get("/?q=pendlum").text
+    assert "'pendlum' is nowhere; this is 'pendulum'." in slipped.replace("&#x27;", "'")
+    assert 'data-text="pendulum' in slipped
+    monkeypatch.setattr("service.pages.routes.CARDS", 1)
+    first = filled.get("/").text
+    following = re.search(r'href="(/\?q=&amp;after=[^"]+)">More parts', first)
+    assert following
+    second = filled.get(following[1].replace("&amp;", "&")).text
+    assert ('data-text="pendulum' in first, 'data-text="slider' in second) == (True, True)
+    assert "More parts" not in second

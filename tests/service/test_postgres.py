@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta, tzinfo
 
 import pytest
 from fastapi.testclient import TestClient
 
+from service import clock
 from service.app import open_store
 from service.settings import Settings
 
@@ -38,7 +40,9 @@ def test_main_flow(client: TestClient) -> None:
     assert client.get("/v1/trees/cell/metric?format=text").status_code == 200
     result = client.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0, 0]})
     assert len(result.json()["metric"]) == 2
-    page = client.get("/v1/substructures?q=pend&tag=planar&dof_max=1&joints=R&page_size=1&sort=-created").json()
+    page = client.get(
+        "/v1/substructures?q=pend&tag=planar&dof_max=1&joints=R&page_size=1&sort=-created&facets=true"
+    ).json()
     assert [item["name"] for item in page["items"]] == ["pendulum"]
     assert page["facets"]["joints"] == {"R": 1}
     assert client.get("/v1/substructures/pendulum/formulas/metric?format=latex").status_code == 200
@@ -52,7 +56,8 @@ def test_nul_is_harmless(client: TestClient) -> None:
     definition = {**PENDULUM, "name": "nul", "title": "a\0b", "description": "\0"}
     assert client.post("/v1/substructures", json=definition).status_code == 201
     assert client.get("/v1/substructures/nul/definition").json()["title"] == "a\0b"
-    for path in ("?q=%00", "?tag=%00", "/nul/formulas/%00", "/nul/formulas/metric?coordinate=%00"):
+    assert client.get("/v1/substructures?q=%00").json()["items"] == []
+    for path in ("?tag=%00", "/nul/formulas/%00", "/nul/formulas/metric?coordinate=%00"):
         answer = client.get(f"/v1/substructures{path}")
         assert answer.status_code in (404, 422), answer.text
         assert answer.headers["content-type"] == "application/problem+json"
@@ -81,3 +86,22 @@ def test_several_servers_share_a_database(address: str) -> None:
     with open_store(settings) as one, open_store(settings) as two:
         assert make_client(one).post("/v1/substructures", json={**PENDULUM, "name": "shared"}).status_code == 201
         assert make_client(two).get("/v1/substructures/shared").status_code == 200
+
+
+class _Late(datetime):
+    """The clock of a host that is ten minutes late."""
+
+    @classmethod
+    def now(cls, tz: tzinfo | None = None) -> datetime:
+        """The time that it shows."""
+        return datetime.now(tz) - timedelta(minutes=10)
+
+
+def test_hosts_agree_on_the_time_of_the_database(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leases and claims of one host would be over for another as soon as they are taken."""
+    monkeypatch.setattr(clock, "_ahead", timedelta())
+    for place in ("service.clock.datetime", "service.database.connections.datetime"):
+        monkeypatch.setattr(place, _Late)
+    assert clock.time_now() < datetime.now(UTC) - timedelta(minutes=9)
+    with open_store(Settings(database=address, catalogue=False)):
+        assert abs(clock.time_now() - datetime.now(UTC)) < timedelta(seconds=2)

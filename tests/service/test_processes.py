@@ -144,6 +144,7 @@ def test_no_second_server(tmp_path: Path) -> None:
         for number in range(2 * COUNT):
             with pytest.raises(DatabaseError, match="another server uses"):
                 Database(address)
+            until(lambda: len(server.serving()) == COUNT)
             before = sorted(server.serving())
             os.kill(before[0], signal.SIGKILL)
             while len(server.serving()) < COUNT or before[0] in server.serving():

@@ -209,7 +209,11 @@ def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypa
     monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
     monkeypatch.setattr("service.operations.models.model_quantity", slow)
     monkeypatch.setattr("service.operations.analyses.printed", slow)
+    monkeypatch.setattr("service.operations.models.part_formulas", slow)
     try:
+        answer = filled.get("/v1/substructures/pendulum/formulas/metric")
+        assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+        assert "component" in answer.json()["detail"]
         for quantity in ("metric", "first_integrals"):
             answer = filled.get(f"/v1/trees/cell/{quantity}")
             assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")

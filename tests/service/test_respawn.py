@@ -121,7 +121,7 @@ def test_told_to_end_when_it_is_dead(server: Server) -> None:
             os.kill(serving, signal.SIGKILL)
             until(lambda serving=serving: serving not in server.serving())
         server.process.send_signal(signal.SIGTERM)
-        assert server.process.wait(30) == 128 + signal.SIGTERM
+        assert server.process.wait(30) == 0  # the process that computes ended as it was told to
     assert "in 0.5 s" in server.log.read_text()
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import sqlite3
+import threading
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -76,7 +78,7 @@ def test_a_store_that_goes_while_it_is_written(tmp_path: Path) -> None:
         assert found.execute("SELECT count(*) FROM substructures").fetchone() == (0,)
 
 
-def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
+def damaged(template: Path, tmp_path: Path) -> tuple[Path, bytes]:
     path = tmp_path / "store.db"
     shutil.copy(template, path)
     with closing(sqlite3.connect(path)) as connection:
@@ -86,9 +88,40 @@ def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
     content = bytearray(path.read_bytes())
     content[(root - 1) * size + 8 : root * size] = os.urandom(size - 8)
     path.write_bytes(content)
+    return path, bytes(content)
+
+
+def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
+    path, content = damaged(template, tmp_path)
     with pytest.raises(DatabaseError, match=r"is damaged: .*restore a backup"):
         Database(f"sqlite:///{path}")
     assert path.read_bytes() == content
+
+
+def test_damage_of_a_large_store_is_found_while_it_answers(
+    template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, _ = damaged(template, tmp_path)
+    monkeypatch.setattr("service.database.file.LARGE", 0)
+    with closing(Database(f"sqlite:///{path}")) as database:
+        for _ in range(200):  # in ten seconds at most
+            with suppress(OperationalError), database.read():
+                sleep(0.05)
+                continue
+            break
+        with pytest.raises(OperationalError, match="restore a backup"), database.read():
+            pass
+        with pytest.raises(OperationalError, match="is damaged"), database.write():
+            pass
+
+
+def test_a_sound_large_store_is_closed_at_once(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copy(template, tmp_path / "store.db")
+    monkeypatch.setattr("service.database.file.LARGE", 0)
+    for _ in range(5):
+        with closing(Database(f"sqlite:///{tmp_path / 'store.db'}")) as database, database.write() as connection:
+            connection.exec_driver_sql("INSERT INTO substructures (name) VALUES ('a') ON CONFLICT DO NOTHING")
+    assert not any(thread.name == "look for damage" for thread in threading.enumerate())
 
 
 def mode(path: Path) -> int:

@@ -11,6 +11,7 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.analyse import analysis_kind
 from service.jobs.kinds.assemble import ASSEMBLE
 from service.jobs.kinds.choices import combinations
+from service.jobs.kinds.compare import COMPARE
 from service.jobs.kinds.derive import DERIVE
 from service.jobs.kinds.evaluate import EVALUATE
 from service.jobs.kinds.export import EXPORT
@@ -30,12 +31,13 @@ _KINDS: dict[str, Kind] = {
     "export": EXPORT,
     "derive": DERIVE,
     "verify": VERIFY,
+    "compare": COMPARE,
     "simulate": analysis_kind("simulations"),
     "optimise": analysis_kind("optimal-controls"),
     "analyse": analysis_kind(),
 }
 KINDS = tuple(_KINDS)
-FIELDS = ("kind", "items", "template", "choices", "shared", "on_invalid")
+FIELDS = ("kind", "items", "template", "choices", "shared", "on_invalid", "label")
 _log = logging.getLogger(__name__)
 
 

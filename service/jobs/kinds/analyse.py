@@ -82,7 +82,8 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    return pinned(item, library, item["limits"]["program_nodes"], ANALYSES[item["analysis"]].needs_parts)
+    has_parts = ANALYSES[item["analysis"]].needs_parts or bool(item["request"].get("reactions"))
+    return pinned(item, library, item["limits"]["program_nodes"], has_parts)
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:

@@ -9,6 +9,7 @@ from typing import Any
 from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, parted
 from service.jobs.kinds.library import Library
+from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content
@@ -27,7 +28,7 @@ TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits", "uni
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
-    entry, definition = parted(item)
+    entry, definition = parted(item, PartEntry)
     return [{"definition": definition, "nodes": limits.job_nodes, **entry}]
 
 

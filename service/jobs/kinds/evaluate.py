@@ -39,6 +39,7 @@ from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
 from substructures.quantities.evaluation import (
     QUANTITIES,
+    REACTIONS,
     REGRESSOR,
     evaluate,
     interpreted,
@@ -49,7 +50,7 @@ from substructures.tree.model import Model
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
-ABOUT = ("coordinates", "digest", "frames", "columns", "warnings")
+ABOUT = ("coordinates", "digest", "frames", "columns", "joints", "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 #: warnings in the summary of an item; its result has all
@@ -160,7 +161,7 @@ def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> di
         if isinstance(value, Mapping):
             return {name: cut(name if field == "along" else "", each) for name, each in value.items()}
         is_flat = isinstance(value, list) and not (value and isinstance(value[0], list))
-        belongs_to_all = field == "quantities" or (field in ("q", "qd", "qdd") and is_flat)
+        belongs_to_all = field in ("quantities", "joints") or (field in ("q", "qd", "qdd") and is_flat)
         is_cut = isinstance(value, list) and len(value) == count and not belongs_to_all
         return value[start:stop] if is_cut else value
 
@@ -177,7 +178,7 @@ def _with_axis(q: Any) -> Any:
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     quantities = EvaluationRequest.read(item["request"]).quantities
-    has_parts = any(QUANTITIES[name].source == REGRESSOR for name in quantities)
+    has_parts = any(QUANTITIES[name].source in (REGRESSOR, REACTIONS) for name in quantities)
     found, blobs = pinned(item, library, item["nodes"], has_parts)
     return found, (*blobs, item["states"]) if "states" in item else blobs
 

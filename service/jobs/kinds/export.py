@@ -1,5 +1,6 @@
 """export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name"}``; its outcome is the text. Or
-``{"tree", "target", "quantities", "name", "bind", "together"}``: the file or zip of ``GET /v1/trees/{tree}/export``.
+``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages"}``: what is got by
+``GET /v1/trees/{tree}/export``.
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind`` and ``options`` (lists of
 texts by name, for quantities such as ``state_space``) may be left out. For ``velocity-equations`` there is also
@@ -14,7 +15,17 @@ from functools import lru_cache
 from typing import Any
 
 from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
-from service.analyses.exporting import ZIP, read_item, tree_package
+from service.analyses.exporting import (
+    ALL_TARGETS,
+    DEFAULT_OPTIONS,
+    FMI,
+    PRECISIONS,
+    URDF,
+    ZIP,
+    misplaced,
+    read_item,
+    tree_package,
+)
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.printing import (
     NAME,
@@ -24,11 +35,14 @@ from service.analyses.printing import (
     made_text,
     model_quantity,
     needs_parts,
+    options_of_quantity,
     quantities,
     text_of,
+    with_options,
 )
 from service.analyses.source import Source
 from service.jobs.engine import Outcome
+from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
@@ -38,13 +52,13 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.documents.fields import Quantity, quantity_of
-from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, listed
-from substructures.export import FORMATS, TARGETS, Interface, interface_of_model
+from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, among
+from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
 from substructures.printers.render import FORMS
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.evaluation import REACTIONS, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 
@@ -77,21 +91,33 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
 
 
 def _spread_target(item: ItemDocument) -> ItemDocument:
-    check_fields(item, ("tree", "target"), ("quantities", "name", "bind", "together"))
-    given = {"quantities": [], "name": "", "bind": "", "together": False, **item}
+    check_fields(item, ("tree", "target"), ("quantities", "name", "bind", "together", "packed", *DEFAULT_OPTIONS))
+    plain = {"quantities": [], "name": "", "bind": "", "together": False, "packed": False}
+    given = {**plain, **DEFAULT_OPTIONS, **item}
     faults = [
         Fault(f"/{name}", "string-expected", "a text is needed")
         for name in ("name", "bind")
         if not isinstance(given[name], str)
     ]
-    if given["target"] not in tuple(TARGETS):
-        message = f"unknown target '{str(given['target'])[:40]}'; there are {', '.join(TARGETS)}"
+    if given["target"] not in ALL_TARGETS:
+        message = f"unknown target '{str(given['target'])[:40]}'; there are {', '.join(ALL_TARGETS)}"
         faults.append(Fault("/target", "unknown-target", message))
     names = given["quantities"]
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         faults.append(Fault("/quantities", "list-expected", "a list of texts is needed"))
-    if not isinstance(given["together"], bool):
-        faults.append(Fault("/together", "boolean-expected", "true or false is needed"))
+    faults += [
+        Fault(f"/{name}", "boolean-expected", "true or false is needed")
+        for name in ("together", "packed", "stages")
+        if not isinstance(given[name], bool)
+    ]
+    faults += [
+        Fault(f"/{name}", "unknown-value", f"'{str(given[name])[:40]}' is none of {', '.join(known)}")
+        for name, known in (("fmi", FMI), ("precision", PRECISIONS))
+        if given[name] not in known
+    ]
+    field = None if faults else misplaced(given["target"], given)
+    if field is not None:
+        faults.append(Fault(f"/{field}", "not-of-target", f"target={given['target']} does not take '{field}'"))
     if faults:
         raise InvalidDocument(faults)
     return given
@@ -101,13 +127,15 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
     """An unknown quantity, and options that it cannot have."""
     quantity, options = item["quantity"], item["options"]
     outputs = [name for name in summary["operations"] if name != "total"]
-    others = (*DERIVED, *OUTPUTS, *QUANTITIES, *WITH_DOCUMENT)
+    others = (*DERIVED, *OUTPUTS, REACTIONS, *QUANTITIES, *WITH_DOCUMENT)
     if quantity not in others and all(name not in outputs for name in quantities(quantity)):
-        names = dict.fromkeys([*outputs, *DERIVED, *OUTPUTS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT])
+        names = dict.fromkeys(
+            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
+        )
         message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
         yield Fault("/quantity", "unknown-quantity", message)
         return
-    known = tuple(OPTIONS) if quantity in QUANTITIES else ()
+    known = tuple(OPTIONS) if quantity in QUANTITIES else options_of_quantity(quantity)
     for name, texts in options.items():
         if texts and name not in known:
             message = f"'{quantity}' has no option '{name[:80]}'"
@@ -125,7 +153,7 @@ def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fau
         if not _is_expression(value.value if isinstance(value, Quantity) else value):
             yield Fault("/bind", "bind", f"'{(name if given is None else f'{name}:{given}')[:80]}' is not name:value")
         elif name not in known and item["quantity"] not in OUTPUTS:
-            message = f"there is no parameter '{name[:80]}'; there are {listed(known)}"
+            message = f"there is no parameter '{name[:80]}'{among(name, known)}"
             yield Fault("/bind", "unknown-parameter", message)
         else:
             yield from (replace(fault, pointer="/bind") for fault in unit_faults(name, value, known))
@@ -152,7 +180,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     summary = summary_of(known_tree(item, library).summary)
     if "target" in item:
         item = {**item, "called": item["tree"].partition("@")[0]}
-        return pinned(item, library, item["nodes"], any(map(needs_parts, item["quantities"])))
+        return pinned(item, library, item["nodes"], item["target"] == URDF or any(map(needs_parts, item["quantities"])))
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
         raise InvalidDocument(faults)
@@ -178,8 +206,16 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
 
 def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
     source = source_of(item, blobs, {"program_nodes": item["nodes"]})
-    sources, request = Sources(source.model, regressor=source.regressor), read_item(item)
-    made = tree_package(sources, item["called"], item["tree"], source.digest, request, item["nodes"])
+    sources, request = Sources(source.model, regressor=source.regressor, reactions=source.reactions), read_item(item)
+    made = tree_package(
+        sources,
+        item["called"],
+        item["tree"],
+        source.digest,
+        request,
+        item["nodes"],
+        lambda: tree_parts(item["parts"], blobs),
+    )
     summary = {"tree": item["tree"], "target": item["target"], "name": made.name, "media_type": made.media}
     kind = "archive" if made.media == ZIP else "text"
     return Outcome({**summary, "bytes": len(made.data)}, {kind: made.data})
@@ -197,8 +233,13 @@ def _place(pointer: str) -> str:
 
 
 def _stored(source: Source, item: ItemDocument, style: Style) -> str:
-    quantity, model, sources = item["quantity"], source.model, Sources(source.model, regressor=source.regressor)
+    quantity, model, sources = (
+        item["quantity"],
+        source.model,
+        Sources(source.model, regressor=source.regressor, reactions=source.reactions),
+    )
     check_quantity(model, quantity)
+    sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
     program = bound(model_quantity(sources, quantity), parameters, style.bind)
     return text_of(program, style, quantity, _interface(source), members, item["nodes"])

@@ -57,9 +57,9 @@ def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[
         raise InvalidDocument(faults)
 
 
-def parted(document: ItemDocument) -> tuple[ItemDocument, ItemDocument]:
+def parted(document: ItemDocument, of: type[Entry] = Entry) -> tuple[ItemDocument, ItemDocument]:
     """The field ENTRY of an item, if there is one, and the document without what belongs there."""
-    entry, rest = Entry.parted(document)
+    entry, rest = of.parted(document)
     given = entry.model_dump(exclude_none=True)
     return ({ENTRY: given} if given else {}), rest
 

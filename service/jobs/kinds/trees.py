@@ -15,6 +15,7 @@ from service.settings import Limits
 from substructures.documents import read_json
 from substructures.part.definition import Definition
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.plausibility import Plausibility
@@ -24,14 +25,15 @@ CAPACITY = 2_000_000  # operations
 TREES = 200  # with what judges their values
 
 _plausibilities: Cache[Plausibility] = Cache(TREES, lambda _: 1)
+_reactions: Cache[ReactionModel] = Cache(CAPACITY, lambda found: len(found.program))
 _regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 
 
 def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
     """The item with its tree pinned, and the digests of the blobs that it needs: program and definitions.
 
-    ``has_parts``: also the parts, from which the regressor is derived with at most ``nodes`` operations. Raises
-    InvalidDocument.
+    ``has_parts``: also the parts, from which regressor and reactions are derived with at most ``nodes`` operations.
+    Raises InvalidDocument.
     """
     tree = known_tree(item, library)
     spec = read_json(tree.spec.encode())
@@ -64,7 +66,18 @@ def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
     """What quantities of the tree of an item are computed from. Raises InvalidProgram."""
     regressor = (lambda: regressor_of(item, blobs)) if "parts" in item else None
     plausibility = (lambda: plausibility_of(item, blobs)) if "spec" in item else None
-    return Sources(model_of(item, blobs), regressor=regressor, plausibility=plausibility)
+    transmitted = (lambda: reactions_of(item, blobs)) if "parts" in item else None
+    return Sources(model_of(item, blobs), regressor=regressor, plausibility=plausibility, reactions=transmitted)
+
+
+def reactions_of(item: ItemDocument, blobs: Blobs) -> ReactionModel:
+    """The reactions of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
+    found = _reactions.get(item["tree"])
+    if found is None:
+        parts = item["parts"]
+        found = reactions(*tree_parts(parts, blobs), parts["nodes"])
+        _reactions.put(item["tree"], found)
+    return found
 
 
 def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
@@ -82,4 +95,11 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
     digest = item["tree"].partition("@")[2]
     sources = sources_of(item, blobs)
     judge = sources.plausibility
-    return Source(sources.model, digest, lambda: regressor_of(item, blobs), Limits(**limits), plausibility=judge)
+    return Source(
+        sources.model,
+        digest,
+        lambda: regressor_of(item, blobs),
+        Limits(**limits),
+        plausibility=judge,
+        reactions=sources.reactions,
+    )

@@ -1,0 +1,79 @@
+"""Trees as parts: the definition of all of a tree, verified and stored like any other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from service.database.connections import Connection
+from service.operations import catalogue, owners, trees
+from service.operations.provenance import Origin
+from service.operations.sources import tree_parts
+from service.queries.owners import private_parts
+from service.queries.trees import Tree
+from service.refusals import Refused
+from service.schemas.entries import PartEntry
+from service.schemas.publishing import PublishRequest
+from service.store import Store
+from service.viewer import PRIVATE, PUBLIC, Viewer
+from substructures.documents import read_json
+from substructures.part.part import Part
+from substructures.tree.published import Publication, Published, published
+from substructures.tree.published_formulas import published_part
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """A tree as a definition that is to be stored, with the parts of its instances."""
+
+    found: Published
+    parts: Mapping[str, Part]
+    entry: PartEntry
+    origin: Origin
+
+    def document(self) -> dict[str, Any]:
+        """As it would be submitted."""
+        plain: dict[str, Any] = read_json(self.found.definition.canonical())
+        return plain | self.entry.model_dump(exclude_none=True)
+
+
+def module(store: Store, viewer: Viewer, text: str, wanted: PublishRequest) -> Module:
+    """The definition of a tree as a part. Raises Refused 404, 403, 409, InvalidDocument."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, viewer, text)
+        name = wanted.name or tree.name
+        hidden = PRIVATE if not tree.is_public and wanted.visibility is None else wanted.visibility
+        entry = PartEntry(visibility=hidden, note=wanted.note or None, derived_from=wanted.derived_from)
+        spec, parts = tree_parts(store, tree)
+        uses = {instance: part.definition.digest for instance, part in parts.items()}
+        _require_visible(connection, viewer, tree, name, entry, uses)
+    about = {"name": name, **wanted.about()}
+    found = published(spec, parts, Publication(about, wanted.ports, tuple(wanted.free), wanted.defaults))
+    origin = Origin("tree", tree.name, tree.revision, uses)
+    return Module(found, parts, entry, origin)
+
+
+def _require_visible(
+    connection: Connection, viewer: Viewer, tree: Tree, name: str, entry: PartEntry, uses: Mapping[str, str]
+) -> None:
+    """Raise Refused 403 for a name of others, 409 where others would see what is private."""
+    whose = owners.wanted(connection, viewer, "substructure", name, entry)
+    if whose.visibility == PUBLIC and not tree.is_public:
+        detail = f"the tree '{tree.name}' is private, and the part would be public: make the tree public first"
+        raise Refused(409, "private-tree", detail + f" (PUT /v1/trees/{tree.name}/visibility), or the part private")
+    for part, owner in private_parts(connection, uses.values()).values():
+        if owner != whose.owner:
+            raise Refused(409, "private-part", f"the tree has a part that is private to '{owner}'")
+        if whose.visibility == PUBLIC:
+            raise Refused(409, "private-part", f"'{part}' is private, and the part would be public: make it public")
+
+
+def prepare(store: Store, viewer: Viewer, found: Module) -> catalogue.PartSubmission:
+    """Couple, verify and certify it. Raises as :func:`service.operations.catalogue.prepare`."""
+
+    def made() -> Part:
+        """The part, coupled of the stored formulas."""
+        return published_part(found.found, found.parts, store.settings.limits.program_nodes, store.admit)
+
+    return catalogue.prepare(store, viewer, found.found.definition, found.entry, found.origin, made)

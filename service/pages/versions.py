@@ -1,0 +1,129 @@
+"""Versions, revisions, uses and differences, on the pages of parts and trees and on one of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from service.pages.html import Content, Html, html, joined, link, table, tag
+from service.pages.layout import document
+from service.queries.uses import Use, Withdrawn
+from service.queries.versions import RevisionEntry, VersionEntry
+from substructures.interchange.difference.difference import Difference
+from substructures.interchange.difference.formulas import QuantityDifference
+
+SHOWN = 20  # versions, revisions, uses
+
+
+def versions_section(entries: Sequence[VersionEntry]) -> list[Html]:
+    """The newest versions of a part, each with its difference from the one before."""
+    rows = [
+        (
+            link(f"@{each.version}", f"/substructures/{each.name}@{each.version}"),
+            each.created[:10],
+            _whence(each),
+            each.note,
+            _compared("substructures", each.name, each.version - 1, each.version),
+        )
+        for each in entries[:SHOWN]
+    ]
+    address = f"/v1/substructures/{entries[0].name}/versions" if entries else ""
+    return _section("Versions", ("version", "stored", "from", "note", ""), rows, len(entries) > SHOWN, address)
+
+
+def revisions_section(entries: Sequence[RevisionEntry]) -> list[Html]:
+    """The newest revisions of a tree."""
+    rows = [
+        (
+            link(f"@{each.revision}", f"/trees/{each.name}@{each.revision}"),
+            each.created[:10],
+            each.note,
+            _compared("trees", each.name, each.based_on or each.revision - 1, each.revision),
+        )
+        for each in entries[:SHOWN]
+    ]
+    address = f"/v1/trees/{entries[0].name}/revisions" if entries else ""
+    return _section("Revisions", ("revision", "stored", "note", ""), rows, len(entries) > SHOWN, address)
+
+
+def uses_section(uses: Sequence[Use], reference: str) -> list[Html]:
+    """What is built of a part."""
+    if not uses:
+        return []
+    kinds = {"tree": "trees", "part": "substructures", "derived": "substructures"}
+    words = {"tree": "tree", "part": "part of a tree", "derived": "made from it"}
+    rows = [
+        (
+            link(f"{use.name}@{use.number}", f"/{kinds[use.kind]}/{use.name}@{use.number}"),
+            words[use.kind],
+            joined([f"{instance} is @{version}" for instance, version in use.instances.items()]),
+        )
+        for use in uses[:SHOWN]
+    ]
+    address = f"/v1/substructures/{reference}/uses"
+    return _section("Used by", ("", "as", "instances"), rows, len(uses) > SHOWN, address)
+
+
+def withdrawn_section(withdrawn: Sequence[Withdrawn]) -> list[Html]:
+    """Parts of a tree, or of a part that was one, that are withdrawn."""
+    return [
+        tag(
+            "p",
+            f"Instance {each.instance}: ",
+            link(f"{each.name}@{each.version}", f"/substructures/{each.name}@{each.version}"),
+            f" is withdrawn{f': {each.reason}' if each.reason else ''}",
+            html("; take ", link(each.successor, f"/substructures/{each.successor}")) if each.successor else None,
+            class_="warn",
+        )
+        for each in withdrawn
+    ]
+
+
+def difference_page(kind: str, a: str, b: str, found: Difference) -> bytes:
+    """The bytes of the page about a difference; ``kind``: ``substructures`` or ``trees``."""
+    fields = [(tag("code", each.place), each.told(found.units)) for each in found.definition]
+    quantities = [_quantity(each) for each in found.quantities if each.differing]
+    address = f"/v1/{kind}/{a}/difference?to={b}"
+    return document(
+        f"{a} and {b} - substructures",
+        tag("h1", link(a, f"/{kind}/{a}"), " and ", link(b, f"/{kind}/{b}")),
+        tag("ul", [tag("li", words) for words in found.words]),
+        *([tag("h2", "Fields"), table(("place", "change"), fields)] if fields else []),
+        *([tag("h2", "Formulas"), table(COLUMNS, quantities)] if quantities else []),
+        tag("p", "Entry by entry: ", link("JSON", address)),
+    )
+
+
+COLUMNS = ("quantity", "entries", "changed", "new", "gone", "other numbers at the defaults", "at most")
+
+
+def _quantity(each: QuantityDifference) -> tuple[Content, ...]:
+    size = "" if each.change is None else f"{100 * each.change:.2g} %"
+    counts = [each.count(state) for state in ("changed", "new", "gone")]
+    return tag("code", each.name), each.entries, *counts, each.moved, size
+
+
+def _whence(entry: VersionEntry) -> Html:
+    """What a version came as, of what, and whether it is withdrawn."""
+    said: list[Content] = []
+    if entry.tree:
+        said.append(html("the tree ", link(entry.tree, f"/trees/{entry.tree}")))
+    if entry.derived_from:
+        said.append(link(entry.derived_from, f"/substructures/{entry.derived_from}"))
+    if entry.yanked:
+        instead = f"; take {entry.successor}" if entry.successor else ""
+        reason = f": {entry.yank_reason}" if entry.yank_reason else ""
+        said.append(tag("span", f"withdrawn{reason}{instead}", class_="warn"))
+    return joined(said or [entry.origin])
+
+
+def _compared(kind: str, name: str, before: int, number: int) -> Content:
+    if before < 1:
+        return None
+    return link(f"what changed since @{before}", f"/{kind}/{name}@{before}/difference?to={name}@{number}")
+
+
+def _section(
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[Content]], more: bool, address: str
+) -> list[Html]:
+    note = tag("p", "There are more: ", link("all", address), ".", class_="quiet") if more else Html()
+    return [tag("h2", title), table(columns, rows), note] if rows else []

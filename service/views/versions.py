@@ -1,0 +1,49 @@
+"""JSON of lists of versions and revisions, and of what uses a part."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import orjson
+
+from service.addresses import BASE
+from service.queries.uses import Use
+from service.queries.versions import RevisionEntry, VersionEntry
+
+
+def version_item(entry: VersionEntry) -> dict[str, Any]:
+    """A version in the list of its name."""
+    names = ("name", "version", "digest", "created", "author", "owner", "note", "origin", "derived_from", "tree", "dof")
+    path = f"{BASE}/substructures/{entry.name}@{entry.version}"
+    before = f"{BASE}/substructures/{entry.name}@{entry.version - 1}/difference?to={entry.name}@{entry.version}"
+    return {
+        **{name: getattr(entry, name) for name in names},
+        "operations": orjson.Fragment(entry.operations),
+        "yanked": entry.yanked is not None,
+        "yanked_at": entry.yanked,
+        "yank_reason": entry.yank_reason,
+        "successor": entry.successor,
+        "links": {"self": path} | ({"difference": before} if entry.version > 1 else {}),
+    }
+
+
+def revision_item(entry: RevisionEntry) -> dict[str, Any]:
+    """A revision in the list of its tree."""
+    path = f"{BASE}/trees/{entry.name}@{entry.revision}"
+    before = f"{BASE}/trees/{entry.name}@{entry.based_on}/difference?to={entry.name}@{entry.revision}"
+    return {
+        **{name: getattr(entry, name) for name in RevisionEntry.__slots__},
+        "links": {"self": path} | ({"difference": before} if entry.based_on else {}),
+    }
+
+
+def use_view(use: Use) -> dict[str, Any]:
+    """Something that uses a part."""
+    kind = "trees" if use.kind == "tree" else "substructures"
+    return {
+        "kind": use.kind,
+        "name": use.name,
+        "number": use.number,
+        "instances": dict(use.instances),
+        "links": {"self": f"{BASE}/{kind}/{use.name}@{use.number}"},
+    }
