@@ -47,7 +47,7 @@ def serving(folder: str, **settings: str) -> Iterator[tuple[Client, int]]:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(port)]
-    command += ["--database", f"sqlite:///{folder}/bench.db"]
+    command += ["--database", settings.get("database", f"sqlite:///{folder}/bench.db")]
     environment = {**os.environ, **{f"SUBSTRUCTURES_{name.upper()}": value for name, value in settings.items()}}
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env=environment)
     try:
@@ -142,6 +142,7 @@ def batch(client: Client, figures: dict[str, float]) -> None:
     of one thread, ``http_batch_share_all_threads`` that of the server's own engine, which takes all threads,
     ``http_batch_share_npz`` that of one thread which reads and writes npz as well. The bare transfer sends the same
     number of bytes between two processes, by sockets alone: ``http_batch_over_bare`` is the time of npz over its time,
+    ``bare_evaluated_over_bare`` that of sockets alone between which the kernel evaluates,
     ``http_batch_packed_over_bare`` and ``http_batch_packed_float32_over_bare`` those of packed npz over that same time.
     """
     spec = TreeSpec.read(
@@ -173,14 +174,17 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         ),
         "Arrow": lambda: list(client.evaluate_batches("cell0@1", [{"q": q}], quantities=quantities)),
     }
-    with exchange(q.nbytes, 42 * 8 * STATES) as transfer:
-        times, ratios = in_turn({**ways, "npz in process": npz_in_process, "bare transfer": transfer}, 25)
+    size = (q.nbytes, 42 * 8 * STATES)
+    with exchange(*size) as transfer, exchange(*size, "--evaluate") as evaluated:
+        ways |= {"npz in process": npz_in_process, "bare transfer, evaluated": evaluated, "bare transfer": transfer}
+        times, ratios = in_turn(ways, 25)
     engine.close()
     one, every = times["in process, one thread"], times["in process, all threads"]
     figures["http_batch_share"], figures["http_batch_share_all_threads"] = one / times["npz"], every / times["npz"]
     figures["http_batch_share_npz"] = times["npz in process"] / times["npz"]
     figures["http_arrow_share"] = one / times["Arrow"]
     figures["bare_transfer_ms"] = times["bare transfer"]
+    figures["bare_evaluated_over_bare"] = ratios["bare transfer, evaluated"]
     figures["http_batch_over_bare"] = ratios["npz"]
     figures["http_batch_packed_over_bare"] = ratios["npz, packed"]
     figures["http_batch_packed_float32_over_bare"] = ratios["npz, packed, float32"]

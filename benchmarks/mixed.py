@@ -71,11 +71,12 @@ def work(kind: str, number: int, chance: random.Random) -> tuple[str, Any]:
 
 
 class Clients:
-    """So many threads, each with a connection; ``times`` in milliseconds by kind, ``errors`` in words."""
+    """So many threads with a connection each; ``times`` in ms by kind, ``of_paths`` of GETs, ``errors`` in words."""
 
     def __init__(self, port: int, pause: float) -> None:
         self.port, self.pause = port, pause
         self.times: dict[str, list[float]] = defaultdict(list)
+        self.of_paths: dict[str, list[float]] = defaultdict(list)
         self.errors: list[str] = []
         self.over = threading.Event()
 
@@ -95,6 +96,8 @@ class Clients:
                 connection = None
                 continue
             self.times[kind].append((perf_counter() - start) * 1e3)
+            if kind == "get":
+                self.of_paths[path].append(self.times[kind][-1])
             if status not in (200, 201, 202):
                 self.errors.append(f"{path}: {status}")
 
@@ -193,6 +196,9 @@ def main() -> None:
     found = figures_of(clients, used)
     for name, value in found.items():
         print(f"{name:24} {value:12.2f}")
+    for path, some in sorted(clients.of_paths.items()):
+        some.sort()
+        print(f"{path:44} median {some[len(some) // 2]:8.1f} ms, p99 {some[int(0.99 * (len(some) - 1))]:8.1f} ms")
     faults = [*faults_of(found), *clients.errors[:10]]
     print("\n".join(faults) or "as it has to be")
     keep({f"mixed_{name}": value for name, value in found.items()}, given.json)
