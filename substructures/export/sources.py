@@ -1,4 +1,8 @@
-"""The interface of models and parts, and their quantities as functions."""
+"""The interface of models and parts.
+
+Coordinates stand in their order, inputs and parameters in that of their names: documents that say the same but for the
+order of members have the same digest, and so the same interface.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +18,18 @@ _RATES = {"q": ("", "rad", "m"), "qd": ("'", "rad/s", "m/s"), "qdd": ("''", "rad
 
 
 def interface_of_model(model: Model, reference: str = "", digest: str = "") -> Interface:
-    """Vectors in the order of the tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
+    """The vectors of a tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
     efforts = [f"tau.{name}" for name in model.coordinates]
-    inputs = [*dict.fromkeys(name for name in (*model.inputs, *efforts))]
+    inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
     vectors = _states(model.coordinates, model.joints) | _others(model.parameters, inputs, model.units)
     return Interface(vectors, reference, digest or model.program.digest, model.frames)
 
 
 def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Interface:
-    """Vectors in the order of the definition."""
+    """The vectors of a part as it stands alone."""
     efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(part.coordinates, part.joints, strict=True)}
-    inputs = {name: str(given.unit or "") for name, given in part.definition.inputs.items()} | efforts
+    given = part.definition.inputs
+    inputs = {name: str(given[name].unit or "") for name in sorted(given)} | efforts
     units = {name: str(given.get("unit", "")) for name, given in part.parameters.items()} | inputs
     vectors = _states(part.coordinates, part.joints) | _others(part.parameters, list(inputs), units)
     return Interface(vectors, reference, digest or part.definition.digest, part.frames)
@@ -41,9 +46,9 @@ def _states(coordinates: Sequence[str], joints: str) -> dict[str, Vector]:
 def _others(
     parameters: Mapping[str, Mapping[str, Any]], inputs: Sequence[str], units: Mapping[str, str]
 ) -> dict[str, Vector]:
-    values = [p.get("value") for p in parameters.values()]
+    names = tuple(sorted(parameters))
+    values = [parameters[name].get("value") for name in names]
     defaults = tuple(float("nan") if value is None else default_number(value) for value in values)
-    names = tuple(parameters)
     return {
         "u": Vector("u", tuple(inputs), tuple(units.get(name, "") for name in inputs)),
         "p": Vector("p", names, tuple(units.get(name, "") for name in names), defaults),

@@ -6,62 +6,15 @@ from __future__ import annotations
 import re
 import subprocess
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 import sympy
+from algebra_systems import fricas, maxima, numbers_in_maxima, values
 from exported_models import exported_of, tree_of, write
-from mixed_program import POINT, mixed_program
+from mixed_program import mixed_program
 from run_code import agree, alone, load_python, tool
 
-from substructures.export import Exported, Function
-from substructures.export.reference import arguments
-
-
-def maxima(script: str, folder: Path) -> list[str]:
-    (folder / "script.mac").write_text(script)
-    command = [tool("maxima"), "--very-quiet", '--batch-string=load("script.mac")$']
-    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
-    assert run.returncode == 0, run.stdout + run.stderr
-    assert "error" not in run.stdout.lower(), run.stdout
-    return run.stdout.splitlines()
-
-
-def fricas(script: str, folder: Path) -> str:
-    (folder / "script.input").write_text(script)
-    command = [tool("fricas"), "-nosman", "-eval", ")read script.input )quiet", "-eval", ")quit"]
-    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
-    return run.stdout
-
-
-def rational(x: float) -> str:
-    numerator, denominator = x.as_integer_ratio()
-    return f"({numerator}/{denominator})"
-
-
-def values(function: Function) -> dict[str, float]:
-    """Where every function is real."""
-    pairs = arguments(function).items()
-    found = {n: x for s, some in pairs for n, x in zip(function.vector(s).names, some, strict=True)}
-    return {**found, **POINT} if set(POINT) == set(found) - {"t"} else found
-
-
-def given(function: Function) -> list[str]:
-    known = values(function)
-    columns = {s: [rational(known[n]) for n in function.vector(s).names] for s in function.arguments}
-    return [column[0] if s == "t" else f"[{', '.join(column)}]" for s, column in columns.items()]
-
-
-def split_numbers(text: str, function: Function) -> dict[str, Any]:
-    numbers = [float(x) for x in re.findall(r"-?\d[\d.]*(?:[eE][+-]?\d+)?", text.replace("- ", "-"))]
-    found, start = {}, 0
-    for name, output in function.program.outputs.items():
-        size = int(np.prod(output.shape))
-        found[name] = np.array(numbers[start : start + size]).reshape(output.shape)
-        start += size
-    assert start == len(numbers), text
-    return found
+from substructures.export import Exported
 
 
 def cases() -> list[Exported]:
@@ -76,15 +29,8 @@ def cases() -> list[Exported]:
 def test_numbers_in_maxima(case: int, tmp_path: Path) -> None:
     exported = cases()[case]
     (path,) = write(exported, "maxima", tmp_path)
-    script = f'load("{path.name}")$ fpprintprec: 17$ linel: 100000$ \n'
-    script += "plain(x) := if matrixp(x) then plain(args(x)) elseif listp(x) then map(plain, x) else float(x)$\n"
-    for function in exported.functions:
-        call = f"{exported.called(function)}({', '.join(given(function))})"
-        script += f"print(flatten([plain({call})]))$\n"
-    lines = [line for line in maxima(script, tmp_path) if line.startswith("[")]
-    assert len(lines) == len(exported.functions)
-    for function, line in zip(exported.functions, lines, strict=True):
-        agree(split_numbers(line, function), function, values(function), 1e-11)
+    for function, found in zip(exported.functions, numbers_in_maxima(exported, path), strict=True):
+        agree(found, function, values(function), 1e-11)
 
 
 def test_lengths_in_maxima(tmp_path: Path) -> None:

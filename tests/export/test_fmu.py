@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 import subprocess
 import zipfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +22,7 @@ from substructures.quantities.evaluation import Sources, evaluate
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402
+from fmu_instances import instance  # noqa: E402
 
 QUANTITIES = ("forward_dynamics", "metric", "christoffel", "forces", "kinetic_energy", "potential_energy")
 QUANTITIES += ("position", "rotation", "inverse_dynamics")
@@ -57,24 +56,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str], tupl
 def starts(model: Model) -> dict[str, float]:
     q = {name: 0.3 + 0.1 * i for i, name in enumerate(model.coordinates)}
     return q | {f"{name}_d": 0.2 - 0.1 * i for i, name in enumerate(model.coordinates)}
-
-
-@contextmanager
-def instance(path: Path, kind: str = "CoSimulation", **values: float) -> Iterator[tuple[Any, dict[str, int]]]:
-    """An FMU of version 3.0 after its initialisation, and the references of its variables."""
-    description = fmpy.read_model_description(str(path))
-    folder = fmpy.extract(str(path))
-    made = {"CoSimulation": fmpy.fmi3.FMU3Slave, "ModelExchange": fmpy.fmi3.FMU3Model}[kind]
-    one = made(guid=description.guid, unzipDirectory=folder, modelIdentifier=description.coSimulation.modelIdentifier)
-    references = {v.name: v.valueReference for v in description.modelVariables}
-    one.instantiate()
-    one.setFloat64([references[n] for n in values], list(values.values())) if values else None
-    one.enterInitializationMode(startTime=0.0)
-    one.exitInitializationMode()
-    try:
-        yield one, references
-    finally:
-        one.freeInstance()
 
 
 @pytest.mark.parametrize("version", TARGETS)
