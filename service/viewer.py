@@ -41,9 +41,13 @@ class Viewer:
         """Whether what belongs to an owner may be changed."""
         return self.is_admin or owner == self.owner
 
+    def has(self, scope: str) -> bool:
+        """Whether this may be done."""
+        return scope in self.scopes or self.is_admin
+
     def require(self, scope: str) -> None:
         """Raise Refused 403 without a scope."""
-        if scope not in self.scopes and not self.is_admin:
+        if not self.has(scope):
             has = ", ".join(f"'{each}'" for each in self.scopes)
             detail = f"the API key in the header Authorization lacks the scope '{scope}'; it has {has}"
             raise Refused(403, "scope-missing", detail, scope=scope)

@@ -7,6 +7,7 @@ dropped, and nothing is stored twice.
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from contextvars import copy_context
@@ -36,6 +37,7 @@ IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
 ATTEMPTS = 8
 #: tasks for the process that computes, where there is one
 AWAY: tuple[Task, ...] = ("derive", "analyse")
+PASSED_ON = 10.0  # seconds more than the limit, for the answer of that process
 
 
 class Act:
@@ -90,6 +92,11 @@ class Act:
         """Raise Refused 403 unless whoever asks has this scope too."""
         self.viewer.require(scope)
 
+    @property
+    def prefers_async(self) -> bool:
+        """Whether a job is asked for."""
+        return self._prefers("respond-async") is not None
+
     def _claiming(self, deferred: Callable[[], Commit]) -> Commit | Answer:
         """The job that a computation becomes, or what it became under the same key."""
         kept = self._claimed.claim()
@@ -109,7 +116,7 @@ class Act:
 
         def watched() -> Commit | Answer | Stream:
             """The work under its deadline."""
-            if deadline.is_over or (deferred is not None and self._prefers("respond-async")):
+            if deadline.is_over or (deferred is not None and self.prefers_async):
                 return late()
             return deadline.watched(self._in_turn(work), late, instead=lambda: self._finish(late))
 
@@ -160,7 +167,7 @@ class Act:
 
     def _told(self, answer: Answer | Stream) -> Answer | Stream:
         """The answer with the preferences that it follows (RFC 7240, section 3)."""
-        is_late = answer.status == 202 and self._prefers("respond-async")
+        is_late = answer.status == 202 and self.prefers_async
         applied = ", ".join(filter(None, ("respond-async" if is_late else "", self._waits)))
         return replace(answer, headers={**answer.headers, "Preference-Applied": applied}) if applied else answer
 
@@ -193,25 +200,39 @@ ActOf = Annotated[Act, Depends(act)]
 SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
-async def in_time(request: Request, endpoint: Callable[[], Response], advice: str) -> Response:
+async def in_time(
+    request: Request, endpoint: Callable[[], Response], advice: str, job: Callable[[Act], Commit] | None = None
+) -> Response:
     """The answer of an endpoint that prints formulas. Raises Refused 503 when it takes too long.
 
-    ``advice``: what to do then. A GET does not become a job by itself, for it is to store nothing.
+    ``advice``: what to do then. ``job``: prepares the job that does the same, for those who may submit jobs; while its
+    answer is kept, the same request does not become another one.
     """
     store = store_of(request)
-    deadline = Deadline(store.settings.limits.sync_seconds)
+    is_passed_on = request.app.state.away is not None  # then the other process says that it takes too long
+    deadline = Deadline(store.settings.limits.sync_seconds + (PASSED_ON if is_passed_on else 0))
+    act = None if job is None else Act(request, tuple, store, _key_of(request))
 
     def late() -> Response:
         """What is said when there is no time left."""
+        if job is not None and act is not None and act.viewer.has("jobs"):
+            return act.submit(partial(job, act))
         detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; {advice}"
         raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
 
     def watched() -> Response:
         """The endpoint under its deadline."""
-        return late() if deadline.is_over else deadline.watched(endpoint, late, instead=late)
+        is_late = deadline.is_over or (act is not None and act.prefers_async)
+        return late() if is_late else deadline.watched(endpoint, late, instead=late)
 
     threads = store.runtime.threads["print"]
     return await deadline.within(partial(threads.submit, request.state.principal), watched)
+
+
+def _key_of(request: Request) -> str:
+    """An idempotency key for a GET: what it asks for."""
+    asked = "\n".join((request.url.path, request.url.query, request.headers.get("accept", "")))
+    return f"GET {hashlib.sha256(asked.encode()).hexdigest()}"
 
 
 def timed(task: Task) -> Callable[[Callable[..., Response]], Callable[..., Awaitable[Response]]]:

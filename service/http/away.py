@@ -66,7 +66,8 @@ class Away:
             except httpx2.HTTPError as error:
                 _log.warning("attempt %d at the process that computes: %r", attempt + 1, error)
             else:
-                return StreamingResponse(_pieces(answer), answer.status_code, _told(answer))
+                length = {name: size for name, size in answer.headers.items() if name == "content-length"}
+                return StreamingResponse(_pieces(answer), answer.status_code, {**_told(answer), **length})
         raise _gone()
 
     def printed(self, request: Request) -> Answer:

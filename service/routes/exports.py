@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
 from service.analyses.exporting import ALL_TARGETS, ZIP, ExportRequest, Package, part_package
 from service.answers import Answer, etag
-from service.http.acting import in_time
+from service.http.acting import Act, Commit, in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
 from service.operations import catalogue
 from service.references import is_pinned
 from service.routes.bodies import binary
+from service.routes.deferred import ACCEPTED, deferred
 from service.store import Store
 from service.viewer import Viewer
 from substructures.errors import InvalidInput
 
 router = APIRouter(prefix="/v1/substructures/{ref}", tags=["formulas"])
 READ = [needs("read")]
+ADVICE = "name fewer quantities, or ask with a key that may submit jobs"
 EXPORTED: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "The file, or a zip of several",
@@ -28,7 +31,8 @@ EXPORTED: dict[int | str, dict[str, Any]] = {
             ZIP: binary(),
             **{media: {"schema": {"type": "string"}} for media in ("text/plain", "application/xml")},
         },
-    }
+    },
+    **ACCEPTED,
 }
 
 
@@ -55,8 +59,27 @@ ExportOf = Annotated[ExportRequest, Depends(export_of)]
 
 @router.get("/export", dependencies=READ, responses=EXPORTED)
 async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
-    """Functions of the part as it stands alone for a target, on one calling convention."""
-    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), "name fewer quantities")
+    """Functions of the part as it stands alone for a target, on one calling convention.
+
+    What takes longer than a request may becomes a job of kind `export`, as with `Prefer: respond-async`.
+    """
+
+    def job(act: Act) -> Commit:
+        """The job that does the same. Raises Refused 404."""
+        with store.database.read() as connection:
+            version = catalogue.find(connection, viewer, ref)
+        return export_job(act, {"substructure": f"{version.name}@{version.version}"}, wanted)
+
+    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), ADVICE, job)
+
+
+def export_job(act: Act, of: Mapping[str, str], wanted: ExportRequest) -> Commit:
+    """Prepare the job that exports the same. Raises InvalidInput with pointers into the query."""
+    item = {**of, **asdict(wanted), "quantities": list(wanted.quantities)}
+    try:
+        return deferred(act, "export", item)()
+    except InvalidInput as error:
+        raise error.below("/query") from None
 
 
 def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.answers import JSON, Answer, Stream, etag
-from service.http.acting import Commit, SpooledAct, SpooledActOf, in_time
+from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
 from service.negotiation import MEDIA_TYPES
@@ -19,7 +19,7 @@ from service.operations.sources import engine_of, sources_of, tree_parts
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
-from service.routes.exports import EXPORTED, ExportOf, package_answer
+from service.routes.exports import ADVICE, EXPORTED, ExportOf, export_job, package_answer
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
@@ -95,11 +95,16 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
 async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
     """Functions of the tree for a target: C, MATLAB, Fortran, computer algebra, ..., on one calling convention.
 
-    What takes longer than a request may is an item of a job of kind `export` with a `target`.
+    What takes longer than a request may becomes a job of kind `export`, as with `Prefer: respond-async`.
     """
-    item = f'{{"tree": "{ref[:80]}", "target": "{wanted.target[:40]}", ...}}'
-    advice = f"submit a job of kind 'export' with the item {item}"
-    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), advice)
+
+    def job(act: Act) -> Commit:
+        """The job that does the same. Raises Refused 404."""
+        with store.database.read() as connection:
+            tree = trees.find(connection, viewer, ref)
+        return export_job(act, {"tree": f"{tree.name}@{tree.revision}"}, wanted)
+
+    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), ADVICE, job)
 
 
 def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:

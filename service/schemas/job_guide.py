@@ -28,7 +28,8 @@ numbers, such as `linearisations`, `root-loci`; a request is the body of that en
 - `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
 `request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
-`together`, `packed`, `fmi`, `precision`, `stages`], as of `GET /v1/trees/{ref}/export`."""
+`together`, `packed`, `fmi`, `precision`, `stages`], as of `GET /v1/trees/{ref}/export`; with `substructure` in place \
+of `tree`, as of that of a part."""
 
 CHOICES = """Lists of values by place in the template; every combination makes an item, the last choice varies \
 fastest. A place is a JSON pointer (RFC 6901) into the template (`/request/parameters/rod.m1`, `/request/q/0`), all \

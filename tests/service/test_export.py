@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import io
+import json
 import subprocess
 import zipfile
 from pathlib import Path
@@ -14,7 +15,14 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.analyses.exporting import ALL_TARGETS
+from service.app import open_store
 from service.cli.main import main
+from service.keys import create
+from service.settings import Settings
+from service.store import Store
+
+from .conftest import PENDULUM, make_client
+from .fake_engine import FakeEngine, finished, running
 
 TREE = {
     "name": "to-go",
@@ -52,6 +60,47 @@ def test_every_target(made: TestClient, target: str) -> None:
     assert "sha256:" in text
     assert "to-go version 1" in text or '"reference": "to-go@1"' in text
     assert 'filename="to_go' in first.headers["content-disposition"]
+
+
+#: names in no order
+PART = {
+    **PENDULUM,
+    "name": "unsorted",
+    "parameters": {"z": {"value": 1, "unit": "kg"}, **PENDULUM["parameters"]},
+    "inputs": {"wind": {"unit": "N*m"}, "brake": {"unit": "N*m"}},
+    "loads": [{"type": "joint", "coordinate": "q", "force": "wind - brake*z/m"}],
+}
+UNSORTED = {
+    "name": "to-go",
+    "parameters": {"weight": {"value": 2, "unit": "kg"}, "g": {"value": 9.81, "unit": "m/s^2"}},
+    "gravity": [0, 0, "-g"],
+    "instances": [
+        {"name": "b", "substructure": "unsorted", "parameters": {"m": "weight"}},
+        {"name": "a", "substructure": "unsorted", "at": "b.tip"},
+    ],
+}
+
+
+def test_a_server_that_is_started_again_exports_the_same(settings: Settings) -> None:
+    """Also where documents have names in no order, which the store does not keep."""
+    asked = [
+        (path, target)
+        for path in ("trees/to-go@1", "substructures/unsorted@1")
+        for target in ALL_TARGETS
+        if path.startswith("trees") or target not in ("fmu", "simulink")
+    ]
+    found = []
+    for k in range(2):
+        with open_store(settings) as store, make_client(store) as client:
+            if k == 0:
+                for kind, body in (("substructures", PART), ("trees", UNSORTED)):
+                    assert client.post(f"/v1/{kind}", json=body).status_code == 201
+            found.append([exported(client, path, target=target).content for path, target in asked])
+    for (path, target), first, second in zip(asked, *found, strict=True):
+        assert first == second, (path, target)
+    told = json.loads(found[0][asked.index(("trees/to-go@1", "interface"))])["vectors"]
+    assert told["p"]["names"] == sorted(told["p"]["names"])
+    assert told["u"]["names"] == ["a.brake", "a.wind", "b.brake", "b.wind", "tau.b.q", "tau.a.q"]
 
 
 def test_a_tree_and_a_part_as_urdf(made: TestClient) -> None:
@@ -192,3 +241,41 @@ def test_a_part_is_no_fmu(made: TestClient) -> None:
     part = made.get("/v1/substructures").json()["items"][0]["name"]
     answer = exported(made, f"substructures/{part}", 422, target="fmu")
     assert "make a tree of the part" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("path", ["trees/to-go@1", "substructures/pendulum@1"])
+def test_a_long_export_becomes_one_job(made: TestClient, store: Store, path: str) -> None:
+    """Whoever asks again gets the same job, and its file is what the request gives, but for the reference."""
+    query = {"target": "c", "quantities": "metric", "name": "arm"}
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
+    at_once = exported(made, path, **query)
+    store.settings = store.settings.model_copy(update={"limits": limits})
+    with running(store, FakeEngine()):
+        first, second = (exported(made, path, 202, **query, stages="true") for _ in range(2))
+        assert first.json()["id"] == second.json()["id"]
+        asked = made.get(f"/v1/{path}/export", params=query, headers={"Prefer": "respond-async"})
+        assert (asked.status_code, asked.headers["preference-applied"]) == (202, "respond-async")
+        assert asked.json()["id"] != first.json()["id"]
+        job = finished(made, asked.json()["id"])
+    item = made.get(job["result"]).json()["items"][0]
+    assert item["state"] == "succeeded"
+    ours, theirs = members(at_once.content), members(made.get(item["files"][0]["href"]).content)
+    assert set(ours) == set(theirs)
+    assert ours["arm_selftest.c"] == theirs["arm_selftest.c"]
+
+
+def test_a_long_export_of_a_reader_is_refused(made: TestClient, store: Store) -> None:
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
+    store.settings = store.settings.model_copy(update={"limits": limits})
+    with store.database.write() as connection:
+        key = create(connection, "reader", ["read"])
+    answer = made.get("/v1/trees/to-go@1/export", params={"target": "c"}, headers={"Authorization": f"Bearer {key}"})
+    assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+    assert "key that may submit jobs" in answer.json()["detail"]
+
+
+def test_jobs_of_what_is_not_there(made: TestClient) -> None:
+    later = {"Prefer": "respond-async"}
+    assert made.get("/v1/trees/nobody/export", params={"target": "c"}, headers=later).status_code == 404
+    refused = made.get("/v1/trees/to-go/export", params={"target": "exe"}, headers=later)
+    assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/query/target")

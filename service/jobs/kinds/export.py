@@ -1,6 +1,6 @@
 """export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name"}``; its outcome is the text. Or
 ``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages"}``: what is got by
-``GET /v1/trees/{tree}/export``.
+``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by ``GET /v1/substructures/.../export``.
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind`` and ``options`` (lists of
 texts by name, for quantities such as ``state_space``) may be left out. For ``velocity-equations`` there is also
@@ -22,7 +22,9 @@ from service.analyses.exporting import (
     PRECISIONS,
     URDF,
     ZIP,
+    Package,
     misplaced,
+    part_package,
     read_item,
     tree_package,
 )
@@ -43,8 +45,8 @@ from service.analyses.printing import (
 from service.analyses.source import Source
 from service.jobs.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
-from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.decoded import part_of, summary_of
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_part, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.refusals import Refused
@@ -61,6 +63,8 @@ from substructures.printers.render import FORMS
 from substructures.quantities.evaluation import REACTIONS, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
+
+PART = "substructure"
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
@@ -91,7 +95,8 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
 
 
 def _spread_target(item: ItemDocument) -> ItemDocument:
-    check_fields(item, ("tree", "target"), ("quantities", "name", "bind", "together", "packed", *DEFAULT_OPTIONS))
+    of = PART if PART in item else "tree"
+    check_fields(item, (of, "target"), ("quantities", "name", "bind", "together", "packed", *DEFAULT_OPTIONS))
     plain = {"quantities": [], "name": "", "bind": "", "together": False, "packed": False}
     given = {**plain, **DEFAULT_OPTIONS, **item}
     faults = [
@@ -177,6 +182,9 @@ def _is_options(given: object) -> bool:
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
+    if PART in item:
+        part = known_part(item, library)
+        return {**item, PART: f"{part.name}@{part.digest}", "program": part.program}, (part.digest, part.program)
     summary = summary_of(known_tree(item, library).summary)
     if "target" in item:
         item = {**item, "called": item["tree"].partition("@")[0]}
@@ -205,9 +213,22 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
 
 
 def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
+    made = _part_package(item, blobs) if PART in item else _tree_package(item, blobs)
+    of = PART if PART in item else "tree"
+    summary = {of: item[of], "target": item["target"], "name": made.name, "media_type": made.media}
+    kind = "archive" if made.media == ZIP else "text"
+    return Outcome({**summary, "bytes": len(made.data)}, {kind: made.data})
+
+
+def _part_package(item: ItemDocument, blobs: Blobs) -> Package:
+    digest = item[PART].partition("@")[2]
+    return part_package(part_of(digest, item["program"], blobs), item[PART], digest, read_item(item), item["nodes"])
+
+
+def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     source = source_of(item, blobs, {"program_nodes": item["nodes"]})
     sources, request = Sources(source.model, regressor=source.regressor, reactions=source.reactions), read_item(item)
-    made = tree_package(
+    return tree_package(
         sources,
         item["called"],
         item["tree"],
@@ -216,9 +237,6 @@ def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
         item["nodes"],
         lambda: tree_parts(item["parts"], blobs),
     )
-    summary = {"tree": item["tree"], "target": item["target"], "name": made.name, "media_type": made.media}
-    kind = "archive" if made.media == ZIP else "text"
-    return Outcome({**summary, "bytes": len(made.data)}, {kind: made.data})
 
 
 def _moved(faults: Iterable[Fault]) -> list[Fault]:

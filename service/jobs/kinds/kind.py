@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from service.integrity import missing, reading
 from service.jobs.engine import Outcome
-from service.jobs.kinds.library import Library, StoredTree
+from service.jobs.kinds.library import Library, StoredTree, StoredVersion
 from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -80,3 +80,13 @@ def known_tree(item: ItemDocument, library: Library) -> StoredTree:
     if tree is None:
         raise InvalidDocument.at("/tree", "unknown-tree", f"there is no tree '{str(reference)[:160]}'")
     return tree
+
+
+def known_part(item: ItemDocument, library: Library) -> StoredVersion:
+    """The version of a part that an item refers to. Raises InvalidDocument."""
+    reference = item["substructure"]
+    version = library.version(reference) if isinstance(reference, str) else None
+    if version is None:
+        message = f"there is no substructure '{str(reference)[:160]}'"
+        raise InvalidDocument.at("/substructure", "unknown-substructure", message)
+    return version

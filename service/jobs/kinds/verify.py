@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from service.integrity import reading
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json, write_json
-from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.part.part import Part, recheck
@@ -36,11 +35,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 
 def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    reference = item["substructure"]
-    version = library.version(reference) if isinstance(reference, str) else None
-    if version is None:
-        message = f"there is no substructure '{str(reference)[:160]}'"
-        raise InvalidDocument.at("/substructure", "unknown-substructure", message)
+    version = known_part(item, library)
     pinned = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
     return pinned, (version.digest, version.program)
 
