@@ -31,7 +31,13 @@ from substructures.quantities.formulas import DERIVED
 from substructures.tree.document import TreeSpec
 
 ZIP = "application/zip"
-_MEDIA = {"json": "application/json", "zip": ZIP, "fmu": ZIP}
+_MEDIA = {
+    "json": "application/json",
+    "zip": ZIP,
+    "fmu": ZIP,
+    "tex": "application/x-latex",
+    "xhtml": "application/xhtml+xml",
+}
 #: quantities of a tree and of a part where none are named; those that are not stored are left out
 OF_TREES, OF_PARTS = ("metric", "christoffel", "forces"), ("metric", "christoffel")
 

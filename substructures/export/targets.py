@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import orjson
 
 from substructures.errors import InvalidArgument
+from substructures.export import written
 from substructures.export.c_files import c_files
 from substructures.export.casadi import casadi
 from substructures.export.exported import Exported
@@ -24,6 +25,7 @@ from substructures.export.webassembly.functions import webassembly
 from substructures.export.webassembly.selftest import selftest
 
 Files = dict[str, bytes]
+READ = "nothing: it is read"
 
 
 @dataclass(frozen=True)
@@ -103,5 +105,8 @@ TARGETS: Mapping[str, Target] = {
     "fmu2": Target(_fmu("2.0"), "FMPy"),
     "casadi": Target(_casadi, "CasADi"),
     "matlab": Target(_function_files, LANGUAGES["matlab"].executed),
+    "text": Target(written.text, READ),
+    "latex": Target(written.latex, "LaTeX"),
+    "mathml": Target(written.mathml, READ),
     **{name: _one_file(language) for name, language in LANGUAGES.items() if name not in ("c", "matlab")},
 }

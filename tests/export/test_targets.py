@@ -9,6 +9,7 @@ from pathlib import Path
 from struct import pack
 
 import pytest
+from defusedxml import ElementTree
 from exported_models import LIMIT, exported_of, tree_of, write
 from mixed_program import mixed_program
 from run_code import STRICT, alone, octave, tool
@@ -112,3 +113,18 @@ def test_prefixes_of_several_functions_differ(cases: list[Exported]) -> None:
     for exported in cases:
         names = [exported.called(f) for f in exported.functions]
         assert len(set(names)) == len(names)
+
+
+def test_formulas_to_be_read(cases: list[Exported], tmp_path: Path) -> None:
+    """LaTeX compiles, pages are well-formed, and the metric of the acrobot is the textbook's line."""
+    exported = cases[1]
+    lines = files(exported, "text", LIMIT)["arm_metric.txt"].decode().splitlines()
+    assert "metric[2, 2] = Ic2 + m2*lc2^2" in lines
+    for name, data in files(exported, "mathml", LIMIT).items():
+        assert ElementTree.fromstring(data).tag.endswith("html"), name
+    latex = tool("pdflatex")
+    for path in write(exported, "latex", tmp_path)[:3]:
+        command = [latex, "-interaction=nonstopmode", "-halt-on-error", path.name]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, done.stdout[-2000:]
+        assert "Overfull" not in done.stdout
