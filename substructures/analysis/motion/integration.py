@@ -5,7 +5,8 @@ E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I (
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -24,6 +25,8 @@ TimeReport = Callable[[float], bool | None]
 KEPT = 20_000
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
+#: corners are at the same place where they are nearer to it than this part of their way in a step; no zero
+SAME, LEAST = 1e-11, 1e-300
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -139,6 +142,8 @@ class _Run:
         self.span, self.tiny = span[1] - span[0], 0
         self.motion = IntegratedMotion()
         self.last: tuple[float, Array] | None = None
+        #: where the integrator begins anew
+        self.corner: tuple[float, Array] | None = None
 
     def keep_last(self) -> None:
         """The last state that was reached, as a result."""
@@ -148,11 +153,21 @@ class _Run:
             motion.x.append(self.last[1])
 
     def segment(self, start: float, x: Array, end: float) -> Array:
-        """Integrate from start to end; the last state."""
+        """Integrate from start to end, from corner to corner; the last state."""
+        x = self._piece(start, x, end)
+        while self.corner is not None and self.motion.status == "finished":
+            start, x = self.corner
+            self.corner = None
+            if start < end:
+                x = self._piece(start, x, end)
+        return x
+
+    def _piece(self, start: float, x: Array, end: float) -> Array:
+        """Integrate from start to the next corner, or to the end."""
         s, motion, solver = self.settings, self.motion, None
         try:
             solver = s.stepper(self.f, start, x, end)
-            while solver.status == "running" and motion.status == "finished":
+            while solver.status == "running" and motion.status == "finished" and self.corner is None:
                 message = solver.step()
                 if solver.status == "failed":
                     motion.end("failed", self._advice(solver.t, str(message)))
@@ -201,20 +216,49 @@ class _Run:
 
     def _watch(self, solver: Any, dense: Dense) -> float:
         """Zeros in the last step, in the order of time, up to the first that stops; how far the motion goes."""
-        zeros = []
+        zeros, earlier = [], list(self.levels)
         for k, watch in enumerate(self.watches):
             before, after = self.levels[k], watch.function(solver.t, solver.y)
             self.levels[k] = after
             zeros += [(t, k) for t in zeros_of(watch, solver, dense, (before, after))]
-        for t, k in sorted(zeros):
+        zeros.sort()
+        for i, (t, k) in enumerate(zeros):
             x = np.array(dense(t), dtype=np.float64)
+            if self.watches[k].corner is not None:
+                self.collect(t, dense)  # on the side that is left
+                signs = {j: earlier[j] for _, j in zeros[i:]} | {j: self.levels[j] for _, j in zeros[:i]}
+                self._turn([j for _, j in zeros if j == k or self._is_there(j, t, x, earlier[j])], t, x, signs)
+                return t
             self.motion.found.append((k, t, x))
             if self.watches[k].stops:
                 self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
                 self.last = t, x
-                # the end of the step lies beyond the event: no state of this motion
-                if self.motion.step_t[-1] > t:
-                    del self.motion.step_t[-1], self.motion.step_x[-1]
+                self._drop(t)
                 return t
         return float(solver.t)
+
+    def _drop(self, t: float) -> None:
+        """The end of the step lies beyond an event: no state of this motion."""
+        if self.motion.step_t[-1] > t:
+            del self.motion.step_t[-1], self.motion.step_x[-1]
+
+    def _is_there(self, k: int, t: float, x: Array, before: float) -> bool:
+        """Whether another corner is at the same place."""
+        watch = self.watches[k]
+        return watch.corner is not None and abs(watch.function(t, x)) <= SAME * (abs(before) + abs(self.levels[k]))
+
+    def _turn(self, passed: Sequence[int], t: float, x: Array, signs: Mapping[int, float]) -> None:
+        """Begin anew at corners, on the other side of each; ``signs`` of events that are before or after them."""
+        self._drop(t)
+        self.motion.keep(t, x)
+        self.last = self.corner = t, x
+        turned = [corner for k in passed if (corner := self.watches[k].corner) is not None]
+        for corner in turned:
+            corner.turn()
+        if not all(corner.stays(t, x) for corner in turned):
+            self.watches = [watch for watch in self.watches if watch.corner is None]
+        self.levels = [watch.function(t, x) for watch in self.watches]
+        for k, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
+            side = signs.get(k, self.levels[k]) if watch.corner is None else watch.corner.side
+            self.levels[k] = math.copysign(max(abs(self.levels[k]), LEAST), side)

@@ -6,7 +6,7 @@ algebra. W' is the power of the forces without potential; H - W is constant for 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,7 +15,9 @@ import numpy as np
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.corners import CORNERS, Corners, has_corners, kernels
 from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.certificate.served import simulated
 from substructures.compile import Kernel, compile_program
@@ -43,8 +45,13 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
 
 
 @lru_cache(maxsize=32)
+def _forward_program(model: Known, zero: frozenset[str]) -> Program:
+    return forward_dynamics(model.source, zero)
+
+
+@lru_cache(maxsize=32)
 def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
-    return compile_program(forward_dynamics(model.source, zero), (ACCELERATION, PIVOTS, POWER), folder)
+    return compile_program(_forward_program(model, zero), (ACCELERATION, PIVOTS, POWER), folder)
 
 
 def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None) -> Kernel:
@@ -68,14 +75,51 @@ class RightHandSide:
         folder: Path | None = None,
     ) -> None:
         self.n = n = model.dof
+        self._model, self._zero = model, frozenset(zero)
         self.kernel = forward_kernel(model, zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
         self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, self._x, folder)
-        columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
+        self._columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
+        self._values = dict(values) | {"t": self._t}
+        self._run = self._plain = self._bound(self.kernel, {})
+
+    def _bound(self, kernel: Kernel, more: Mapping[str, Array]) -> Callable[[], None]:
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
-        self._run = self.kernel.bind(outputs, dict(values) | {"t": self._t}, columns=columns)
+        return kernel.bind(outputs, {**self._values, **more}, columns=self._columns)
+
+    def corners(self, t: float, x: Array, folder: Path | None = None) -> list[Watch]:
+        """Follow force laws on one side of their corners, from a start on; the corners are to be watched."""
+        model = self._model
+        if not has_corners(model.program):
+            return []
+        source = _forward_program(Known(model.program.digest, model), self._zero)
+        found = kernels(source, ("t", *state_names(model)), folder)
+        if found is None:
+            return []
+        kernel, places, of = found
+        sides, levels = np.zeros(len(of.names)), np.zeros((1, len(of.names)))
+        named = {name: sides[k : k + 1] for k, name in enumerate(of.names)}
+        on_sides = self._bound(kernel, named)
+        look = places.bind({CORNERS: levels}, self._values, columns=self._columns[:1])
+
+        def placed(at: float, y: Array) -> Array:
+            """What the signs are of."""
+            self._t[0], self._x[0] = at, y[: 2 * self.n]
+            look()
+            return levels[0].copy()
+
+        self._run = on_sides
+        corners = Corners(sides, placed, self, self.plain)
+        if corners.begin(t, x):
+            return corners.watches
+        self.plain()
+        return []
+
+    def plain(self) -> None:
+        """Force laws as they are."""
+        self._run = self._plain
 
     @property
     def size(self) -> int:

@@ -151,7 +151,10 @@ def _moved(
         if problem.friction == "exact":
             motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
         else:
+            if problem.integrator.method != TAYLOR:
+                watches = [*watches, *f.corners(span[0], x, folder)]
             motion = integrate(f, x, span, outputs, settings, watches, breaks, told, f.enter)
+            f.plain()
         f.leave()
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
 

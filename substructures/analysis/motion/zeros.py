@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import scipy
@@ -20,15 +20,33 @@ from substructures.array import Array
 PEAK = 0.1
 
 
+class Corner(Protocol):
+    """A quantity that a right-hand side has on one side of zero: ``side`` 1 or -1."""
+
+    @property
+    def side(self) -> float:
+        """The side that is taken."""
+
+    def turn(self) -> None:
+        """Take the other one."""
+
+    def stays(self, t: float, x: Array) -> bool:
+        """Whether the motion goes on at that side; if not, it slides along the corner, and nothing takes sides."""
+
+
 @dataclass(frozen=True)
 class Watch:
-    """Zeros of g(t, x), a quantity less ``level``, that are looked for: ``direction`` +1 rising, -1 falling, 0 both."""
+    """Zeros of g(t, x), a quantity less ``level``, that are looked for: ``direction`` +1 rising, -1 falling, 0 both.
+
+    ``corner``: at the zeros the right-hand side changes, and the integrator begins anew.
+    """
 
     name: str
     function: Callable[[float, Array], float]
     direction: int = 0
     stops: bool = True
     level: float = 0.0
+    corner: Corner | None = None
 
 
 class Dense:
@@ -96,6 +114,7 @@ def _reaching(g: Callable[[float], float], points: Sequence[tuple[float, float]]
 
 def _zero(g: Callable[[float], float], a: float, b: float) -> float:
     # g(t*) = 0 in [a, b], found to the resolution of times
-    if g(a) * g(b) > 0:
-        return b  # the zero is within rounding of an end
+    first, last = g(a), g(b)
+    if first * last > 0:  # the zero is within rounding of an end
+        return a if abs(first) < abs(last) else b
     return float(scipy.optimize.brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))

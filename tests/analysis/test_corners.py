@@ -1,0 +1,110 @@
+"""Corners of force laws: places and times where signs change are found, and motions are those of the pieces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import Definition, Model, TreeSpec, couple, derive
+from substructures.analysis.motion import simulation
+from substructures.analysis.motion.right_hand_side import RightHandSide
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.simulate import Event, simulate
+
+
+def cart(force: str) -> Model:
+    """A mass of 1 kg on a line, x, with a force on it."""
+    definition = {
+        "name": "cart",
+        "parameters": {"m": {"value": 1, "unit": "kg"}},
+        "inputs": {"u": {"unit": "N"}},
+        "bodies": [{"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "x"}, "mass": "m"}],
+        "loads": [{"type": "joint", "coordinate": "x", "force": force}],
+    }
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "c", "definition": definition}]})
+    return couple(spec, {"c": derive(Definition.read(definition))})
+
+
+def moved(model: Model, end: float, q: float = 1.0, qd: float = 0.0, **given: Any) -> Trajectory:
+    return simulate(model, q=[q], qd=[qd], span=(0, end), **given)
+
+
+#: a quarter of the period of x'' = -sign x from x = 1
+QUARTER = np.sqrt(2)
+
+
+def test_a_force_that_jumps() -> None:
+    """Parabolas: after ten periods at the start again, at every time in between where they are."""
+    times = np.linspace(0, 40 * QUARTER, 401)
+    there = Event("there", "c.x", 0.0, "both", "record")
+    found = moved(cart("-1*sign(x)"), times[-1], times=times, events=[there])
+    np.testing.assert_allclose([each.t for each in found.events], QUARTER * np.arange(1, 40, 2), atol=1e-9)
+    phase = times % (4 * QUARTER)
+    first = 1 - phase**2 / 2
+    second = -1 + (phase - 2 * QUARTER) ** 2 / 2
+    last = 1 - (phase - 4 * QUARTER) ** 2 / 2
+    expected = np.where(phase < QUARTER, first, np.where(phase < 3 * QUARTER, second, last))
+    np.testing.assert_allclose(found.q[:, 0], expected, atol=1e-11)
+    assert all(check.holds for check in found.checks)
+    assert found.steps < 200
+
+
+def test_a_spring_with_play_and_an_event() -> None:
+    """x'' = -k max(|x| - a, 0) sign x: harmonic in the spring, free in between; the event is where it has to be."""
+    k, a = 100.0, 0.25
+    model = cart(f"-{k}*max(x - {a}, 0) + {k}*max(-x - {a}, 0)")
+    speed = 0.75 * np.sqrt(k)
+    period = 4 * (np.pi / 2 / np.sqrt(k) + a / speed)
+    middle = Event("middle", "c.x", 0.0, "both", "record")
+    found = moved(model, 5 * period, times=[5 * period], events=[middle])
+    np.testing.assert_allclose(found.q[-1, 0], 1, atol=1e-9)
+    passed = [each.t for each in found.events]
+    np.testing.assert_allclose(passed, period / 4 + np.arange(10) * period / 2, atol=1e-9)
+
+
+def test_a_linear_table() -> None:
+    model = cart("-table(x; -1: -2, 0: 0, 1: 1, 2: 4)")
+    fine = moved(model, 20, 1.8, times=[20], relative_tolerance=1e-13, absolute_tolerance=1e-14)
+    found = moved(model, 20, 1.8, times=[20])
+    np.testing.assert_allclose(found.q, fine.q, atol=1e-9)
+
+
+def test_what_slides_goes_on() -> None:
+    """Dry friction by a sign holds the mass where it stops: no corner is left there, and it stays."""
+    found = moved(cart("-1*sign(x') - 5*x"), 5, times=[0, 4, 5])
+    assert found.status == "finished"
+    np.testing.assert_allclose(found.q[1:, 0], 0.2, atol=1e-3)
+
+
+def test_from_a_corner_on() -> None:
+    """A start in a corner leaves it to a side, or stays in it."""
+    thrown = moved(cart("-1*sign(x)"), 4.0, 0.0, 1.0, times=[1.0, 3.0, 4.0])
+    np.testing.assert_allclose(thrown.q[:, 0], [0.5, -0.5, 0.0], atol=1e-12)
+    resting = moved(cart("-1*sign(x)"), 4.0, 0.0, 0.0, times=[4.0])
+    assert resting.q[-1, 0] == 0
+
+
+def test_corners_of_inputs_are_stepped_over() -> None:
+    """Where a sign depends on an input nothing is known before; the motion is right to its tolerance."""
+    found = moved(cart("abs(u) - x"), 3, 0.0, inputs={"c.u": "t - 1"}, times=[3], max_step=0.05)
+    # x'' + x = |t - 1|: x = |t - 1| - cos t + sin t, and sin(t - 1) twice from t = 1 on, less
+    t = 3.0
+    expected = abs(t - 1) - np.cos(t) + np.sin(t) - 2 * np.sin(t - 1)
+    np.testing.assert_allclose(found.q[-1, 0], expected, atol=1e-5)
+
+
+@pytest.mark.parametrize("method", ["Radau", "LSODA", "RK45"])
+def test_every_method(method: str) -> None:
+    found = moved(cart("-1*sign(x)"), 4 * QUARTER, times=[4 * QUARTER], method=method)
+    np.testing.assert_allclose(found.q[-1, 0], 1, atol=1e-7)
+
+
+def test_without_them_it_is_worse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The check can fail: the integrator alone needs more steps, and is off."""
+    monkeypatch.setattr(RightHandSide, "corners", lambda *_: [])
+    assert simulation.RightHandSide is RightHandSide
+    found = moved(cart("-1*sign(x)"), 40 * QUARTER, times=[40 * QUARTER])
+    assert abs(found.q[-1, 0] - 1) > 1e-10
+    assert found.steps > 400
