@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from flint import arb, arb_series, fmpq
+from flint import arb, arb_series, fmpq, fmpq_mat
 
 from substructures.expr.syntax import Knots
 
@@ -95,7 +95,9 @@ def _in_table(knots: Knots, x: Any) -> Parted:
         return UNKNOWN, [UNKNOWN]
     h, rise = knots.x[k + 1] - knots.x[k], knots.y[k + 1] - knots.y[k]
     u = (x - places[k]) / _ball(h)
-    if not knots.monotone:
+    if knots.kind == "smooth":
+        return _in_spline(knots, k, u)
+    if knots.kind == "linear":
         return _ball(knots.y[k]) + _ball(rise) * u, [_ball(rise / h)]
     # Hermite's cubic in its basis
     s, r = (_ball(slope * h) for slope in _pchip(knots)[k : k + 2])
@@ -127,6 +129,33 @@ def _pchip(knots: Knots) -> list[Fraction]:
             bound = chord[one] * 3
             found[end] = bound if chord[one] * chord[two] < 0 and abs(slope) > abs(bound) else slope
     return found
+
+
+def _in_spline(knots: Knots, k: int, u: Any) -> Parted:
+    """Interval k of the spline by its second derivatives M: y = a (1 - u) + b u + h^2/6 ((1-u)^3 - (1-u)) M_k + ..."""
+    x, y, last = knots.x, knots.y, len(knots.x) - 1
+    h = [x[i + 1] - x[i] for i in range(last)]
+    rise = [y[i + 1] - y[i] for i in range(last)]
+    # rows: 2 h_0 M_0 + h_0 M_1 = 6 m_0; h_{i-1} M_{i-1} + 2 (h_{i-1} + h_i) M_i + h_i M_{i+1} = 6 (m_i - m_{i-1}); end
+    system = fmpq_mat(last + 1, last + 1)
+    right = fmpq_mat(last + 1, 1)
+    for i in range(last):
+        for row, other in ((i, i + 1), (i + 1, i)):
+            system[row, row] += _exactly(2 * h[i])
+            system[row, other] += _exactly(h[i])
+        slope = _exactly(6 * rise[i] / h[i])
+        right[i, 0] += slope
+        right[i + 1, 0] -= slope
+    M = system.solve(right)
+    one, step = 1 - u, arb(_exactly(h[k]))
+    bent = arb(M[k, 0]) * (one * one * one - one) + arb(M[k + 1, 0]) * (u * u * u - u)
+    value = _ball(y[k]) * one + _ball(y[k + 1]) * u + step * step / 6 * bent
+    turned = arb(M[k + 1, 0]) * (3 * u * u - 1) - arb(M[k, 0]) * (3 * one * one - 1)
+    return value, [_ball(rise[k] / h[k]) + step / 6 * turned]
+
+
+def _exactly(x: Fraction) -> Any:
+    return fmpq(x.numerator, x.denominator)
 
 
 def _ball(x: Fraction) -> Any:

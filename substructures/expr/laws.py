@@ -101,7 +101,7 @@ def power(x: Expr, y: Expr) -> Expr:
 
 def table(x: Expr, knots: Knots) -> Expr:
     """Interpolation in a table, the first and the last value outside of it."""
-    slopes = monotone_slopes(knots) if knots.monotone else None
+    slopes = SLOPES[knots.kind](knots) if knots.kind in SLOPES else None
     total = x.graph.number(knots.y[0])
     for k, (a, b) in enumerate(pairwise(knots.x)):
         u = held((x - a) / (b - a), pos if slopes is None else smooth_pos)
@@ -139,6 +139,31 @@ def _end(h: Fraction, g: Fraction, m: Fraction, n: Fraction) -> Fraction:
     if slope * m <= 0:
         return Fraction(0)
     return 3 * m if m * n <= 0 and abs(slope) > 3 * abs(m) else slope
+
+
+def spline_slopes(knots: Knots) -> list[Fraction]:
+    """Slopes at the knots of the cubic spline that ends flat: 0, and where the second derivatives of the intervals
+    beside meet (C. de Boor, A Practical Guide to Splines, 1978, chapter IV).
+
+    The solution of s_{k-1}/h_{k-1} + 2 s_k (1/h_{k-1} + 1/h_k) + s_{k+1}/h_k = 3 (m_{k-1}/h_{k-1} + m_k/h_k), with 17
+    digits.
+    """
+    h = [b - a for a, b in pairwise(knots.x)]
+    m = [(b - a) / step for a, b, step in zip(knots.y, knots.y[1:], h, strict=False)]
+    # s_k = known_k - share_k s_{k+1}, from the first to the last
+    known, share = [Fraction(0)], [Fraction(0)]
+    for k in range(1, len(h)):
+        diagonal = 2 / h[k - 1] + 2 / h[k] - share[-1] / h[k - 1]
+        known.append((3 * (m[k - 1] / h[k - 1] + m[k] / h[k]) - known[-1] / h[k - 1]) / diagonal)
+        share.append(1 / h[k] / diagonal)
+    slopes = [Fraction(0)]
+    for a, b in zip(reversed(known), reversed(share), strict=True):
+        slopes.append(a - b * slopes[-1])
+    return [Fraction(repr(float(slope))) for slope in reversed(slopes)]
+
+
+#: slopes at the knots by the kind of a table
+SLOPES = {"monotone": monotone_slopes, "smooth": spline_slopes}
 
 
 def _function(name: str) -> Callable[[Expr], Expr]:

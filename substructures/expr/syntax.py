@@ -28,6 +28,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
+from typing import Literal
 
 from substructures.expr.exact import MAX_EXPONENT
 
@@ -44,6 +45,8 @@ _TOKEN = re.compile(
 )
 FUNCTIONS = ("sin", "cos", "tan", "sqrt")
 RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
+#: words after the knots of a table
+CURVES = ("monotone", "smooth")
 #: measures of two frames
 MEASURES = ("distance", "angle")
 _MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.-]+), ([A-Za-z0-9_.-]+)\)", re.ASCII)
@@ -68,12 +71,13 @@ class ExpressionError(ValueError):
 @dataclass(frozen=True, slots=True)
 class Knots:
     """A table: places x, which rise, and values y. Outside it has the first or the last value; in between it is linear,
-    or ``monotone``: a cubic that rises and falls where the values do (F. N. Fritsch and J. Butland, 1984).
+    or ``monotone``: cubics that rise and fall where the values do (F. N. Fritsch and J. Butland, 1984), or ``smooth``:
+    the cubic spline, whose second derivative is continuous, with slope 0 at both ends.
     """
 
     x: tuple[Fraction, ...]
     y: tuple[Fraction, ...]
-    monotone: bool
+    kind: Literal["linear", "monotone", "smooth"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,16 +255,17 @@ class _Reader:
         while self.take(","):
             x.append(self.signed(":"))
             y.append(self.signed(""))
-        monotone = False
+        kind: Literal["linear", "monotone", "smooth"] = "linear"
         if self.take(";"):
-            if self.tokens[self.at][1] != "monotone":
-                raise self.fail("'monotone'")
-            self.at, monotone = self.at + 1, True
+            word = self.tokens[self.at][1]
+            if word not in CURVES:
+                raise self.fail("'monotone' or 'smooth'")
+            self.at, kind = self.at + 1, "monotone" if word == "monotone" else "smooth"
         if not self.take(")"):
             raise self.fail("',' or ')'")
         if len(x) < 2 or any(a >= b for a, b in pairwise(x)):
             raise ExpressionError("a table has two places at least, which rise", column)
-        self.step("table", column, Knots(tuple(x), tuple(y), monotone))
+        self.step("table", column, Knots(tuple(x), tuple(y), kind))
 
     def signed(self, end: str) -> Fraction:
         """'-'? number, and what comes after it"""

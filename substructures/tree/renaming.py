@@ -9,7 +9,7 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import read_unit
 from substructures.errors import InvalidDocument
-from substructures.expr.syntax import LAWS, MAX_LENGTH, MEASURES, RESERVED, tokens
+from substructures.expr.syntax import CURVES, LAWS, MAX_LENGTH, MEASURES, RESERVED, tokens
 
 #: longest name
 LONGEST = 64
@@ -108,4 +108,4 @@ def _space(text: str) -> Iterable[tuple[bool, str]]:
 def _has_meaning(word: str, following: str, before: str) -> bool:
     """Whether a name stands for a function, a constant or a word of the grammar."""
     is_called = following == "(" and (word in (*LAWS, "table") or word.removesuffix("'") in MEASURES)
-    return word in RESERVED or is_called or (word == "monotone" and before == ";")
+    return word in RESERVED or is_called or (word in CURVES and before == ";")

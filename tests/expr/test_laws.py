@@ -8,7 +8,7 @@ from typing import Any
 import flint
 import numpy as np
 import pytest
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from substructures.certificate.texts import slope
 from substructures.expr.differentiate import derivative
@@ -26,7 +26,14 @@ KNOTS = ", ".join(f"{x}: {y}" for x, y in zip(X, Y, strict=True))
 TEXTS = [
     *("abs(x)", "sign(x)", "exp(x)", "log(x + 9)", "tanh(3*x)", "asin(x/9)", "acos(x/9)", "atan(x)", "atan2(x, y)"),
     *("min(x, y)", "max(x, 2*y)", "max(min(x, 1), -1)", "step(x, y, 0.5)", "step(x, 0.3, 6)", "(x^2 + 1)^(y/3)"),
-    *("(x^2 + 1)^1.5", "(x^2 + 1)^-0.5", "abs(x)^p", f"table(x; {KNOTS})", f"table(x; {KNOTS}; monotone)"),
+    *(
+        "(x^2 + 1)^1.5",
+        "(x^2 + 1)^-0.5",
+        "abs(x)^p",
+        f"table(x; {KNOTS})",
+        f"table(x; {KNOTS}; monotone)",
+        f"table(x; {KNOTS}; smooth)",
+    ),
     "max(0, x)^2*(1 + tanh(y/0.01)) - abs(y)*sign(x)",
 ]
 PLACES = {"x": np.array([-2.3, -0.4, 0.2, 0.7, 1.9, 3.4, 5.1]), "y": np.array([0.4, -0.7, 0.6, 0.9, -1.1, 2.0, -3.0])}
@@ -104,6 +111,7 @@ def test_tables_against_scipy() -> None:
         for text, expected in (
             (f"table(x; {knots})", np.interp(grid, x, y)),
             (f"table(x; {knots}; monotone)", PchipInterpolator(x, y)(inside)),
+            (f"table(x; {knots}; smooth)", CubicSpline(x, y, bc_type="clamped")(inside)),
         ):
             graph = Graph()
             node = parse(graph, text, graph.symbol)
@@ -153,7 +161,7 @@ def test_places_of_tables_rise() -> None:
 def test_names_stay_free() -> None:
     """What was a name before there were these functions is one still."""
     graph = Graph()
-    for name in ("abs", "exp", "min", "max", "step", "table", "tanh", "distance", "angle", "monotone"):
+    for name in ("abs", "exp", "min", "max", "step", "table", "tanh", "distance", "angle", "monotone", "smooth"):
         assert parse(graph, f"2*{name}", graph.symbol) == 2 * graph.symbol(name)
 
 

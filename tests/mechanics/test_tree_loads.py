@@ -187,7 +187,7 @@ LOADS = [
         from_="a.u",
         to="b.u",
         stiffness="k*step(distance(a.u, b.u), 1, 3) + exp(-t)",
-        damping="table(a.q1; -1: 0.2, 0.1: 1, 1: 4; monotone) + table(b.q1; -1: 0.2, 1: 4)",
+        damping="table(a.q1; -1: 0.2, 0.1: 1, 1: 4; monotone) + table(b.q1; -1: 0.2, 0.3: 2, 1: 4; smooth)",
     ),
     load("joint", coordinate="b.q2", force="-k*angle'(a.u, b.u) + distance(a.tip, world)"),
 ]
