@@ -102,7 +102,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     n, given = source.model.dof, arguments(request)
     faults = [
         Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
-        for name in ("events", "fixed_step", "series", "reactions")
+        for name in ("events", "fixed_step", "series", "reactions", "geodesic")
         if getattr(request, name)
     ]
     if request.friction == "exact":
@@ -111,7 +111,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "friction")
+    rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "friction", "geodesic")
     return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 

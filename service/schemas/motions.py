@@ -166,6 +166,7 @@ class SimulationRequest(WithReactions):
     friction: Literal["regularised", "exact"] = Field(
         "regularised", description="of joints: by the smooth law of the formulas, or set-valued at rest"
     )
+    geodesic: bool = Field(False, description="of the metric: a motion on which no force acts")
 
 
 class LoopRequest(StateRequest):

@@ -20,6 +20,7 @@ from substructures.analysis.closed.simulation import ClosedProblem, simulate_clo
 from substructures.analysis.equations.velocity_constraints import Closed, Constraint, KnifeEdge, Linear, Rolling
 from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.fixed_step import FixedStep
+from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import IntegratorChoice, Start, StateVector
@@ -66,6 +67,7 @@ def simulate(
     max_steps: int = 1_000_000,
     drift_limit: float = 1e-7,
     reactions: ReactionModel | None = None,
+    geodesic: bool = False,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
 ) -> Trajectory:
@@ -90,6 +92,8 @@ def simulate(
     ``friction`` of joints that have some: by the smooth law of the formulas, or ``exact``, set-valued at rest, with
     joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``. Of trees alone.
 
+    ``geodesic``: of a tree without any force, q''^a + Gamma^a_bc q'^b q'^c = 0.
+
     ``reactions``: those that are wanted at the results, as further series (not with ``constraints``).
 
     ``progress`` is told the finished share of the span and stops by False; ``folder``: where compiled kernels are kept.
@@ -97,6 +101,12 @@ def simulate(
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (pointers start with
     names of arguments), MissingValue, and TooLarge.
     """
+    exact = friction if friction == "exact" else None
+    if geodesic:
+        closed_by = [*model.closures, *(prescribed or {})]
+        others = {"inputs": inputs, "constraints": constraints, "prescribed": closed_by, "reactions": reactions}
+        _refuse("no forces", friction=exact, **others)
+        model = without_forces(model)
     given: dict[str, Any] = {
         "model": model,
         "start": Start(q, qd, parameters or {}, inputs or {}),
@@ -108,7 +118,6 @@ def simulate(
     }
     rolling: dict[str, Any] = {"v": v, "velocities": velocities, "independent": independent}
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
-    exact = friction if friction == "exact" else None
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
         _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, reactions=reactions, **closed)
