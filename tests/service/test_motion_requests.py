@@ -153,7 +153,9 @@ def test_bodies_and_functions_have_the_same_fields_and_defaults(
     """What is left out of a body is left out of the call: both must mean the same by it."""
     known: Mapping[str, inspect.Parameter] = inspect.signature(function).parameters
     fields = {name: field for schema in schemas for name, field in schema.model_fields.items()}
-    refused = {"events", "series", "fixed_step", "reactions", "friction", "geodesic"} if function is sensitivities else set()
+    refused = (
+        {"events", "series", "fixed_step", "reactions", "friction", "geodesic"} if function is sensitivities else set()
+    )
     assert set(fields) - refused == set(known) - left_out
     for name in set(fields) - refused:
         default = known[name].default

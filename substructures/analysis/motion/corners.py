@@ -147,12 +147,15 @@ class _Side:
 
     @property
     def side(self) -> float:
+        """The side that is taken."""
         return float(self.corners.sides[self.number])
 
     def turn(self) -> None:
+        """Take the other one."""
         self.corners.sides[self.number] *= -1
 
     def stays(self, t: float, x: Array) -> bool:
+        """Whether the motion goes on at that side; if not, no corner has one any more."""
         found = self.corners.ahead(self.number, t, x) == self.side
         if not found:
             self.corners.leave()
