@@ -49,6 +49,8 @@ MOVING = (FMU, "simulink")  # targets that need accelerations
 FMI, PRECISIONS = ("3.0", "2.0"), ("double", "single")
 DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "stages": False}
 OF_FMUS = ("metric", "forces", "kinetic_energy", "potential_energy", "position", "rotation")
+#: formulas to be read, which have the independent elements anyway
+WRITTEN = ("text", "latex", "mathml")
 #: the mechanism itself as a file, beside the targets that are functions
 URDF = "urdf"
 ALL_TARGETS = (*(name for name in TARGETS if name != FMU2), URDF)
@@ -188,6 +190,6 @@ def read_item(item: Mapping[str, Any]) -> ExportRequest:
 def misplaced(target: str, given: Mapping[str, Any]) -> str | None:
     """The first field, of those that differ from their defaults, that a target does not take."""
     taken = {"fmi": ("fmu",), "precision": ("c",), "stages": ("c",)}
-    no_functions = ("quantities", "together", "packed") if target == URDF else ()
-    fields = [*no_functions, *(name for name, targets in taken.items() if target not in targets)]
+    without = {URDF: ("quantities", "together", "packed"), **dict.fromkeys(WRITTEN, ("packed",))}
+    fields = [*without.get(target, ()), *(name for name, targets in taken.items() if target not in targets)]
     return next((name for name in fields if given[name] and given[name] != DEFAULT_OPTIONS.get(name)), None)

@@ -149,14 +149,14 @@ class Program:
         operations of parameters alone, which are done once for all states.
         """
         found = self.reachable(names)
-        varies = self._of_state if per_state else [True] * len(self)
+        varies = self.of_state if per_state else [True] * len(self)
         counts = Counter(self.operations[i][0] for i in found if varies[i])
         result = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
         result["total"] = sum(counts[op] for op in ARITHMETIC)
         return result
 
     @cached_property
-    def _of_state(self) -> list[bool]:
+    def of_state(self) -> list[bool]:
         """Of every operation, whether it depends on more than parameters and inertia symbols."""
         constant = [symbol.kind in ("parameter", "inertia") for symbol in self.symbols]
         result: list[bool] = []

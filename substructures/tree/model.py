@@ -10,6 +10,7 @@ from typing import Any
 
 from substructures.errors import Fault, InvalidDocument, TooLarge, VerificationFailed, listed
 from substructures.expr.garbage import without_collections
+from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program, program
 from substructures.expr.syntax import RESERVED
 from substructures.part.certificate import told_agreement
@@ -189,7 +190,7 @@ def couple(
         outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
-    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    result = hoisted(program(assembly.scope.graph, outputs, assembly.scope.symbols))
     if len(result) > max_nodes:
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start

@@ -230,6 +230,7 @@ def test_an_fmu_of_either_version_and_floats_in_c(made: TestClient) -> None:
         ({"target": "rust", "stages": "true"}, "/query/stages"),
         ({"target": "c", "fmi": "2.0"}, "/query/fmi"),
         ({"target": "urdf", "precision": "single"}, "/query/precision"),
+        ({"target": "latex", "packed": "true"}, "/query/packed"),
     ],
 )
 def test_options_of_other_targets_are_refused(made: TestClient, query: dict[str, str], pointer: str) -> None:
