@@ -11,6 +11,7 @@ from __future__ import annotations
 from benchmarks.report import keep, options
 from benchmarks.serial_chains import CHAINS, PUBLISHED, definition, gravity
 from substructures import Definition, Model, Program, TreeSpec, catalogue, couple, derive
+from substructures.expr.hoist import hoisted
 from substructures.quantities.formulas import derived
 
 #: outputs of a model that are counted together
@@ -59,8 +60,9 @@ def counted(name: str, model: Model, suffix: str = "") -> dict[str, float]:
 
     def add(quantity: str, program: Program, outputs: tuple[str, ...]) -> None:
         if set(outputs) <= program.outputs.keys():
-            figures[f"{name}_{quantity}{suffix}"] = program.count(outputs, per_state=True)["total"]
-            figures[f"{name}_{quantity}{suffix}_all"] = program.count(outputs)["total"]
+            alone = hoisted(program.select(outputs))  # as it is exported
+            figures[f"{name}_{quantity}{suffix}"] = alone.count(per_state=True)["total"]
+            figures[f"{name}_{quantity}{suffix}_all"] = alone.count()["total"]
 
     for quantity, outputs in QUANTITIES.items():
         add(quantity, model.program, outputs)

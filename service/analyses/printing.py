@@ -13,6 +13,7 @@ from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check
 from service.refusals import not_found
 from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
+from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
 from substructures.printers import entries
 from substructures.printers.render import LIMIT
@@ -106,7 +107,7 @@ def model_quantity(sources: Sources, quantity: str) -> Program:
     if quantity in OUTPUTS:
         return sources.program(REGRESSOR).select([quantity])
     wanted, whole = quantities(quantity), sources.model.program
-    return whole.select([name for name in whole.outputs if name in wanted])
+    return hoisted(whole.select([name for name in whole.outputs if name in wanted]))
 
 
 def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[str, Any]]:

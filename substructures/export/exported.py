@@ -12,6 +12,7 @@ from substructures.errors import InvalidArgument
 from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, signature
 from substructures.export.packed import Indices, packed
 from substructures.expr.graph import Graph
+from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
@@ -207,9 +208,10 @@ def exported_part(
 def _exported(
     programs: Mapping[str, Program], interface: Interface, name: str, bind: Bind | None, together: bool, pack: bool
 ) -> Exported:
-    made = {q: each if bind is None else bind(each) for q, each in programs.items()}
+    bound = {q: each if bind is None else bind(each) for q, each in programs.items()}
+    made = {q: hoisted(each) for q, each in bound.items()}
     if together:
-        made[ALL] = joined(list(made.values()))
+        made[ALL] = hoisted(joined(list(bound.values())))
     outputs = {q: packed(each) if pack else (each, {}) for q, each in made.items()}
     functions = tuple(Function(q, each, interface, packed=table) for q, (each, table) in outputs.items())
     for each in functions:

@@ -17,6 +17,8 @@ What depends on parameters alone is computed once for all states.
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from substructures.expr.operations import Operation, Output
 from substructures.expr.program import Program, operands, renumbered
 
@@ -77,8 +79,17 @@ class _Writer:
         found = self._products.get(key)
         if found is None:
             found = self._products[key] = len(self.made)
-            self.made.append(("mul", a, b))
+            one, other = _number(self.made[a]), _number(self.made[b])
+            self.made.append(("mul", a, b) if one is None or other is None else _operation(one * other))
         return found
+
+
+def _number(operation: Operation) -> Fraction | None:
+    return Fraction(*map(int, operation[1:])) if operation[0] in ("int", "rat") else None
+
+
+def _operation(x: Fraction) -> Operation:
+    return ("int", str(x.numerator)) if x.denominator == 1 else ("rat", str(x.numerator), str(x.denominator))
 
 
 def _uses(source: Program) -> list[int]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from substructures.certificate.served import SERVED
 from substructures.errors import TooLarge
+from substructures.expr.hoist import hoisted
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
@@ -126,7 +127,7 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """
     if quantity == CLOSED_DYNAMICS:  # no larger than the model
         return model.program.select([*DYNAMICS, *CLOSED])
-    result = _FORMULAS[quantity](model, max_nodes)
+    result = hoisted(_FORMULAS[quantity](model, max_nodes))
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
     more = dict.fromkeys(map(momentum, model.coordinates), "parameter")
