@@ -64,8 +64,11 @@ def test_files_are_what_another_engine_makes_of_them(name: str) -> None:
 @pytest.mark.skipif(not FILES, reason=PACKAGES)
 @pytest.mark.filterwarnings("ignore:.*settotalmass")
 @pytest.mark.parametrize("name", FILES)
-def test_all_files_are_what_another_engine_makes_of_them(name: str) -> None:
+def test_all_files_are_what_another_engine_makes_of_them(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Prints a row of the table."""
     row = compared_file(name)
+    with capsys.disabled():
+        print(f"\r{row}")
     if name in REFUSED:
         assert REFUSED[name] in row.refused
     else:
