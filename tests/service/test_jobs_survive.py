@@ -21,7 +21,7 @@ from .databases import fresh
 from .farm import Assassin, Server, Submitter, finished, running, submit
 
 BATCH = 2000
-KILLS = 100  # of servers, and of workers, in the batch
+KILLS = 50  # of servers, and of workers, in the batch; of thousands: python -m benchmarks.kills
 SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
 #: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
 WORKER_LIFE = 3.5
