@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from service.database.connections import Connection
@@ -15,6 +16,7 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import write_json
 from substructures.interchange.importing import Imported
+from substructures.part.part import Part
 
 IMPORTED = Origin("import")
 
@@ -30,11 +32,13 @@ class ImportedTree:
 def prepare(store: Store, viewer: Viewer, found: Imported) -> ImportedTree:
     """Derive the parts of a file and couple them. Raises as submissions of parts and trees."""
     revision = trees.prepare(store, viewer, found.tree, PLAIN, named=True)
-    made = [
-        catalogue.prepare(store, viewer, part.definition, PLAIN, IMPORTED, lambda part=part: part)  # type: ignore[misc]
-        for part in revision.parts.values()
-    ]
+    parts = revision.parts.values()
+    made = [catalogue.prepare(store, viewer, p.definition, PLAIN, IMPORTED, partial(_given, p)) for p in parts]
     return ImportedTree(made, revision)
+
+
+def _given(part: Part) -> Part:
+    return part
 
 
 def commit(connection: Connection, viewer: Viewer, made: ImportedTree) -> tuple[Tree, bool]:

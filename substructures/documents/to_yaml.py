@@ -27,7 +27,7 @@ class _Writer(yaml.SafeDumper):
         """All of it is written where it stands."""
         return True
 
-    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:  # noqa: ARG002
+    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:  # noqa: ARG002 -- called so
         """Lists stand further in than their keys."""
         super().increase_indent(flow, False)
 

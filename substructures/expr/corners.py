@@ -45,13 +45,16 @@ def _inner(node: Expr) -> Expr | None:
     return square.args[0] if square is not None and square.op == "mul" and square.args[0] is square.args[1] else None
 
 
-def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int]) -> list[Expr]:
-    """The formulas where x > 0 (1) or x < 0 (-1) for each corner: |x| is x or -x. Raises ZeroDivisionError."""
+def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Expr]:
+    """The formulas where x > 0 (1) or x < 0 (-1) for each corner: |x| is x or -x. Raises ZeroDivisionError.
+
+    A side may be a symbol that is 1 or -1.
+    """
     new: dict[Expr, Expr] = {}
     for node in reachable(exprs):
         side = sides.get(node)
         if side is not None:
-            new[node] = node.graph.number(side) if node.op == "sign" else new[inner(node)] * side
+            new[node] = node.graph.lift(side) if node.op == "sign" else new[inner(node)] * side
         else:
             new[node] = build(node.graph, node.op, [new[a] for a in node.args]) if node.args else node
     return [new[x] for x in exprs]

@@ -18,12 +18,12 @@ from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
-from substructures.expr.corners import corners, inner
+from substructures.expr.corners import corners, inner, on_side
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
-from substructures.expr.walk import build, reachable
+from substructures.expr.walk import reachable
 
 LAWS = frozenset(("abs", "sign"))
 CORNERS = "corners"
@@ -64,14 +64,8 @@ def sided(source: Program, moving: Collection[str]) -> Sided | None:
     if not found or len(found) > MOST:
         return None
     names = tuple(f"side {k}" for k in range(len(found)))
-    sides = {x: graph.symbol(name) for x, name in zip(found, names, strict=True)}
-    new: dict[Expr, Expr] = {}
-    for node in reachable(entries):
-        if node in nodes:
-            side = sides[inner(node)]
-            new[node] = side if node.op == "sign" else new[inner(node)] * side
-        else:
-            new[node] = build(graph, node.op, [new[a] for a in node.args]) if node.args else node
+    symbol = {x: graph.symbol(name) for x, name in zip(found, names, strict=True)}
+    new = dict(zip(entries, on_side(entries, {node: symbol[inner(node)] for node in nodes}), strict=True))
     outputs = {
         name: Formulas(o.shape, {i: new[e] if isinstance(e, Expr) else e for i, e in o.entries.items()}, o.symmetry)
         for name, o in made.items()

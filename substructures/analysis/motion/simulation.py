@@ -186,12 +186,7 @@ def _judged(
     series = integral_series(model, integrals, states)
     more: tuple[Check, ...] = ()
     if isinstance(motion, DryRun):
-        dry = _dry(conditions, f)
-        second, force = motion.forces(dry, t, x)
-        if "power" in series:
-            series["power"] = series["power"] + dry.instead(force, x)
-        series |= {"qdd": second, "friction": force}
-        more = (sticking(dry, motion, t, force, problem.drift_limit),)
+        more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
     checks = judge(model, integrals, states, series, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
@@ -213,6 +208,15 @@ def _judged(
         motion.cancelled,
         span,
     )
+
+
+def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: Array, x: Array, limit: float) -> Check:
+    """Accelerations and friction as further series; whether nothing sticks with more than it can."""
+    second, force = motion.forces(dry, t, x)
+    if "power" in series:
+        series["power"] = series["power"] + dry.instead(force, x)
+    series |= {"qdd": second, "friction": force}
+    return sticking(dry, motion, t, force, limit)
 
 
 def _repeated(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import product
-from math import isnan
 
 from substructures.export.exported import Exported
-from substructures.export.languages.code import head, indented
+from substructures.export.languages.code import indented
 from substructures.export.languages.python import CHECK, Python
 from substructures.export.reference import Reference
 from substructures.printers.language import Listing, Piece
@@ -27,6 +26,8 @@ class Jax(Python):
     suffix = ".py"
     infinity = "jnp.inf"
     executed = "JAX"
+    imported, reader, nan = "import jax.numpy as jnp", _READ, 'float("nan")'
+    notes = ('For doubles: jax.config.update("jax_enable_x64", True).',)
 
     def pi(self) -> Piece:
         """The constant of jax.numpy."""
@@ -35,21 +36,6 @@ class Jax(Python):
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A function of jax.numpy."""
         return Piece(f"j{super().call(op, args).text}")
-
-    @classmethod
-    def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
-        """A module; ``P`` are the defaults of the parameters."""
-        lines = ['"""', *head(exported, cls.first, software, cls.executed)]
-        lines += ['For doubles: jax.config.update("jax_enable_x64", True).', '"""', "", "import jax.numpy as jnp", ""]
-        for symbol in exported.symbols:
-            if symbol != "t":
-                names = exported.interface.vectors[symbol].names
-                lines += [f"{symbol.upper()}_NAMES = (", *(f"    {name!a}," for name in names), ")"]
-        values = ('float("nan")' if isnan(x) else repr(x) for x in exported.interface.vectors["p"].defaults)
-        lines += ["P = (", *(f"    {x}," for x in values), ")", "", *_READ.split("\n")]
-        for each in functions:
-            lines += ["", *each, ""]
-        return "\n".join(lines)
 
     def define(self, listing: Listing) -> list[str]:
         """A function; one output is an array, several are a dictionary."""
@@ -61,10 +47,7 @@ class Jax(Python):
         body += [f"t{n} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             body += self._output(output, array.shape, listing)
-        variables = list(self.variables.items())
-        pairs = ", ".join(f"{n!a}: {v}" for n, v in variables)
-        body.append(f"return {variables[0][1]}" if len(variables) == 1 else f"return {{{pairs}}}")
-        return [f"def {self.called}({', '.join(arguments)}):", *indented(body)]
+        return [f"def {self.called}({', '.join(arguments)}):", *indented([*body, self.returned()])]
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:

@@ -38,6 +38,9 @@ class Python(Code):
     infinity = "np.inf"
     power_sign = "**"
     executed = "CPython and NumPy"
+    #: what a module is told to import, what it says beside, its function that reads arguments, and what is no number
+    imported, reader, nan = "import numpy as np", _READ, "np.nan"
+    notes: tuple[str, ...] = ()
 
     def pi(self) -> Piece:
         """The constant of numpy."""
@@ -51,14 +54,14 @@ class Python(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A module; ``P`` are the defaults of the parameters."""
-        lines = ['"""', *head(exported, cls.first, software, cls.executed), '"""', "", "import numpy as np", ""]
+        lines = ['"""', *head(exported, cls.first, software, cls.executed), *cls.notes, '"""', "", cls.imported, ""]
         for symbol in exported.symbols:
             vector = exported.interface.vectors[symbol]
             if symbol != "t":
                 lines += [f"{symbol.upper()}_NAMES = (", *(f"    {name!a}," for name in vector.names), ")"]
         defaults = exported.interface.vectors["p"].defaults
-        values = ("np.nan" if isnan(x) else repr(x) for x in defaults)
-        lines += ["P = (", *(f"    {x}," for x in values), ")", "", *_READ.split("\n")]
+        values = (cls.nan if isnan(x) else repr(x) for x in defaults)
+        lines += ["P = (", *(f"    {x}," for x in values), ")", "", *cls.reader.split("\n")]
         for each in functions:
             lines += ["", *each, ""]
         return "\n".join(lines)
@@ -76,10 +79,13 @@ class Python(Code):
         for output in self.program.outputs:
             inner += self._fill(output, listing)
         body += ['with np.errstate(all="ignore"):', *indented(inner or ["pass"])]
+        return [f"def {self.called}({', '.join(arguments)}):", *indented([*body, self.returned()])]
+
+    def returned(self) -> str:
+        """The statement that gives one array, or a dictionary of several."""
         variables = list(self.variables.items())
         pairs = ", ".join(f"{n!a}: {v}" for n, v in variables)
-        body.append(f"return {variables[0][1]}" if len(variables) == 1 else f"return {{{pairs}}}")
-        return [f"def {self.called}({', '.join(arguments)}):", *indented(body)]
+        return f"return {variables[0][1]}" if len(variables) == 1 else f"return {{{pairs}}}"
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
