@@ -62,6 +62,10 @@ def test_a_spring_with_play_and_an_event() -> None:
     np.testing.assert_allclose(found.q[-1, 0], 1, atol=1e-9)
     passed = [each.t for each in found.events]
     np.testing.assert_allclose(passed, period / 4 + np.arange(10) * period / 2, atol=1e-9)
+    # results of the free flight, in the step that leads to the corner behind it
+    free = period / 4 + np.linspace(-0.9, 0.9, 7) * a / speed
+    flight = moved(model, period, times=free)
+    np.testing.assert_allclose(flight.q[:, 0], -speed * (free - period / 4), atol=1e-9)
 
 
 def test_a_linear_table() -> None:

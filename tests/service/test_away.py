@@ -70,6 +70,7 @@ def test_answers_come_back_as_they_were_said(http: httpx2.Client) -> None:
     made = http.post(TREES, json={**TREE, "name": "second"}, headers={"X-Request-Id": "mine", "Idempotency-Key": "k"})
     assert made.status_code == 201
     assert made.headers["location"].endswith("/second@1")
+    assert int(made.headers["content-length"]) == len(made.content)  # not in chunks of no stated length
     assert made.headers["x-request-id"] == "mine"
     again = http.post(TREES, json={**TREE, "name": "second"}, headers={"Idempotency-Key": "k"})
     assert (again.status_code, again.json()) == (201, made.json())

@@ -25,8 +25,8 @@ TimeReport = Callable[[float], bool | None]
 KEPT = 20_000
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
-#: corners are at the same place where they are nearer to it than this part of their way in a step; no zero
-SAME, LEAST = 1e-11, 1e-300
+#: the level of a watch that is zero, with a sign
+LEAST = 1e-300
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -227,7 +227,7 @@ class _Run:
             if self.watches[k].corner is not None:
                 self.collect(t, dense)  # on the side that is left
                 signs = {j: earlier[j] for _, j in zeros[i:]} | {j: self.levels[j] for _, j in zeros[:i]}
-                self._turn([j for _, j in zeros if j == k or self._is_there(j, t, x, earlier[j])], t, x, signs)
+                self._turn(k, t, x, signs)
                 return t
             self.motion.found.append((k, t, x))
             if self.watches[k].stops:
@@ -243,22 +243,17 @@ class _Run:
         if self.motion.step_t[-1] > t:
             del self.motion.step_t[-1], self.motion.step_x[-1]
 
-    def _is_there(self, k: int, t: float, x: Array, before: float) -> bool:
-        """Whether another corner is at the same place."""
-        watch = self.watches[k]
-        return watch.corner is not None and abs(watch.function(t, x)) <= SAME * (abs(before) + abs(self.levels[k]))
-
-    def _turn(self, passed: Sequence[int], t: float, x: Array, signs: Mapping[int, float]) -> None:
-        """Begin anew at corners, on the other side of each; ``signs`` of events that are before or after them."""
+    def _turn(self, k: int, t: float, x: Array, signs: Mapping[int, float]) -> None:
+        """Begin anew at a corner, on its other side; ``signs`` of events that are before or after it."""
         self._drop(t)
         self.motion.keep(t, x)
         self.last = self.corner = t, x
-        turned = [corner for k in passed if (corner := self.watches[k].corner) is not None]
-        for corner in turned:
-            corner.turn()
-        if not all(corner.stays(t, x) for corner in turned):
-            self.watches = [watch for watch in self.watches if watch.corner is None]
+        turned = self.watches[k].corner
+        if turned is not None:
+            turned.turn()
+            if not turned.stays(t, x):
+                self.watches = [watch for watch in self.watches if watch.corner is None]
         self.levels = [watch.function(t, x) for watch in self.watches]
-        for k, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
-            side = signs.get(k, self.levels[k]) if watch.corner is None else watch.corner.side
-            self.levels[k] = math.copysign(max(abs(self.levels[k]), LEAST), side)
+        for i, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
+            side = signs.get(i, self.levels[i]) if watch.corner is None else watch.corner.side
+            self.levels[i] = math.copysign(max(abs(self.levels[i]), LEAST), side)
