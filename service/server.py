@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import ctypes
+import errno
 import gc
 import logging
 import os
@@ -25,7 +26,7 @@ from service.jobs.engine import Engine
 from service.queries.keys import any_key
 from service.queue.engines import engine_of
 from service.queue.supervisor import Supervisor
-from service.respawn import kept, listeners
+from service.respawn import bound, kept, listeners
 from service.settings import Settings, SettingsError
 from service.store import Store
 
@@ -42,6 +43,8 @@ AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait
 def serve(settings: Settings) -> None:
     """Serve until interrupted. Raises SettingsError rather than to listen beyond loopback without API keys."""
     kept.computes, kept.of = kept.number >= settings.processes, kept.number - settings.processes
+    if kept.is_start:
+        _require_free(settings)
     with open_store(settings, kept) as store:
         _check_processes(store)
         check_exposure(store)
@@ -50,6 +53,21 @@ def serve(settings: Settings) -> None:
         # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
         with supervised(store, engine_of(settings) if kept.number == 0 else None):
             _run(store)
+
+
+def _require_free(settings: Settings) -> None:
+    """Raise SettingsError for an address that cannot be listened on, before there is a store."""
+    try:
+        for each in bound(settings.host, settings.port):
+            each.close()
+    except OSError as error:
+        raise _cannot_listen(settings, error) from None
+
+
+def _cannot_listen(settings: Settings, error: OSError) -> SettingsError:
+    where = f"{settings.host}:{settings.port}"
+    another = "; is another server running? --port takes another one" if error.errno == errno.EADDRINUSE else ""
+    return SettingsError(f"cannot listen on {where}: {error.strerror or error}{another}")
 
 
 def _check_processes(store: Store) -> None:
@@ -70,11 +88,15 @@ def _run(store: Store) -> None:
     try:
         found = listeners(settings.host, settings.port, claim, settings.processes, computing)
     except OSError as error:
-        raise SettingsError(f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}") from None
+        raise _cannot_listen(settings, error) from None
     if kept.computes:
         os.nice(NICE)
         _server(store).run(sockets=found)
         return
+    if kept.number == 0:
+        name = found[0].getsockname()
+        logger.info("pages and requests: http://%s:%s/; Ctrl+C stops", settings.host, name[1])
+        logger.info("stored in %s", store.database.url)
     logger.info("listening on %s", ", ".join(f"{name[0]}:{name[1]}" for name in (s.getsockname() for s in found)))
     _server(store, Away(kept.path, settings.limits.sync_seconds) if kept.path else None).run(sockets=found)
 

@@ -14,7 +14,7 @@ from substructures.documents import message_of
 
 PREFIX = "SUBSTRUCTURES_"
 LIMIT_PREFIX = "LIMIT_"
-CLIENT = ("key",)  # variables of the commands that talk to a server; no settings of a server
+CLIENT = ("key", "server")  # variables of the commands that talk to a server; no settings of a server
 #: variables of the compiler of kernels, see :mod:`substructures.compile.setting`
 COMPILER = tuple(name[len(PREFIX) :].lower() for name in VARIABLES)
 #: limits that several processes share out

@@ -79,6 +79,24 @@ def test_commands_on_robot_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert Definition.read(json.loads((tmp_path / "hand.json").read_text())).name == "franka-hand"
 
 
+def test_dialogue_at_a_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every line is what the command prints; ``| grep PATTERN`` is done here."""
+    (dialogue,) = blocks("console")
+    (tmp_path / "pendulum.yaml").write_text(blocks("yaml")[0])
+    monkeypatch.chdir(tmp_path)
+    with background(Settings(database=f"sqlite:///{tmp_path / 'dialogue.db'}")) as address:
+        monkeypatch.setenv("SUBSTRUCTURES_SERVER", address)
+        for command, *expected in (part.splitlines() for part in dialogue.split("$ substructures ")[1:]):
+            words, _, pattern = command.partition(" | grep ")
+            assert main(shlex.split(words)) == 0, command
+            shown = capsys.readouterr().out.splitlines()
+            if pattern:
+                shown = [line for line in shown if re.search(shlex.split(pattern)[0], line)]
+            assert shown == expected, command
+
+
 def test_own_part() -> None:
     part = derive(Definition.read(yaml.safe_load(blocks("yaml")[0])))
     assert part.coordinates == ("q1",)
@@ -93,7 +111,8 @@ def test_python_example(tmp_path: Path) -> None:
     "word",
     [
         *("demo", "serve", "worker", "derive", "submit", "simulate", "analyse", "backup", "restore", "key create"),
-        *("import", "same", "catalogue export", "catalogue import"),
+        *("import", "same", "catalogue export", "catalogue import", "list", "search", "show", "tree", "couple", "rm"),
+        *("evaluate", "doctor", "pull", "push", "bundle save", "bundle load", "mirror"),
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
+import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import orjson
+import typer
 
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options
 from service.analyses.numbers import ANALYSES
@@ -15,14 +17,17 @@ from service.analyses.printing import NAME
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
-from service.cli.options import Add, add_server, named, read_document, tell_warnings
-from service.cli.tree_files import SUFFIXES, parts_beside
+from service.cli.choices import Form, Format
+from service.cli.documents import is_document, named, read_document
+from service.cli.options import Json, Server, with_more, with_server
+from service.cli.output import tell_warnings, waiting
+from service.cli.tree_files import parts_beside
 from service.operations import models
 from service.operations.analyses import printed
 from service.operations.models import Style
 from service.settings import Limits
-from substructures.client import Client
-from substructures.export import FORMATS, interface_of_model
+from substructures.client.connection import step
+from substructures.export import interface_of_model
 from substructures.part.part import Part
 from substructures.printers import FORMS
 from substructures.quantities.evaluation import Sources
@@ -36,64 +41,81 @@ from substructures.tree.model import couple
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
 
 
-def _add_simulate(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_simulate)
-    _add_tree(command)
-    command.add_argument("request", type=Path, help="request, JSON or YAML: q, qd, span, ...")
-    _add_output(command)
+@dataclass(frozen=True)
+class _Wanted:
+    """A tree that is a document or on a server, and where the result goes."""
+
+    server: Server
+    tree: str
+    out: Path | None
+    as_json: bool = False
 
 
-def _add_analyse(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_analyse)
-    _add_tree(command)
-    command.add_argument("what", help=f"numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...")
-    command.add_argument("request", type=Path, nargs="?", help="request of numbers, JSON or YAML")
-    _add_output(command)
-    command.add_argument("--format", choices=sorted(FORMATS), default="text", help="of formulas")
-    command.add_argument("--form", choices=FORMS, default=FORMS[0], help="of formulas")
-    command.add_argument("--bind", default="", help="numbers in formulas: name:value,... or defaults")
-    command.add_argument("--name", default=NAME, help="prefix of functions, where the format is a language")
-    for name, text in OPTIONS.items():
-        command.add_argument(f"--{name}", action="append", help=text)
+Tree = Annotated[str, typer.Argument(help="Tree document (JSON or YAML), or the name of a tree on a server.")]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help=f"For the result; its ending says what it is: {', '.join(f'.{name}' for name in MEDIA_TYPES)}.",
+    ),
+]
+Several = list[str] | None
 
 
-def _add_tree(command: argparse.ArgumentParser) -> None:
-    command.add_argument("tree", help="tree document (JSON or YAML), or the name of a tree on a server")
-    add_server(command)
+@with_server
+def simulate(
+    server: Server,
+    tree: Tree,
+    request: Annotated[Path, typer.Argument(metavar="REQUEST", help="JSON or YAML: q, qd, span, ...")],
+    out: Out = None,
+    json: Json = False,
+) -> int:
+    """Simulate a tree and judge the motion by its first integrals."""
+    return _numbers(_Wanted(server, tree, out, json), "simulations", request)
 
 
-def _add_output(command: argparse.ArgumentParser) -> None:
-    known = ", ".join(f".{name}" for name in MEDIA_TYPES)
-    command.add_argument("--out", type=Path, help=f"file for the result; its ending says what it is: {known}")
-
-
-def _simulate(options: argparse.Namespace) -> int:
-    return _numbers(options, "simulations")
-
-
-def _analyse(options: argparse.Namespace) -> int:
-    if options.what in ANALYSES:
-        return _numbers(options, options.what)
-    if options.request is not None:
-        raise ValueError(f"'{options.what}' is a formula: it has options, but no request")
-    chosen = {name: tuple(",".join(texts).split(",")) for name in OPTIONS if (texts := getattr(options, name))}
-    text = _formula(options, chosen)
-    if options.out is not None:
-        options.out.write_bytes(text)
+@with_server
+@with_more({name: Annotated[Several, typer.Option(f"--{name}", help=f"{text}.")] for name, text in OPTIONS.items()})
+def analyse(
+    server: Server,
+    tree: Tree,
+    what: Annotated[
+        str, typer.Argument(help=f"Numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...")
+    ],
+    request: Annotated[
+        Path | None, typer.Argument(metavar="REQUEST", help="Of numbers, JSON or YAML.", show_default=False)
+    ] = None,
+    out: Out = None,
+    format: Format = "text",  # noqa: A002 -- name of the option
+    form: Form = FORMS[0],
+    bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
+    name: Annotated[str, typer.Option(help="Prefix of functions, where the format is a language.")] = NAME,
+    json: Json = False,
+    **options: Any,
+) -> int:
+    """Formulas and numbers that follow from the equations of motion."""
+    wanted = _Wanted(server, tree, out, json)
+    if what in ANALYSES:
+        return _numbers(wanted, what, request)
+    if request is not None:
+        raise ValueError(f"'{what}' is a formula: it has options, but no request")
+    chosen = {name: tuple(",".join(texts).split(",")) for name, texts in options.items() if texts}
+    text = _formula(wanted, what, Style("json" if json else format, form, bind, name), chosen)
+    if out is not None:
+        out.write_bytes(text)
     else:
         print(text.decode().rstrip("\n"))
     return 0
 
 
-def _formula(options: argparse.Namespace, chosen: Options) -> bytes:
-    style, what = Style(options.format, options.form, options.bind, options.name), options.what
-    if not is_document(options.tree):
+def _formula(wanted: _Wanted, what: str, style: Style, chosen: Options) -> bytes:
+    if not is_document(wanted.tree):
         given = {name: list(texts) for name, texts in chosen.items()}
-        with Client(options.server, options.key) as client:
-            return client.formula(
-                options.tree, what, style.format, style.form, style.bind, name=style.name, **given
-            ).encode()
-    source = local_source(Path(options.tree))
+        asked = {"format": style.format, "form": style.form, "bind": style.bind, "name": style.name, **given}
+        with wanted.server.client() as client:
+            found: bytes = client.request("GET", f"/v1/trees/{step(wanted.tree)}/{step(what)}", params=asked).content
+            return found
+    source = local_source(Path(wanted.tree))
     if what in QUANTITIES:
         return printed(source, what, chosen, style).body
     return _model_formula(source, what, style, chosen).body
@@ -109,18 +131,19 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
     return models.printed(program, style, what, interface, members)
 
 
-def _numbers(options: argparse.Namespace, name: str) -> int:
-    request = {} if options.request is None else read_document(options.request)
-    media = _media(options.out, name)
-    if is_document(options.tree):
-        source = local_source(Path(options.tree))
-        result = ANALYSES[name].compute(source, request, lambda _: None)
-        told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
-    else:
-        with Client(options.server, options.key) as client:
-            data, told = client.analysis(options.tree, name, request, media)
-        told = orjson.loads(data) if media == JSON else told
-    return _tell(told, data, options.out)
+def _numbers(wanted: _Wanted, name: str, given: Path | None) -> int:
+    request = {} if given is None else read_document(given)
+    media = _media(wanted.out, name)
+    with waiting(name):
+        if is_document(wanted.tree):
+            source = local_source(Path(wanted.tree))
+            result = ANALYSES[name].compute(source, request, lambda _: None)
+            told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
+        else:
+            with wanted.server.client() as client:
+                data, told = client.analysis(wanted.tree, name, request, media)
+            told = orjson.loads(data) if media == JSON else told
+    return _tell(told, data, wanted.out, wanted.as_json)
 
 
 def _media(out: Path | None, name: str) -> str:
@@ -131,13 +154,15 @@ def _media(out: Path | None, name: str) -> str:
     return media
 
 
-def _tell(told: Mapping[str, Any], data: bytes, out: Path | None) -> int:
+def _tell(told: Mapping[str, Any], data: bytes, out: Path | None, as_json: bool) -> int:
     """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
     is_motion = "checks" in told and "t" in told
     if out is not None:
         out.write_bytes(data)
-        print(f"{out}: {len(data)} bytes")
-    if out is not None or is_motion:
+        print(f"{out}: {len(data)} bytes", file=sys.stderr if as_json else sys.stdout)
+    if as_json:
+        print(data.decode() if out is None else orjson.dumps(told).decode())
+    elif out is not None or is_motion:
         _summary(told)
     else:
         print(data.decode())
@@ -169,11 +194,6 @@ def _short(number: float | None) -> str:
     return "not finite" if number is None else f"{number:.2g}"
 
 
-def is_document(tree: str) -> bool:
-    """Whether a tree is given as a file."""
-    return tree.endswith(SUFFIXES)
-
-
 def local_source(path: Path) -> Source:
     """A tree document coupled here. Its parts are inline definitions, files ``<name>.yaml`` or ``.json`` beside the
     document, or entries of the shipped catalogue. Raises InvalidDocument.
@@ -197,4 +217,4 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
     return Source(model, spec.digest, lambda: regressor(spec, parts, nodes), limits, reactions=transmitted)
 
 
-ADD: Add = {"simulate": _add_simulate, "analyse": _add_analyse}
+COMMANDS = {"simulate": simulate, "analyse": analyse}

@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import Annotated
 
-from service.cli.options import Add, add_database, settings_of
-from service.database.backup import backup, restore
+import typer
 
+from service.cli.options import Store, settings
+from service.database import backup as copies
 
-def _add_backup(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_backup)
-    command.add_argument("file", type=Path)
-    add_database(command)
-
-
-def _add_restore(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_restore)
-    command.add_argument("file", type=Path)
-    command.add_argument("--overwrite", action="store_true", help="replace a store that is there")
-    add_database(command)
+BackupFile = Annotated[Path, typer.Argument(metavar="FILE")]
 
 
-def _backup(options: argparse.Namespace) -> int:
-    print(f"{options.file}: {backup(settings_of(options).database, options.file):,} bytes")
+def backup(file: BackupFile, database: Store = None) -> int:
+    """Copy the SQLite store to a file, also while a server runs."""
+    print(f"{file}: {copies.backup(settings(database=database).database, file):,} bytes")
     return 0
 
 
-def _restore(options: argparse.Namespace) -> int:
-    restore(options.file, settings_of(options).database, options.overwrite)
-    print(f"{options.file} restored")
+def restore(
+    file: BackupFile,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace a store that is there.")] = False,
+    database: Store = None,
+) -> int:
+    """Put a backup in the place of the SQLite store."""
+    copies.restore(file, settings(database=database).database, overwrite)
+    print(f"{file} restored")
     return 0
 
 
-ADD: Add = {"backup": _add_backup, "restore": _add_restore}
+COMMANDS = {"backup": backup, "restore": restore}

@@ -5,7 +5,6 @@ Published: P. Corke, Robotics Toolbox for Python, ``tests/test_DHRobot.py``; Pum
 
 from __future__ import annotations
 
-import argparse
 import math
 import tempfile
 from collections.abc import Sequence
@@ -13,7 +12,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from service.cli.options import Add
 from service.server import background
 from service.settings import Settings
 from substructures.client import Client
@@ -121,8 +119,9 @@ def compare(title: str, found: Sequence[Sequence[Any]], published: Sequence[Sequ
     return agrees
 
 
-def _add_demo(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=lambda _: run())
+def demo() -> int:
+    """Couple a gripper onto a Puma 560 over HTTP and compare with published numbers."""
+    return run()
 
 
-ADD: Add = {"demo": _add_demo}
+COMMANDS = {"demo": demo}

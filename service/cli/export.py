@@ -2,42 +2,56 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
-from service.cli.analysis import coupled_source, is_document
-from service.cli.options import Add, add_server
+from service.cli.analysis import coupled_source
+from service.cli.choices import one_of
+from service.cli.documents import is_document
+from service.cli.options import Server, with_server
+from service.cli.output import waiting
 from service.cli.robots import part_or_tree
 from service.settings import Limits
-from substructures.client import Client
+from substructures.client.connection import step
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Sources
 
 
-def _add_export(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_export)
-    command.add_argument("tree", help="tree or definition (JSON, YAML), robot file, or the name of a tree on a server")
-    command.add_argument("--target", required=True, choices=ALL_TARGETS)
-    command.add_argument("--quantities", default="", help="name,... (metric, christoffel, forces)")
-    command.add_argument("--name", default="", help="prefix of functions (the name of the tree)")
-    command.add_argument("--bind", default="", help="numbers in formulas: name:value,... or defaults")
-    command.add_argument("--together", action="store_true", help="also a function with all quantities, NAME_all")
-    command.add_argument("--packed", action="store_true", help="of metric and christoffel the independent elements")
-    command.add_argument("--fmi", choices=FMI, default=FMI[0], help="of fmu: version of the interface")
-    command.add_argument("--precision", choices=PRECISIONS, default=PRECISIONS[0], help="of c: of the numbers")
-    command.add_argument("--stages", action="store_true", help="of c: NAME_prepare(p, w), once per set of parameters")
-    command.add_argument("--part", action="store_true", help="the name is that of a part on a server")
-    command.add_argument("--out", type=Path, help="file to be written; default its own name, in this directory")
-    add_server(command)
-
-
-def _export(options: argparse.Namespace) -> int:
-    names = tuple(text for text in options.quantities.split(",") if text)
-    flags = options.together, options.packed, options.fmi, options.precision, options.stages
-    request = ExportRequest(options.target, names, options.name, options.bind, *flags)
-    package = _local(Path(options.tree), request) if _is_file(options.tree) else _remote(options, request)
-    path = options.out or Path(package.name)
+@with_server
+def export(
+    server: Server,
+    tree: Annotated[
+        str, typer.Argument(help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.")
+    ],
+    target: Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")],
+    quantities: Annotated[str, typer.Option(help="name,... (metric, christoffel, forces).")] = "",
+    name: Annotated[str, typer.Option(help="Prefix of functions (the name of the tree).")] = "",
+    bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
+    together: Annotated[
+        bool, typer.Option("--together", help="Also a function with all quantities, NAME_all.")
+    ] = False,
+    packed: Annotated[
+        bool, typer.Option("--packed", help="Of metric and christoffel the independent elements.")
+    ] = False,
+    fmi: Annotated[str, one_of(FMI, help="Of fmu: version of the interface.")] = FMI[0],
+    precision: Annotated[str, one_of(PRECISIONS, help="Of c: of the numbers.")] = PRECISIONS[0],
+    stages: Annotated[
+        bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
+    ] = False,
+    part: Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
+    ] = None,
+) -> int:
+    """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
+    names = tuple(text for text in quantities.split(",") if text)
+    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages)
+    with waiting("writing"):
+        package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
+    path = out or Path(package.name)
     path.write_bytes(package.data)
     print(f"{path}: {len(package.data)} bytes")
     return 0
@@ -56,24 +70,23 @@ def _local(path: Path, request: ExportRequest) -> Package:
     return tree_package(sources, path.stem, path.name, source.digest, request, limit, lambda: read)
 
 
-def _remote(options: argparse.Namespace, request: ExportRequest) -> Package:
-    kind = "substructures" if options.part else "trees"
-    with Client(options.server, options.key) as client:
-        answer = client.export(
-            kind,
-            options.tree,
-            request.target,
-            request.quantities,
-            request.name,
-            request.bind,
-            request.together,
-            request.packed,
-            request.fmi,
-            request.precision,
-            request.stages,
-        )
+def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) -> Package:
+    kind = "substructures" if is_part else "trees"
+    wanted = {
+        "target": request.target,
+        "quantities": ",".join(request.quantities),
+        "name": request.name,
+        "bind": request.bind,
+        "together": request.together,
+        "packed": request.packed,
+        "fmi": request.fmi,
+        "precision": request.precision,
+        "stages": request.stages,
+    }
+    with server.client() as client:
+        answer = client.request("GET", f"/v1/{kind}/{step(tree)}/export", params=wanted)
     name = answer.headers["content-disposition"].partition('filename="')[2].rstrip('"')
     return Package(Path(name).name, answer.headers["content-type"], answer.content)
 
 
-ADD: Add = {"export": _add_export}
+COMMANDS = {"export": export}

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
-import json
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from math import nan
+from json import dumps, loads
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from service.cli.options import Add, add_action, add_server, named, read_document, read_from
+import typer
+
+from service.cli.choices import one_of
+from service.cli.documents import named, read_document, read_from
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, table
 from service.cli.progress import counted, follow
 from substructures.client import Client
 from substructures.client.connection import step
@@ -20,127 +23,100 @@ from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
 
-EPILOG = """\
-{"kind": "evaluate", "items": [{"tree": "swing", "request": {"quantities": ["metric"], "q": [[0, 0], [1, 0]]}}]}
-{"kind": "simulate", "template": {"tree": "swing", "request": {"q": [0, 0], "span": [0, 5], "step": 0.05}},
- "choices": {"/request/q/0": [0.1, 0.2]}}
-
-An item is, for
-  assemble             a tree document
-  derive               a definition
-  verify               substructure (* for all)
-  compare              a, b (a list, or * for the catalogue), coordinates
-  evaluate             tree, request, grid or sample, format
-  simulate, optimise   tree, request or requests, format
-  analyse              tree, analysis, request or requests, format
-  export               tree, quantity, format, form, bind, options
-
-A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
-instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
-document: 'substructures openapi', or /openapi.json of a server.
-
-With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was cancelled.
-"""
+Id = Annotated[str, typer.Argument(metavar="ID")]
+Wait = Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")]
+Patience = Annotated[
+    float,
+    typer.Option(
+        metavar="SECONDS", help="To go on when the server cannot be reached.", callback=lambda x: _positive(x)
+    ),
+]
 
 
-def _add_jobs(jobs: argparse.ArgumentParser) -> None:
-    actions = jobs.add_subparsers(title="actions", required=True, metavar="ACTION")
-    command = add_action(actions, "submit", _submit, "queue the job in a file")
-    command.add_argument("file", type=Path, help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML')
-    command.formatter_class, command.epilog = argparse.RawDescriptionHelpFormatter, EPILOG
-    command.add_argument("--label", help="what it is for, in words")
-    _add_wait(command)
-    add_server(command)
-    command = add_action(actions, "retry", _retry, "once more what of a job failed or was cancelled, as a new job")
-    command.add_argument("id")
-    _add_wait(command)
-    add_server(command)
-    command = add_action(actions, "rm", _remove, "remove jobs that have ended, with their results")
-    command.add_argument("id", nargs="+")
-    add_server(command)
-    command = add_action(actions, "evaluate", _evaluate, "queue the evaluation of a tree for a file of states")
-    command.add_argument("tree", help="name of a tree")
-    command.add_argument(
-        "file", type=Path, help="states: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml"
-    )
-    command.add_argument("--quantities", help="metric,forces,... (default: those in the file)")
-    command.add_argument("--format", choices=tuple(FORMATS), default="npz", help="of the results (npz)")
-    _add_wait(command)
-    add_server(command)
-    command = add_action(actions, "list", _list, "list jobs, the newest first")
-    command.add_argument("--state", help="only those in this state")
-    command.add_argument("--kind", help="only those of this kind")
-    command.add_argument("--count", type=_count, default=20, help="how many (20)")
-    add_server(command)
-    for name, run, text in (
-        ("show", _show, "print a job as JSON"),
-        ("cancel", _cancel, "cancel what is not finished"),
-        ("watch", _watch, "follow a job until it has ended"),
-        ("result", _result, "print what came of every item, or save all files"),
-    ):
-        command = add_action(actions, name, run, text)
-        command.add_argument("id")
-        add_server(command)
-        if run is _watch:
-            _add_patience(command)
-    command.add_argument("--output", type=Path, help="save everything there is as this zip file")
-
-
-def _add_wait(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--wait", action="store_true", help="wait until it has ended")
-    _add_patience(command)
-
-
-def _add_patience(command: argparse.ArgumentParser) -> None:
-    text = f"seconds to go on when the server cannot be reached ({PATIENCE:g})"
-    command.add_argument("--patience", type=_patience, default=PATIENCE, metavar="SECONDS", help=text)
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or not int(text):
-        raise argparse.ArgumentTypeError(f"a whole number from 1 is needed, found '{text}'")
-    return int(text)
-
-
-def _patience(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = nan
+def _positive(seconds: float) -> float:
     if not seconds > 0:
-        raise argparse.ArgumentTypeError(f"a number of seconds above 0 is needed, found '{text}'")
+        raise typer.BadParameter(f"a number of seconds above 0 is needed, found '{seconds:g}'")
     return seconds
 
 
-def _client(options: argparse.Namespace) -> Client:
-    return Client(options.server, options.key)
+@with_server
+def submit(
+    server: Server,
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML.')
+    ],
+    label: Annotated[str | None, typer.Option(help="What it is for, in words.")] = None,
+    wait: Wait = False,
+    patience: Patience = PATIENCE,
+    json: Json = False,
+) -> int:
+    """Queue the job in a file.
+
+    \b
+    {"kind": "evaluate", "items": [{"tree": "swing", "request": {"quantities": ["metric"], "q": [[0, 0], [1, 0]]}}]}
+    {"kind": "simulate", "template": {"tree": "swing", "request": {"q": [0, 0], "span": [0, 5], "step": 0.05}},
+     "choices": {"/request/q/0": [0.1, 0.2]}}
+
+    \b
+    An item is, for
+      assemble             a tree document
+      derive               a definition
+      verify               substructure (* for all)
+      compare              a, b (a list, or * for the catalogue), coordinates
+      evaluate             tree, request, grid or sample, format
+      simulate, optimise   tree, request or requests, format
+      analyse              tree, analysis, request or requests, format
+      export               tree, quantity, format, form, bind, options
+
+    A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
+    instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
+    document: 'substructures openapi', or /openapi.json of a server.
+
+    With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was
+    cancelled.
+    """
+    with server.client() as client:
+        document = read_document(file)
+        if label is not None and isinstance(document, dict):
+            document["label"] = label
+        return _queued(client, client.submit_job(document), wait, patience, json)
 
 
-def _submit(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        document = read_document(options.file)
-        if options.label is not None and isinstance(document, dict):
-            document["label"] = options.label
-        return _queued(client, client.submit_job(document), options)
+@with_server
+def retry(server: Server, id: Id, wait: Wait = False, patience: Patience = PATIENCE, json: Json = False) -> int:  # noqa: A002 -- an argument
+    """Once more what of a job failed or was cancelled, as a new job."""
+    with server.client() as client:
+        return _queued(client, client.retry_job(id), wait, patience, json)
 
 
-def _retry(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        return _queued(client, client.retry_job(options.id), options)
-
-
-def _remove(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        for job in options.id:
+@with_server
+def remove(server: Server, ids: Annotated[list[str], typer.Argument(metavar="ID...")]) -> int:
+    """Remove jobs that have ended, with their results."""
+    with server.client() as client:
+        for job in ids:
             client.remove_job(job)
     return 0
 
 
-def _evaluate(options: argparse.Namespace) -> int:
-    with _states(options.file) as (constants, states), _client(options) as client:
-        if options.quantities:
-            constants["quantities"] = options.quantities.split(",")
-        return _queued(client, client.submit_states(options.tree, states, options.format, **constants), options)
+@with_server
+def evaluate(
+    server: Server,
+    tree: Annotated[str, typer.Argument(help="Name of a tree.")],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="FILE", help="States: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml."),
+    ],
+    quantities: Annotated[str, typer.Option(help="metric,forces,... (default: those in the file).")] = "",
+    format: Annotated[str, one_of(FORMATS, help="Of the results: npz or arrow.")] = "npz",  # noqa: A002 -- an option
+    wait: Wait = False,
+    patience: Patience = PATIENCE,
+    json: Json = False,
+) -> int:
+    """Queue the evaluation of a tree for a file of states."""
+    with _states(file) as (constants, states), server.client() as client:
+        if quantities:
+            constants["quantities"] = quantities.split(",")
+        return _queued(client, client.submit_states(tree, states, format, **constants), wait, patience, json)
 
 
 @contextmanager
@@ -156,7 +132,7 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
             yield texts, {name: x for name, x in arrays.items() if name not in texts}
         elif path.suffix in (".arrow", ".arrows"):
             reader = arrow.Reader(file, sys.maxsize)
-            yield {name: json.loads(text) for name, text in reader.metadata.items()}, reader
+            yield {name: loads(text) for name, text in reader.metadata.items()}, reader
         else:
             states = read_from(path, file)
             if not isinstance(states, dict):
@@ -164,48 +140,94 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
             yield {}, states
 
 
-def _queued(client: Client, job: Mapping[str, Any], options: argparse.Namespace) -> int:
-    print(job["id"], flush=True)
-    return follow(client, job["id"], options.patience) if options.wait else 0
+def _queued(client: Client, job: Mapping[str, Any], wait: bool, patience: float, as_json: bool) -> int:
+    if not as_json:
+        print(job["id"], flush=True)
+    code = follow(client, job["id"], patience) if wait else 0
+    if as_json:
+        print_json(client.job(job["id"]))
+    return code
 
 
-def _list(options: argparse.Namespace) -> int:
-    filters = {name: getattr(options, name) for name in ("state", "kind") if getattr(options, name)}
-    with _client(options) as client:
-        for _, job in zip(range(options.count), client.jobs(**filters), strict=False):
-            state = f"{job['kind']:<9} {job['state']:<10} {counted(job)}  {job['label']}".rstrip()
-            print(f"{job['id']}  {job['created'][:19]}  {state}")
+@with_server
+def show_all(
+    server: Server,
+    state: Annotated[str | None, typer.Option(help="Only those in this state.")] = None,
+    kind: Annotated[str | None, typer.Option(help="Only those of this kind.")] = None,
+    count: Annotated[int, typer.Option(min=1, help="How many.")] = 20,
+    json: Json = False,
+) -> int:
+    """List jobs, the newest first."""
+    filters = {name: x for name, x in (("state", state), ("kind", kind)) if x}
+    with server.client() as client:
+        found = [job for _, job in zip(range(count), client.jobs(**filters), strict=False)]
+    if json:
+        print_json(found)
+        return 0
+    rows = [
+        (job["id"], job["created"][:19], job["kind"], job["state"], counted(job), job["label"] or "") for job in found
+    ]
+    table(("id", "created", "kind", "state", "items", "label"), rows)
     return 0
 
 
-def _show(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        print(json.dumps(client.job(options.id), indent=1))
+@with_server
+def show(server: Server, id: Id) -> int:  # noqa: A002 -- an argument
+    """Print a job as JSON."""
+    with server.client() as client:
+        print_json(client.job(id))
     return 0
 
 
-def _cancel(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        print(client.cancel_job(options.id)["state"])
+@with_server
+def cancel(server: Server, id: Id) -> int:  # noqa: A002 -- an argument
+    """Cancel what is not finished."""
+    with server.client() as client:
+        print(client.cancel_job(id)["state"])
     return 0
 
 
-def _watch(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        return follow(client, options.id, options.patience)
+@with_server
+def watch(server: Server, id: Id, patience: Patience = PATIENCE) -> int:  # noqa: A002 -- an argument
+    """Follow a job until it has ended."""
+    with server.client() as client:
+        return follow(client, id, patience)
 
 
-def _result(options: argparse.Namespace) -> int:
-    with _client(options) as client:
-        if options.output is not None:
-            size = client.download(f"/v1/jobs/{step(options.id)}/archive", options.output)
-            print(f"{options.output}: {size:,} bytes")
+@with_server
+def result(
+    server: Server,
+    id: Id,  # noqa: A002 -- an argument
+    output: Annotated[Path | None, typer.Option(help="Save everything there is as this zip file.")] = None,
+    json: Json = False,
+) -> int:
+    """Print what came of every item, or save all files."""
+    with server.client() as client:
+        if output is not None:
+            size = client.download(f"/v1/jobs/{step(id)}/archive", output)
+            print(f"{output}: {size:,} bytes")
             return 0
-        for item in client.job_items(options.id):
-            what = item["problem"]["detail"] if item["problem"] else json.dumps(item["result"] or {})
+        found = client.job_items(id)
+        if json:
+            print_json(list(found))
+            return 0
+        for item in found:
+            what = item["problem"]["detail"] if item["problem"] else dumps(item["result"] or {})
             subject = f"{item['subject']}: " if item["subject"] else ""
             print(f"{item['position']}  {item['state']}  {subject}{what}")
     return 0
 
 
-ADD: Add = {"jobs": _add_jobs}
+COMMANDS = {
+    "jobs": {
+        "submit": submit,
+        "retry": retry,
+        "rm": remove,
+        "evaluate": evaluate,
+        "list": show_all,
+        "show": show,
+        "cancel": cancel,
+        "watch": watch,
+        "result": result,
+    }
+}

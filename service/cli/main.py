@@ -5,63 +5,162 @@ A command that is ``kept`` runs in a process of its own, which is started again 
 
 from __future__ import annotations
 
-import argparse
+import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
 
 from service import __version__, respawn
 
+PROGRAM = "substructures"
 FAILURES = "service.cli.failures"
+WRONGLY_CALLED = 2
 
 
 @dataclass(frozen=True)
 class Command:
-    """``module``: of this package; its table ADD says by name what adds the arguments of a command to its parser."""
+    """``module``: of this package; its table COMMANDS has by name a function, or for a group functions by name; what
+    they take are their parameters, what they say of themselves is their help, what they return the exit code.
+    """
 
     name: str
     module: str
     text: str
+    panel: str
     kept: bool = False
 
 
+PARTS, TREES, SHARING, SERVICE, FILES = "Parts", "Trees", "Between people and servers", "The service", "Files"
 COMMANDS = (
-    Command("serve", "server", "run the service (settings also from SUBSTRUCTURES_* variables)", kept=True),
-    Command("worker", "server", "compute the jobs of servers that share a PostgreSQL database"),
-    Command("demo", "demo", "couple a gripper onto a Puma 560 over HTTP and compare with published numbers"),
-    Command("derive", "parts", "derive and verify a definition here, without a server"),
-    Command("submit", "parts", "submit a definition to a server"),
-    Command("catalogue", "catalogue", "keep the parts of a server as a folder of YAML files, and read such a folder"),
-    Command("versions", "versions", "list the versions of a part, or the revisions of a tree, the newest first"),
-    Command("diff", "versions", "tell how two versions, or two revisions of a tree, differ"),
-    Command("uses", "versions", "list what uses a part"),
-    Command("publish", "versions", "make a part of a tree"),
-    Command("import", "robots", "read a robot file as a definition, with a report of what became of everything in it"),
-    Command("same", "robots", "tell whether two models are the same, and which body and parameter differ"),
-    Command("jobs", "jobs", "submit, watch and read batch jobs"),
-    Command("backup", "backup", "copy the SQLite store to a file, also while a server runs"),
-    Command("restore", "backup", "put a backup in the place of the SQLite store"),
-    Command("verify", "verify", "verify every part and tree of a store against its documents"),
-    Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals"),
-    Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion"),
-    Command("export", "export", "functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, ..."),
-    Command("openapi", "openapi", "print the OpenAPI document"),
-    Command("key", "keys", "manage API keys"),
-)
+    Command("list", "lists", "list parts, or trees", PARTS),
+    Command("search", "lists", "find parts, or trees; typing errors are forgiven", PARTS),
+    Command("show", "show", "show a part, a tree, a formula, or a drawing of its structure", PARTS),
+    Command("derive", "parts", "derive and verify a definition here, without a server", PARTS),
+    Command("submit", "parts", "submit a definition to a server", PARTS),
+    Command("versions", "versions", "list the versions of a part, or the revisions of a tree, the newest first", PARTS),
+    Command("diff", "versions", "tell how two versions, or two revisions of a tree, differ", PARTS),
+    Command("uses", "versions", "list what uses a part", PARTS),
+    Command("tree", "trees", "make a tree of a document, or begin one with a first part", TREES),
+    Command("couple", "trees", "couple a part onto a tree, which makes a new revision", TREES),
+    Command("rm", "trees", "remove trees with all their revisions", TREES),
+    Command("evaluate", "evaluate", "numbers at a state: metric, christoffel, forces, ...", TREES),
+    Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals", TREES),
+    Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion", TREES),
+    Command("publish", "versions", "make a part of a tree", TREES),
+    Command("jobs", "jobs", "submit, watch and read batch jobs", TREES),
+    Command("export", "export", "functions of a tree for other tools: C, MATLAB, Fortran, FMU, ...", FILES),
+    Command("import", "robots", "read a robot file as a definition, with a report", FILES),
+    Command("same", "robots", "tell whether two models are the same, and where they differ", FILES),
+    Command("catalogue", "catalogue", "the parts of a server as a folder of YAML files, and back", SHARING),
+    Command("pull", "exchange", "copy parts of another server to this one, verified", SHARING),
+    Command("push", "exchange", "copy parts of this server to another one", SHARING),
+    Command("bundle", "exchange", "parts with their formulas and certificates as one file, and back", SHARING),
+    Command("mirror", "exchange", "copy all public parts of another server, as a job", SHARING),
+    Command("serve", "server", "run the service (settings also from SUBSTRUCTURES_* variables)", SERVICE, kept=True),
+    Command("worker", "server", "compute the jobs of servers that share a PostgreSQL database", SERVICE),
+    Command("demo", "demo", "couple a gripper onto a Puma 560 over HTTP and compare with published numbers", SERVICE),
+    Command("key", "keys", "manage API keys", SERVICE),
+    Command("verify", "verify", "verify every part and tree of a store against its documents", SERVICE),
+    Command("backup", "backup", "copy the SQLite store to a file, also while a server runs", SERVICE),
+    Command("restore", "backup", "put a backup in the place of the SQLite store", SERVICE),
+    Command("doctor", "doctor", "say what is installed, what is where, and what is wrong", SERVICE),
+    Command("openapi", "openapi", "print the OpenAPI document", SERVICE),
+)  # fmt: skip
+_BY_NAME = {command.name: command for command in COMMANDS}
+
+
+class _Commands(TyperGroup):
+    """Commands whose modules are imported when they are called; of the others help has the name and the text."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 -- of the base class
+        """In the order of the table."""
+        return list(_BY_NAME)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002 -- of the base class
+        """The name and the text."""
+        found = _BY_NAME.get(cmd_name)
+        if found is None:
+            return None
+        return TyperCommand(found.name, help=found.text, short_help=found.text, rich_help_panel=found.panel)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command itself."""
+        name, stub, rest = super().resolve_command(ctx, args)
+        return name, stub if name is None else loaded(name), rest
+
+
+class _Ended(TyperCommand):
+    """A command whose function returns its exit code."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the function."""
+        code = super().invoke(ctx)
+        if code:
+            raise typer.Exit(code)
+
+
+def loaded(name: str) -> Any:
+    """A command, or a group of them, with its arguments."""
+    command = _BY_NAME[name]
+    found = import_module(f"service.cli.{command.module}").COMMANDS[name]
+    group = typer.Typer(add_completion=False, no_args_is_help=True, help=command.text)
+    if isinstance(found, Mapping):
+        group.callback()(_group)
+        for action, function in found.items():
+            group.command(action, cls=_Ended)(function)
+    else:
+        group.command(name, cls=_Ended)(found)
+    result = typer.main.get_command(group)
+    result.name = name
+    return result
+
+
+def _group() -> None:
+    pass
+
+
+def _version(is_wanted: bool) -> None:
+    if is_wanted:
+        print(__version__)
+        raise typer.Exit
+
+
+def _begin(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Couple stored formulas of mechanisms."""
+
+
+def app() -> Any:
+    """All commands as one."""
+    commands = typer.Typer(
+        cls=_Commands, no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]}
+    )
+    commands.callback()(_begin)
+    return typer.main.get_command(commands)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; 0 when it succeeded, 1 when it did not, 2 when it was called wrongly."""
-    words = sys.argv[1:] if arguments is None else arguments
+    words = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None and any(each.kept and each.name == _named(words) for each in COMMANDS):
-        if not respawn.is_kept():
+        if not {"-h", "--help"}.isdisjoint(words):
+            pass  # nothing is to be kept
+        elif not respawn.is_kept():
             return respawn.keep()
-        respawn.end_with_parent()
-    options = parser_for(words).parse_args(words)
-    command: Callable[[argparse.Namespace], int] = options.command
+        else:
+            respawn.end_with_parent()
     try:
-        return command(options)
+        app().main(args=words, prog_name=PROGRAM)
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
     except KeyboardInterrupt:
         return 130
     except Exception as error:
@@ -69,21 +168,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if lines is None:
             raise
         for line in lines:
-            print(f"substructures: {line}", file=sys.stderr)
-    return 1
-
-
-def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser; only the command that is named in ``words`` has its arguments, since they may need its imports."""
-    parser = argparse.ArgumentParser(prog="substructures", description="Couple stored formulas of mechanisms.")
-    parser.add_argument("--version", action="version", version=__version__)
-    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    named = _named(words)
-    for each in COMMANDS:
-        command = commands.add_parser(each.name, help=each.text, description=each.text)
-        if each.name == named:
-            import_module(f"service.cli.{each.module}").ADD[each.name](command)
-    return parser
+            print(f"{PROGRAM}: {line}", file=sys.stderr)
+        return 1
+    return 0
 
 
 def _named(words: Sequence[str]) -> str | None:
@@ -91,4 +178,6 @@ def _named(words: Sequence[str]) -> str | None:
 
 
 if __name__ == "__main__":
+    # tracebacks are of use to those who write programs, and their text is plain
+    os.environ.setdefault("TYPER_STANDARD_TRACEBACK", "1")
     sys.exit(main())

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 
 from service.app import bare_app
-from service.cli.options import Add
-from service.http import openapi
+from service.http import openapi as documents
 
 
-def _add_openapi(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_openapi)
-
-
-def _openapi(_: argparse.Namespace) -> int:
-    sys.stdout.write(openapi.text(bare_app()))
+def openapi() -> int:
+    """Print the OpenAPI document."""
+    sys.stdout.write(documents.text(bare_app()))
     return 0
 
 
-ADD: Add = {"openapi": _add_openapi}
+COMMANDS = {"openapi": openapi}

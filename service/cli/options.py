@@ -1,92 +1,141 @@
-"""Options that commands share, and documents that they read."""
+"""Options that commands share: the server or store that they talk to, and its settings."""
 
 from __future__ import annotations
 
-import argparse
+import inspect
 import os
-import re
-import sys
-from collections.abc import Callable, Iterator, Mapping
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import IO, Any
+from typing import Annotated, Any, Concatenate, ParamSpec
 
-from service.settings import Settings, from_environment
-from substructures.documents import places, read_json, read_yaml
-from substructures.errors import Fault, InvalidInput
+import typer
 
-#: endings of documents, in which places are found by line and column
-DOCUMENTS = (".yaml", ".yml", ".json")
-_TOLD = re.compile(r"\(line \d+, column \d+\)$")
+from service.settings import Settings, SettingsError, from_environment
+from substructures.client import Client
+
+P = ParamSpec("P")
 SERVER = "http://127.0.0.1:8000"
+#: where address and keys may be kept: server = "https://...", and by address under [keys]
+FILE = "substructures/client.toml"
 
-CommandFunction = Callable[[argparse.Namespace], int]
-#: adds the arguments of commands to their parsers, by name of the command
-Add = Mapping[str, Callable[[argparse.ArgumentParser], None]]
+File = Annotated[Path, typer.Argument(help="Definition, JSON or YAML, or a robot file.", metavar="FILE")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+OfTrees = Annotated[bool, typer.Option("--tree", help="Trees in place of parts.")]
+Wait = Annotated[bool, typer.Option("--wait", help="Wait where it takes so long that it becomes a job.")]
+Note = Annotated[str, typer.Option(help="Why, in words.")]
+Private = Annotated[bool, typer.Option("--private", help="For the keys of its owner alone.")]
+#: the option of commands that work on the store itself
+Store = Annotated[
+    str | None,
+    typer.Option("--database", help=f"URL: sqlite:///FILE or postgresql://... ({Settings().database}).", metavar="URL"),
+]
 
-
-def add_action(actions: Any, name: str, run: CommandFunction, text: str) -> argparse.ArgumentParser:
-    """One more action of a command that is a group of them."""
-    command: argparse.ArgumentParser = actions.add_parser(name, help=text, description=text)
-    command.set_defaults(command=run)
-    return command
-
-
-def add_server(command: argparse.ArgumentParser) -> None:
-    """The options of every command that talks to a server."""
-    command.add_argument("--server", default=SERVER, help=f"address ({SERVER})")
-    command.add_argument("--key", default=os.environ.get("SUBSTRUCTURES_KEY"), help="API key ($SUBSTRUCTURES_KEY)")
-
-
-def tell_warnings(told: Mapping[str, Any]) -> None:
-    """Print the warnings of an answer with their places, to the stream of errors."""
-    for warning in told.get("warnings", ()):
-        print(f"warning: {warning['pointer'] or '/'}: {warning['message']}", file=sys.stderr)
-
-
-def add_database(command: argparse.ArgumentParser) -> None:
-    """The option of every command that works on a database."""
-    default = Settings().database
-    command.add_argument("--database", help=f"URL: sqlite:///FILE or postgresql://... ({default})")
-
-
-def settings_of(options: argparse.Namespace) -> Settings:
-    """Settings from the environment, with those of the command line in their place. Raises SettingsError."""
-    names = ("host", "port", "database", "engine", "engine_address", "workers", "processes")
-    return from_environment(os.environ, **{name: getattr(options, name, None) for name in names})
+_PANEL = "Server"
+_TALKING = {
+    "server": typer.Option(
+        "--server", envvar="SUBSTRUCTURES_SERVER", help=f"Address ({SERVER}).", metavar="URL", rich_help_panel=_PANEL
+    ),
+    "key": typer.Option("--key", envvar="SUBSTRUCTURES_KEY", help="API key.", metavar="KEY", rich_help_panel=_PANEL),
+    "database": typer.Option(
+        "--database",
+        help="In place of a server: the store itself, sqlite:///FILE or postgresql://...",
+        metavar="URL",
+        rich_help_panel=_PANEL,
+    ),
+}
 
 
-def read_document(path: Path) -> Any:
-    """A document in JSON or YAML. Raises InvalidDocument naming the file."""
-    with path.open("rb") as file, named(path):
-        return read_from(path, file)
+@dataclass(frozen=True)
+class Server:
+    """Who is talked to: a server by its address and key, or a store."""
+
+    address: str | None = None
+    key: str | None = None
+    database: str | None = None
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        """A client of the server, or of one that serves the store while the block lasts. Raises SettingsError."""
+        if self.database is not None:
+            if self.address is not None:
+                raise SettingsError("give either --server or --database")
+            from service.cli.own_server import serving  # noqa: PLC0415 -- of the store alone, with all that serves
+
+            with serving(settings(database=self.database)) as client:
+                yield client
+            return
+        known = kept()
+        address = self.address or known.get("server") or SERVER
+        with Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client:
+            yield client
 
 
-def read_from(path: Path, file: IO[bytes]) -> Any:
-    """A document in JSON or YAML, by the ending of its name. Raises InvalidDocument."""
-    return read_json(file.read()) if path.suffix == ".json" else read_yaml(file.read())
+def kept_in() -> Path:
+    """The file with address and keys."""
+    folder = os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config"
+    return Path(folder) / FILE
 
 
-@contextmanager
-def named(path: Path) -> Iterator[None]:
-    """Put the name of the file before the pointers of its faults, and line and column behind what they say. Raises
-    InvalidDocument.
-    """
+def kept() -> Mapping[str, Any]:
+    """``server`` and ``keys`` by address out of the file, if there is one. Raises SettingsError."""
+    path = kept_in()
     try:
-        yield
-    except InvalidInput as error:
-        known = places(path.read_bytes()) if path.suffix in DOCUMENTS else {}
-        faults = [replace(fault, message=fault.message + _where(fault, known)) for fault in error.faults]
-        moved = type(error)(faults)
-        raise moved.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None
+        found = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, NotADirectoryError):
+        return {}
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: {error}") from None
+    keys, unknown = found.get("keys", {}), sorted(found.keys() - {"server", "keys"})
+    if unknown or not isinstance(keys, dict) or not all(isinstance(x, str) for x in (found.get("server", ""), *keys)):
+        what = f"'{unknown[0]}' is not known" if unknown else "a text is needed"
+        raise SettingsError(f'{path}: {what}; there may be server = "https://..." and keys by address under [keys]')
+    return {**found, "keys": {address.rstrip("/"): key for address, key in keys.items()}}
 
 
-def _where(fault: Fault, known: Mapping[str, tuple[int, int]]) -> str:
-    """Line and column of the innermost place there is of a pointer; nothing where the fault says it itself."""
-    pointer = fault.pointer
-    while pointer and pointer not in known:
-        pointer = pointer.rpartition("/")[0]
-    if _TOLD.search(fault.message) or not fault.pointer or pointer not in known:
-        return ""
-    return " (line {}, column {})".format(*known[pointer])
+def with_server(run: Callable[Concatenate[Server, P], int]) -> Callable[..., int]:
+    """A command that talks to a server: in place of its first parameter it has the options that say to which one."""
+    own = list(inspect.signature(run, eval_str=True).parameters.values())[1:]
+
+    @with_parameters(own, {name: Annotated[str | None, each] for name, each in _TALKING.items()})
+    @wraps(run)
+    def called(*given: Any, server: str | None, key: str | None, database: str | None, **options: Any) -> int:
+        """The command with a Server."""
+        return run(Server(server, key, database), *given, **options)
+
+    return called
+
+
+def with_more(more: Mapping[str, Any]) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Options of a table for a command with ``**options``; each None by default."""
+
+    def extended(run: Callable[..., int]) -> Callable[..., int]:
+        """The command with these, too."""
+        found = inspect.signature(run, eval_str=True).parameters.values()
+        return with_parameters([each for each in found if each.kind != each.VAR_KEYWORD], more)(run)
+
+    return extended
+
+
+def with_parameters(
+    own: Sequence[inspect.Parameter], more: Mapping[str, Any]
+) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Let a function say that it has these parameters, and ``more`` by name with their annotations, None by default."""
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    added = [inspect.Parameter(name, keyword, default=None, annotation=x) for name, x in more.items()]
+
+    def told(run: Callable[..., int]) -> Callable[..., int]:
+        """What is read from it are the signature and the annotations."""
+        run.__signature__ = inspect.Signature([*own, *added])  # type: ignore[attr-defined] # of functions
+        run.__annotations__ = {each.name: each.annotation for each in (*own, *added)}
+        return run
+
+    return told
+
+
+def settings(**given: object) -> Settings:
+    """Settings from the environment, with those of the command line in their place. Raises SettingsError."""
+    return from_environment(os.environ, **given)

@@ -35,6 +35,12 @@ def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
     return outcome(end)
 
 
+def became_job(client: Client, job: Mapping[str, Any], wait: bool) -> int:
+    """Say that a request takes so long that it is a job now, which is waited for or not."""
+    print(f"became the job {job['id']}", flush=True)
+    return follow(client, str(job["id"])) if wait else 0
+
+
 def outcome(job: Mapping[str, Any]) -> int:
     """The exit code of a job that has ended: 0 all succeeded, 3 some items failed, 4 all did, 5 it was cancelled."""
     if job["state"] == "cancelled":

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, get_args
+from typing import Annotated, Any
 
-from service.cli.options import Add, add_server, named, read_document, tell_warnings
+import typer
+
+from service.cli.choices import one_of
+from service.cli.documents import named, read_document
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, tell_warnings
 from service.cli.tree_files import parts_beside
-from substructures.client import Client
 from substructures.documents import write_json
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence
@@ -66,44 +69,38 @@ class _Beside(dict[str, bytes]):
         return path if inside else None
 
 
-def _add_import(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_import)
-    command.add_argument("file", type=Path, help=f"robot file: {', '.join(KINDS)}, found by its content")
-    command.add_argument("--kind", choices=KINDS, help="what the file has to be")
-    command.add_argument("--name", help="name of the part (default: the robot's)")
-    command.add_argument(
-        "--parameters",
-        choices=get_args(Parameters),
-        default="inertia",
-        help="what becomes a parameter (inertia)",
-    )
-    command.add_argument(
-        "--fixed", choices=get_args(Fixed), default="ports", help="what links on fixed joints become (ports)"
-    )
-    command.add_argument("--base", choices=get_args(Base), default="fixed", help="whether the root moves (fixed)")
-    command.add_argument("--cut", default="", metavar="LINK,...", help="links that begin parts of their own, in a tree")
-    command.add_argument("--license", default="", help="licence of the file")
-    command.add_argument("--out", type=Path, help="write the definition (or tree) to this JSON file")
-    command.add_argument("--submit", action="store_true", help="derive and store it on the server")
-    add_server(command)
-
-
-def _import(options: argparse.Namespace) -> int:
-    chosen = Options(options.parameters, options.fixed, options.base)
-    links = [text.strip() for text in options.cut.split(",") if text.strip()]
-    found = read_robot_file(
-        options.file, chosen, kind=options.kind, name=options.name, license_of_file=options.license, cut=links
-    )
+@with_server
+def read(
+    server: Server,
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help=f"Robot file: {', '.join(KINDS)}, found by its content.")
+    ],
+    kind: Annotated[str | None, one_of(KINDS, help="What the file has to be.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the part (default: the robot's).")] = None,
+    parameters: Annotated[Parameters, typer.Option(help="What becomes a parameter.")] = "inertia",
+    fixed: Annotated[Fixed, typer.Option(help="What links on fixed joints become.")] = "ports",
+    base: Annotated[Base, typer.Option(help="Whether the root moves.")] = "fixed",
+    cut: Annotated[str, typer.Option(metavar="LINK,...", help="Links that begin parts of their own, in a tree.")] = "",
+    license: Annotated[str, typer.Option(help="Licence of the file.")] = "",  # noqa: A002 -- name of the option
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the definition (or tree) to this JSON file.")
+    ] = None,
+    submit: Annotated[bool, typer.Option("--submit", help="Derive and store it on the server.")] = False,
+) -> int:
+    """Read a robot file as a definition, with a report of what became of everything in it."""
+    chosen = Options(parameters, fixed, base)
+    links = [text.strip() for text in cut.split(",") if text.strip()]
+    found = read_robot_file(file, chosen, kind=kind, name=name, license_of_file=license, cut=links)
     document = found.definition if found.tree is None else found.tree
     for line in _told(found):
         print(line, file=sys.stderr)
-    if options.out:
-        options.out.write_bytes(write_json(document) + b"\n")
-    elif not options.submit:
+    if out:
+        out.write_bytes(write_json(document) + b"\n")
+    elif not submit:
         print(write_json(document).decode())
-    if options.submit:
+    if submit:
         path = "/v1/substructures" if found.tree is None else "/v1/trees"
-        with Client(options.server, options.key) as client:
+        with server.client() as client:
             answer = client.request("POST", path, document).json()
         print(f"{answer['name']} {answer.get('digest', answer.get('id'))}")
     return 0
@@ -126,24 +123,27 @@ def _told(found: Imported) -> Iterator[str]:
     yield f"{found.kind}: checks of {checks}; {renamed} of {len(found.names)} names changed"
 
 
-def _add_same(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_same)
-    command.add_argument("a", type=Path, help="definition or tree (JSON, YAML), or a robot file")
-    command.add_argument("b", type=Path, nargs="+", help="the same; each is compared with the first")
-    command.add_argument("--coordinates", default="", metavar="A=B,...", help="names in a that are others in b")
-
-
-def _same(options: argparse.Namespace) -> int:
-    """0 when all are the same as the first, 1 when not."""
-    given = dict(pair.strip().partition("=")[::2] for pair in options.coordinates.split(",") if pair.strip())
-    ours = part_or_tree(options.a)
-    differing = 0
-    for path in options.b:
-        a, b = sides(ours, part_or_tree(path))
-        found = equivalence(a, b, given)
+def same(
+    a: Annotated[Path, typer.Argument(metavar="A", help="Definition or tree (JSON, YAML), or a robot file.")],
+    b: Annotated[list[Path], typer.Argument(metavar="B...", help="The same; each is compared with the first.")],
+    coordinates: Annotated[str, typer.Option(metavar="A=B,...", help="Names in A that are others in B.")] = "",
+    json: Json = False,
+) -> int:
+    """Tell whether two models are the same, and which body and parameter differ; 1 when not."""
+    given = dict(pair.strip().partition("=")[::2] for pair in coordinates.split(",") if pair.strip())
+    ours = part_or_tree(a)
+    differing, told = 0, []
+    for path in b:
+        ours_here, theirs = sides(ours, part_or_tree(path))
+        found = equivalence(ours_here, theirs, given)
         differing += not found.equal
-        for line in _verdict(found):
-            print(f"{path}: {line}" if len(options.b) > 1 else line)
+        lines = list(_verdict(found))
+        told.append({"b": str(path), "equal": found.equal, "level": found.level, "words": lines})
+        if not json:
+            for line in lines:
+                print(f"{path}: {line}" if len(b) > 1 else line)
+    if json:
+        print_json(told)
     return 1 if differing else 0
 
 
@@ -172,4 +172,4 @@ def part_or_tree(path: Path) -> Part | Parts:
         return derive(Definition.read(document))
 
 
-ADD: Add = {"import": _add_import, "same": _add_same}
+COMMANDS = {"import": read, "same": same}

@@ -2,44 +2,43 @@
 
 from __future__ import annotations
 
-import argparse
+from typing import Annotated, Literal
+
+import typer
 
 from service import logs
-from service.cli.options import Add, add_database, settings_of
-from service.server import serve, work
+from service.cli.options import Store, settings
+from service.server import serve as serve_with
+from service.server import work
+
+Engine = Annotated[Literal["local", "dask", "none"] | None, typer.Option(help="What computes jobs (local).")]
+EngineAddress = Annotated[str | None, typer.Option(help="The scheduler of a Dask cluster, tcp://...")]
+Workers = Annotated[int | None, typer.Option(help="Processes that compute jobs (one per core).")]
 
 
-def _add_serve(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_serve)
-    command.add_argument("--host", help="address to listen on (127.0.0.1)")
-    command.add_argument("--port", type=int, help="port to listen on (8000)")
-    command.add_argument("--processes", type=int, help="processes that answer requests (1)")
-    _add_engine(command)
-    add_database(command)
-
-
-def _add_worker(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_worker)
-    _add_engine(command)
-    add_database(command)
-
-
-def _add_engine(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--engine", choices=("local", "dask", "none"), help="what computes jobs (local)")
-    command.add_argument("--engine-address", help="the scheduler of a Dask cluster, tcp://...")
-    command.add_argument("--workers", type=int, help="processes that compute jobs (one per core)")
-
-
-def _serve(options: argparse.Namespace) -> int:
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on (127.0.0.1).")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on (8000).")] = None,
+    processes: Annotated[int | None, typer.Option(help="Processes that answer requests (1).")] = None,
+    engine: Engine = None,
+    engine_address: EngineAddress = None,
+    workers: Workers = None,
+    database: Store = None,
+) -> int:
+    """Run the service until it is interrupted. Settings also come from SUBSTRUCTURES_* variables."""
     logs.configure()
-    serve(settings_of(options))
+    given = {"host": host, "port": port, "processes": processes, "engine": engine, "engine_address": engine_address}
+    serve_with(settings(**given, workers=workers, database=database))
     return 0
 
 
-def _worker(options: argparse.Namespace) -> int:
+def worker(
+    engine: Engine = None, engine_address: EngineAddress = None, workers: Workers = None, database: Store = None
+) -> int:
+    """Compute the jobs of servers that share a PostgreSQL database, until interrupted."""
     logs.configure()
-    work(settings_of(options))
+    work(settings(engine=engine, engine_address=engine_address, workers=workers, database=database))
     return 0
 
 
-ADD: Add = {"serve": _add_serve, "worker": _add_worker}
+COMMANDS = {"serve": serve, "worker": worker}

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from service.cli.options import named, read_document
+from service.cli.documents import DOCUMENTS, named, read_document
 from substructures import catalogue
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
-
-SUFFIXES = (".yaml", ".yml", ".json")
 
 
 def parts_beside(spec: TreeSpec, folder: Path) -> dict[str, Part]:
@@ -23,7 +21,7 @@ def _part(index: int, instance: Instance, folder: Path) -> Part:
     if instance.definition is not None:
         return derive(instance.definition)
     name = (instance.substructure or "").partition("@")[0]
-    files = [file for suffix in SUFFIXES if (file := folder / f"{name}{suffix}").is_file()]
+    files = [file for suffix in DOCUMENTS if (file := folder / f"{name}{suffix}").is_file()]
     if files:
         document = read_document(files[0])
         with named(files[0]):

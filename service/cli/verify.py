@@ -2,35 +2,45 @@
 
 from __future__ import annotations
 
-import argparse
+from typing import Annotated
 
-from service.cli.options import Add, add_database, settings_of
+import typer
+
+from service.cli.options import Json, Store, settings
+from service.cli.output import print_json
 from service.database.connections import Database
 from service.operations.verification import verify_all
 
 
-def _add_verify(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_verify)
-    command.add_argument("--repair", action="store_true", help="derive anew what is wrong, where its document is sound")
-    command.add_argument("--all", action="store_true", help="tell also of what is right")
-    add_database(command)
-
-
-def _verify(options: argparse.Namespace) -> int:
-    """1 when something is wrong and stays so. A server may go on using the store."""
-    database = Database(settings_of(options).database, exclusive=False)
-    verified = wrong = mended = 0
+def verify(
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Derive anew what is wrong, where its document is sound.")
+    ] = False,
+    all: Annotated[bool, typer.Option("--all", help="Tell also of what is right.")] = False,  # noqa: A002 -- an option
+    database: Store = None,
+    json: Json = False,
+) -> int:
+    """Verify every part and tree of a store against its documents; a server may go on using it meanwhile."""
+    opened = Database(settings(database=database).database, exclusive=False)
+    told, verified, wrong, mended = [], 0, 0, 0
     try:
-        for finding in verify_all(database, options.repair):
+        for finding in verify_all(opened, repair):
             verified += 1
             wrong += bool(finding.fault)
             mended += bool(finding.fault) and finding.is_sound
-            if finding.fault or options.all:
-                print(": ".join(filter(None, (finding.what, finding.fault or "right", finding.outcome))), flush=True)
+            if finding.fault or all:
+                told.append({"what": finding.what, "fault": finding.fault or None, "outcome": finding.outcome or None})
+                words = ": ".join(filter(None, (finding.what, finding.fault or "right", finding.outcome)))
+                if not json:
+                    print(words, flush=True)
     finally:
-        database.close()
-    print(f"{verified} verified, {wrong} wrong" + (f", {mended} derived anew" if wrong and options.repair else ""))
+        opened.close()
+    if json:
+        print_json({"verified": verified, "wrong": wrong, "mended": mended, "findings": told})
+    else:
+        anew = f", {mended} derived anew" if wrong and repair else ""
+        print(f"{verified} verified, {wrong} wrong{anew}")
     return int(wrong > mended)
 
 
-ADD: Add = {"verify": _add_verify}
+COMMANDS = {"verify": verify}

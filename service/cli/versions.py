@@ -2,102 +2,65 @@
 
 from __future__ import annotations
 
-import argparse
-import json
-from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import quote
 
-from service.cli.options import Add, add_server
-from service.cli.progress import follow
-from substructures.client import Client
+import typer
+
+from service.cli.options import Json, Note, OfTrees, Private, Server, Wait, with_server
+from service.cli.output import print_json, table, waiting
+from service.cli.pages import items
+from service.cli.progress import became_job
 from substructures.client.connection import step
 
-
-def _add_versions(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_versions)
-    command.add_argument("name", help="of a part, or with --tree of a tree")
-    _add_common(command)
+Reference = Annotated[str, typer.Argument(metavar="REF", help="name@1; a bare name is the latest.")]
 
 
-def _add_diff(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_diff)
-    command.add_argument("a", metavar="REF", help="name@1; a bare name is the latest")
-    command.add_argument("b", metavar="REF", help="what it is compared with, also another part")
-    _add_common(command)
-
-
-def _add_uses(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_uses)
-    command.add_argument("ref", help="name@1, or a name for all versions")
-    command.add_argument("--json", action="store_true", help="print JSON")
-    add_server(command)
-
-
-def _add_publish(command: argparse.ArgumentParser) -> None:
-    command.set_defaults(command=_publish)
-    command.add_argument("tree", help="name, or name@2")
-    command.add_argument("--name", help="of the part (that of the tree)")
-    command.add_argument(
-        "--port", action="append", type=_pair, metavar="NAME=INSTANCE.PORT", help="may be repeated (all)"
-    )
-    command.add_argument(
-        "--free", action="append", metavar="PARAMETER", help="that is bound to a number; may be repeated"
-    )
-    command.add_argument("--note", default="", help="why, in words")
-    command.add_argument("--private", action="store_true", help="for the keys of its owner alone")
-    command.add_argument("--wait", action="store_true", help="wait where it takes so long that it becomes a job")
-    add_server(command)
-
-
-def _add_common(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--tree", action="store_true", help="trees in place of parts")
-    command.add_argument("--json", action="store_true", help="print JSON")
-    add_server(command)
-
-
-def _pair(text: str) -> tuple[str, str]:
-    name, sign, place = text.partition("=")
-    if not sign:
-        raise argparse.ArgumentTypeError(f"NAME=INSTANCE.PORT is needed, found '{text}'")
-    return name, place
-
-
-def _items(client: Client, path: str) -> Iterator[dict[str, Any]]:
-    """The items of all pages."""
-    link: str | None = f"{path}?page_size=200"
-    while link is not None:
-        page = client.request("GET", link).json()
-        yield from page["items"]
-        link = page["links"]["next"]
-
-
-def _versions(options: argparse.Namespace) -> int:
-    kind, number = ("revisions", "revision") if options.tree else ("versions", "version")
-    with Client(options.server, options.key) as client:
-        path = f"/v1/{'trees' if options.tree else 'substructures'}/{step(options.name)}/{kind}"
-        found = list(_items(client, path))
-    if options.json:
-        print(json.dumps(found, indent=1))
+@with_server
+def versions(
+    server: Server,
+    name: Annotated[str, typer.Argument(help="Of a part, or with --tree of a tree.")],
+    tree: OfTrees = False,
+    json: Json = False,
+) -> int:
+    """List the versions of a part, or the revisions of a tree, the newest first."""
+    kind, number = ("revisions", "revision") if tree else ("versions", "version")
+    with server.client() as client:
+        found = list(items(client, f"/v1/{'trees' if tree else 'substructures'}/{step(name)}/{kind}"))
+    if json:
+        print_json(found)
         return 0
+    rows = []
     for each in found:
-        whence = [f"of {each[name]}" for name in ("derived_from", "tree") if each.get(name)]
-        whence += [f"changes @{each['based_on']}"] if each.get("based_on") else []
-        if each.get("yanked"):
-            instead = f", take {each['successor']}" if each["successor"] else ""
-            whence.append(f"WITHDRAWN ({each['yank_reason'] or 'no reason given'}{instead})")
-        reference = f"{each['name']}@{each[number]}"
-        words = "; ".join(filter(None, [*whence, each["note"]]))
-        print(f"{reference:<20} {each['created'][:16]}  {each['owner']:<12} {words}".rstrip())
+        words = "; ".join(filter(None, [*_whence(each), each["note"]]))
+        rows.append((f"{each['name']}@{each[number]}", each["created"][:16], each["owner"], words))
+    table(("version", "created", "owner", "what"), rows)
     return 0
 
 
-def _diff(options: argparse.Namespace) -> int:
-    kind = "trees" if options.tree else "substructures"
-    with Client(options.server, options.key) as client:
-        found = client.request("GET", f"/v1/{kind}/{step(options.a)}/difference?to={quote(options.b)}").json()
-    if options.json:
-        print(json.dumps(found, indent=1))
+def _whence(each: dict[str, Any]) -> list[str]:
+    found = [f"of {each[name]}" for name in ("derived_from", "tree") if each.get(name)]
+    found += [f"changes @{each['based_on']}"] if each.get("based_on") else []
+    if each.get("yanked"):
+        instead = f", take {each['successor']}" if each["successor"] else ""
+        found.append(f"WITHDRAWN ({each['yank_reason'] or 'no reason given'}{instead})")
+    return found
+
+
+@with_server
+def diff(
+    server: Server,
+    a: Reference,
+    b: Annotated[str, typer.Argument(metavar="REF", help="What it is compared with, also another part.")],
+    tree: OfTrees = False,
+    json: Json = False,
+) -> int:
+    """Tell how two versions, or two revisions of a tree, differ."""
+    kind = "trees" if tree else "substructures"
+    with server.client() as client:
+        found = client.request("GET", f"/v1/{kind}/{step(a)}/difference?to={quote(b)}").json()
+    if json:
+        print_json(found)
         return 0
     print(f"{found['a']} -> {found['b']}")
     for words in found["words"]:
@@ -105,33 +68,64 @@ def _diff(options: argparse.Namespace) -> int:
     return 0
 
 
-def _uses(options: argparse.Namespace) -> int:
-    with Client(options.server, options.key) as client:
-        found = list(_items(client, f"/v1/substructures/{step(options.ref)}/uses"))
-    if options.json:
-        print(json.dumps(found, indent=1))
+@with_server
+def uses(
+    server: Server,
+    ref: Annotated[str, typer.Argument(metavar="REF", help="name@1, or a name for all versions.")],
+    json: Json = False,
+) -> int:
+    """List what uses a part: revisions of trees, parts that such trees became, versions made of it."""
+    with server.client() as client:
+        found = list(items(client, f"/v1/substructures/{step(ref)}/uses"))
+    if json:
+        print_json(found)
         return 0
+    rows = []
     for each in found:
         instances = ", ".join(f"{name} @{version}" for name, version in each["instances"].items())
-        reference = f"{each['name']}@{each['number']}"
-        print(f"{each['kind']:<8} {reference:<20} {instances}".rstrip())
+        rows.append((each["kind"], f"{each['name']}@{each['number']}", instances))
+    table(("kind", "what", "instances"), rows)
     return 0
 
 
-def _publish(options: argparse.Namespace) -> int:
-    body: dict[str, Any] = {"note": options.note, "free": options.free or []}
-    body |= {"name": options.name} if options.name else {}
-    body |= {"ports": dict(options.port)} if options.port else {}
-    body |= {"visibility": "private"} if options.private else {}
-    with Client(options.server, options.key) as client:
-        answer = client.request("POST", f"/v1/trees/{step(options.tree)}/publish", body)
+@with_server
+def publish(
+    server: Server,
+    tree: Annotated[str, typer.Argument(help="name, or name@2.")],
+    name: Annotated[str, typer.Option(help="Of the part (that of the tree).")] = "",
+    port: Annotated[list[str] | None, typer.Option(metavar="NAME=INSTANCE.PORT", help="May be repeated (all).")] = None,
+    free: Annotated[
+        list[str] | None, typer.Option(metavar="PARAMETER", help="That is bound to a number; may be repeated.")
+    ] = None,
+    note: Note = "",
+    private: Private = False,
+    wait: Wait = False,
+    json: Json = False,
+) -> int:
+    """Make a part of a tree."""
+    body: dict[str, Any] = {"note": note, "free": free or []}
+    body |= {"name": name} if name else {}
+    body |= {"ports": dict(map(_pair, port))} if port else {}
+    body |= {"visibility": "private"} if private else {}
+    with server.client() as client:
+        with waiting("deriving"):
+            answer = client.request("POST", f"/v1/trees/{step(tree)}/publish", body)
         found = answer.json()
         if answer.status_code == 202:
-            print(f"became the job {found['id']}")
-            return follow(client, found["id"]) if options.wait else 0
+            return became_job(client, found, wait)
+    if json:
+        print_json(found)
+        return 0
     stored = "published" if answer.status_code == 201 else "was published already"
     print(f"{found['name']}@{found['version']} {stored}: ports {', '.join(found['ports']) or 'none'}")
     return 0
 
 
-ADD: Add = {"versions": _add_versions, "diff": _add_diff, "uses": _add_uses, "publish": _add_publish}
+def _pair(text: str) -> tuple[str, str]:
+    name, sign, place = text.partition("=")
+    if not sign:
+        raise typer.BadParameter(f"NAME=INSTANCE.PORT is needed, found '{text}'")
+    return name, place
+
+
+COMMANDS = {"versions": versions, "diff": diff, "uses": uses, "publish": publish}

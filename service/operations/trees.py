@@ -276,6 +276,19 @@ def store(
     return tree, True
 
 
+def remove(connection: Connection, viewer: Viewer, name: str) -> None:
+    """Remove a tree with all its revisions; its parts stay, and what was published of it.
+
+    Raises Refused 404 where the viewer sees none, 403 where it is another's.
+    """
+    tree = find(connection, viewer, name)
+    if tree.name != name:
+        raise Refused(422, "bare-name-expected", f"a tree is removed as a whole: '{tree.name}', not '{name[:160]}'")
+    owners.require(viewer, tree.owner, name, "removes it")
+    trees.remove(connection, name)
+    audit.note(connection, viewer, "tree.remove", name, revisions=tree.revision)
+
+
 def find(connection: Connection, viewer: Viewer, text: str) -> trees.Tree:
     """The revision that a reference means. Raises Refused 404 for what the viewer does not see."""
     ref = parse_reference(text)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, bindparam, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
 from service.database.tables import tree_names, tree_parts, trees, versions
 from service.integrity import checked
@@ -75,6 +75,12 @@ def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Tree | No
     checked(f"the document of tree {tree.name}@{tree.revision}", tree.digest, tree.spec.encode())
     checked(f"the summary of tree {tree.name}@{tree.revision}", tree.summary_digest, tree.summary.encode())
     return tree
+
+
+def remove(connection: Connection, name: str) -> None:
+    """Remove all revisions; the name stays its owner's, and later ones count on, so that no number is two trees."""
+    for table in (tree_parts, trees):
+        connection.execute(delete(table).where(table.c.name == name))
 
 
 def all_revisions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:

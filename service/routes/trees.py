@@ -105,6 +105,14 @@ def get_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Re
     return conditional(request, trees.tree_tag(tree, gone), False, lambda: json_answer(tree_view(tree, gone)))
 
 
+@router.delete("/{ref}", status_code=204, dependencies=WRITE)
+def remove_tree(ref: str, store: StoreOf, viewer: ViewerOf) -> Response:
+    """Remove a tree with all its revisions. Its parts stay, and later revisions of the name count on."""
+    with store.database.write() as connection:
+        trees.remove(connection, viewer, ref)
+    return Response(status_code=204)
+
+
 @router.post(
     "/{ref}/couplings",
     status_code=201,

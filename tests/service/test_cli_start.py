@@ -2,38 +2,53 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
 import pytest
 
-from service.cli.main import COMMANDS, main, parser_for
+from service.cli.main import COMMANDS, main
 
 HEAVY = {"fastapi", "sqlalchemy", "numpy", "scipy", "sympy", "pydantic", "llvmlite", "httpx2", "heyoka"}
 
 
 def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
     script = (
-        "import sys\nfrom service.cli.main import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
+        "import sys\nfrom service.cli.main import main\nmain(['--help'])\n"
         "print(*sorted({name.partition('.')[0] for name in sys.modules}), file=sys.stderr)"
     )
     subprocess.run([sys.executable, "-c", script], check=True)
     out, err = capfd.readouterr()
     assert "COMMAND" in out
-    assert "argparse" in err.split()
+    assert all(command.name in out for command in COMMANDS)
+    assert "typer" in err.split()
     assert not HEAVY & set(err.split())
 
 
 @pytest.mark.parametrize("name", [command.name for command in COMMANDS])
 def test_every_command_has_its_arguments(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        parser_for([name]).parse_args([name, "--help"])
-    assert ended.value.code == 0
-    assert f"usage: substructures {name}" in capsys.readouterr().out
+    assert main([name, "--help"]) == 0
+    assert f"Usage: substructures {name}" in capsys.readouterr().out
 
 
 def test_unknown_command_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["simulat"])
-    assert ended.value.code == 2
-    assert "invalid choice: 'simulat'" in capsys.readouterr().err
+    assert main(["simulat"]) == 2
+    assert "No such command 'simulat'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("substructures jo", "jobs"),
+        ("substructures jobs re", "retry"),
+        ("substructures derive x.yaml --fo", "--format"),
+    ],
+)
+def test_completion(line: str, expected: str) -> None:
+    """Words, actions and options, as the shell asks for them."""
+    words = line.split()
+    asked = {"_SUBSTRUCTURES_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)}
+    command = [sys.executable, "-m", "service.cli.main"]
+    done = subprocess.run(command, env={**os.environ, **asked}, capture_output=True, text=True, check=False)
+    assert expected in done.stdout.split()

@@ -239,10 +239,8 @@ def test_ids_are_steps_of_a_path(address: str, identifier: str, capsys: pytest.C
     ],
 )
 def test_options_are_checked(command: list[str], name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(["jobs", *command])
-    assert stop.value.code == 2
-    assert f"argument {name}: " in capsys.readouterr().err
+    assert main(["jobs", *command]) == 2
+    assert f"Invalid value for '{name}'" in " ".join(capsys.readouterr().err.split())
 
 
 @pytest.mark.parametrize(
@@ -278,8 +276,7 @@ def test_faults_are_told_once(address: str) -> None:
 
 
 def test_help_says_what_items_are(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        main(["jobs", "submit", "--help"])
+    assert main(["jobs", "submit", "--help"]) == 0
     shown = capsys.readouterr().out
     assert all(kind in shown for kind in KINDS)
     assert "/openapi.json" in shown

@@ -53,7 +53,7 @@ def test_a_tree_as_a_part(address: str, capsys: pytest.CaptureFixture[str]) -> N
     words = "publish", "cell", "--name", "module", "--port", "end=arm.tip", "--note", "as one"
     assert run(address, capsys, *words) == "module@1 published: ports end\n"
     assert run(address, capsys, *words) == "module@1 was published already: ports end\n"
-    assert "part     module@1             arm @1" in run(address, capsys, "uses", "pendulum")
+    assert "part     module@1    arm @1" in run(address, capsys, "uses", "pendulum")
     assert run(address, capsys, "versions", "cell", "--tree").startswith("cell@1 ")
     assert "nothing differs" in run(address, capsys, "diff", "cell@1", "cell", "--tree")
     wrong = run(address, capsys, "publish", "cell", "--name", "other", "--port", "end=arm.tap", code=1)

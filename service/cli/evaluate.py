@@ -1,0 +1,111 @@
+"""The command ``evaluate``: numbers at one state, of a tree document here or of a tree on a server."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import orjson
+import typer
+
+from service.cli.analysis import local_source
+from service.cli.documents import is_document
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, tell_warnings, waiting
+from service.cli.trees import pairs
+from substructures.client.connection import step
+from substructures.quantities.evaluation import QUANTITIES, Sources
+from substructures.quantities.evaluation import evaluate as evaluated
+
+Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
+
+
+@with_server
+def evaluate(
+    server: Server,
+    tree: Annotated[str, typer.Argument(help="Tree document (JSON or YAML), or the name of a tree on a server.")],
+    quantities: Annotated[list[str], typer.Argument(metavar="QUANTITY...", help=f"{', '.join(QUANTITIES)}.")],
+    q: Numbers = None,
+    qd: Numbers = None,
+    qdd: Numbers = None,
+    t: Annotated[float, typer.Option(help="Time, s.")] = 0.0,
+    set: Annotated[  # noqa: A002 -- name of the option
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A parameter; may be repeated.")
+    ] = None,
+    input: Annotated[  # noqa: A002 -- name of the option
+        list[str] | None, typer.Option("--input", metavar="NAME=VALUE", help="An input; may be repeated.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Numbers at a state: metric, christoffel, forces, inverse dynamics, ..."""
+    states = {name: _numbers(text) for name, text in (("q", q), ("qd", qd), ("qdd", qdd)) if text is not None}
+    request: dict[str, Any] = {"quantities": quantities, "t": t, **states}
+    request |= {"parameters": _by_name(set), "inputs": _by_name(input)}
+    with waiting("evaluating"):
+        found = _here(Path(tree), request) if is_document(tree) else _there(server, tree, request)
+    if json:
+        print_json(found)
+    else:
+        for name in quantities:
+            _print(name, found[name], found["coordinates"])
+    tell_warnings(found)
+    for failure in found.get("failures", ()):
+        print(f"no result: {failure['message']}")
+    return int(bool(found.get("failures")))
+
+
+def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
+    source = local_source(path)
+    sources = Sources(source.model, regressor=source.regressor, reactions=source.reactions)
+    given = {"q": np.zeros(source.model.dof), **request}
+    quantities = given.pop("quantities")
+    result = evaluated(source.model, quantities, **given, sources=sources)
+    plain: dict[str, Any] = orjson.loads(orjson.dumps(result.plain(), option=orjson.OPT_SERIALIZE_NUMPY))
+    return plain
+
+
+def _there(server: Server, tree: str, request: Mapping[str, Any]) -> dict[str, Any]:
+    with server.client() as client:
+        known = client.request("GET", f"/v1/trees/{step(tree)}").json()
+        return dict(client.evaluate(tree, **{"q": [0.0] * known["dof"], **request}))
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise typer.BadParameter(f"numbers between commas are needed, found '{text}'") from None
+
+
+def _by_name(given: Iterable[str] | None) -> dict[str, float]:
+    try:
+        return {name: float(value) for name, value in pairs(given).items()}
+    except ValueError as error:
+        raise typer.BadParameter(f"a number is needed: {error}") from None
+
+
+def _print(name: str, value: Any, labels: Sequence[str]) -> None:
+    """A number; a vector or matrix by coordinate; what has more axes by its elements that are not zero."""
+    if isinstance(value, dict):
+        for inner, each in value.items():
+            _print(f"{name}.{inner}", each, labels)
+        return
+    numbers = np.asarray(value, dtype=np.float64)
+    if not numbers.ndim:
+        print(f"{name}  {numbers:.10g}")
+        return
+    print(name)
+    if numbers.ndim > 2:
+        for place in np.argwhere(numbers):
+            print(f"  [{', '.join(str(k + 1) for k in place)}]  {numbers[tuple(place)]:.10g}")
+        return
+    rows = numbers.reshape(len(numbers), -1)
+    named = labels if len(labels) == len(rows) else [str(k + 1) for k in range(len(rows))]
+    width = max(map(len, named))
+    for label, row in zip(named, rows, strict=True):
+        print(f"  {label:<{width}}  {'  '.join(f'{x + 0.0:13.6g}' for x in row)}")
+
+
+COMMANDS = {"evaluate": evaluate}

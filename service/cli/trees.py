@@ -1,0 +1,127 @@
+"""The commands ``tree``, ``couple`` and ``rm``: trees of a server."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from service.cli.documents import is_document, read_document
+from service.cli.options import Json, Note, Private, Server, Wait, with_server
+from service.cli.output import print_json, tell_warnings, waiting
+from service.cli.progress import became_job
+from substructures.client.connection import step
+
+Name = Annotated[str, typer.Argument(metavar="TREE")]
+Several = list[str] | None
+Set = Annotated[Several, typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the part; may be repeated.")]
+Vector = Annotated[str | None, typer.Option(metavar="X,Y,Z")]
+
+
+@with_server
+def tree(
+    server: Server,
+    tree: Annotated[str, typer.Argument(metavar="FILE|NAME", help="A document, JSON or YAML, or a name.")],
+    part: Annotated[
+        Several,
+        typer.Option(metavar="[NAME=]PART", help="A part on the world, for a tree by its name; may be repeated."),
+    ] = None,
+    gravity: Annotated[str, typer.Option(metavar="X,Y,Z", help="Acceleration in the world, m/s^2.")] = "0,0,-9.81",
+    note: Note = "",
+    private: Private = False,
+    wait: Wait = False,
+    json: Json = False,
+) -> int:
+    """Make a tree of a document, or begin one with parts on the world; what is there gets a new revision."""
+    if is_document(tree):
+        body = read_document(Path(tree))
+        if part:
+            raise typer.BadParameter("--part goes with a name, not with a document")
+    else:
+        body = {"name": tree, "gravity": _vector(gravity), "instances": [_instance(each) for each in part or ()]}
+    if isinstance(body, dict):
+        body |= {"note": note} if note else {}
+        body |= {"visibility": "private"} if private else {}
+    return _changed(server, "POST", "/v1/trees", body, wait, json)
+
+
+@with_server
+def couple(
+    server: Server,
+    tree: Name,
+    part: Annotated[str, typer.Argument(metavar="PART", help="Name in the catalogue; also NAME@2.")],
+    at: Annotated[str, typer.Option(metavar="INSTANCE.PORT", help="Where it is mounted.")] = "world",
+    name: Annotated[str | None, typer.Option(help="Of the instance (that of the part).")] = None,
+    set: Set = None,  # noqa: A002 -- name of the option
+    position: Vector = None,
+    rpy: Vector = None,
+    wait: Wait = False,
+    json: Json = False,
+) -> int:
+    """Couple a part onto a tree, which makes a new revision."""
+    body: dict[str, Any] = {**_instance(part), "at": at, "parameters": pairs(set)}
+    body |= {"name": name} if name else {}
+    placement = {key: _vector(text) for key, text in (("position", position), ("rpy", rpy)) if text is not None}
+    body |= {"placement": placement} if placement else {}
+    return _changed(server, "POST", f"/v1/trees/{step(tree)}/couplings", body, wait, json)
+
+
+@with_server
+def remove(server: Server, trees: Annotated[list[str], typer.Argument(metavar="TREE...", help="Names.")]) -> int:
+    """Remove trees with all their revisions; the parts stay."""
+    with server.client() as client:
+        for name in trees:
+            client.request("DELETE", f"/v1/trees/{step(name)}")
+    return 0
+
+
+def _changed(server: Server, method: str, path: str, body: Any, wait: bool, as_json: bool) -> int:
+    with server.client() as client:
+        with waiting("coupling"):
+            answer = client.request(method, path, body)
+        found = answer.json()
+        if answer.status_code == 202:
+            return became_job(client, found, wait)
+    if as_json:
+        print_json(found)
+        return 0
+    what = "was there already" if answer.status_code == 200 else "made"
+    print(f"{found['name']}@{found['revision']} {what}: {found['dof']} coordinates, {_instances(found)}")
+    tell_warnings(found)
+    return 0
+
+
+def _instances(found: Mapping[str, Any]) -> str:
+    return ", ".join(f"{i['name']} at {i.get('at', 'world')}" for i in found["instances"]) or "no instances"
+
+
+def _instance(text: str) -> dict[str, Any]:
+    """``arm=puma560@2``, or ``puma560@2``, whose name is made of that of the part."""
+    name, sign, part = text.rpartition("=")
+    return {"name": name if sign else part.partition("@")[0].replace("-", "_"), "substructure": part}
+
+
+def _vector(text: str) -> list[Any]:
+    """Three numbers or expressions."""
+    found = [each.strip() for each in text.split(",")]
+    if len(found) != 3 or not all(found):
+        raise typer.BadParameter(f"X,Y,Z is needed, found '{text}'")
+    return found
+
+
+def pairs(given: Iterable[str] | None) -> dict[str, str]:
+    """``NAME=VALUE``, each once."""
+    found: dict[str, str] = {}
+    for text in given or ():
+        name, sign, value = (each.strip() for each in text.partition("="))
+        if not sign or not name or not value:
+            raise typer.BadParameter(f"NAME=VALUE is needed, found '{text}'")
+        if name in found:
+            raise typer.BadParameter(f"'{name}' is given twice")
+        found[name] = value
+    return found
+
+
+COMMANDS = {"tree": tree, "couple": couple, "rm": remove}
