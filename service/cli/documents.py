@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import IO, Any
 
+from substructures.client import ProblemError
 from substructures.documents import places, read_json, read_yaml
 from substructures.errors import Fault, InvalidInput
 
@@ -35,16 +36,32 @@ def read_from(path: Path, file: IO[bytes]) -> Any:
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Put the name of the file before the pointers of its faults, and line and column behind what they say. Raises
-    InvalidDocument.
+    """Put the name of the file before the pointers of its faults, and line and column behind what they say, also where
+    a server that was sent the document tells of them. Raises InvalidDocument, ProblemError.
     """
     try:
         yield
     except InvalidInput as error:
-        known = places(path.read_bytes()) if path.suffix in DOCUMENTS else {}
-        faults = [replace(fault, message=fault.message + _where(fault, known)) for fault in error.faults]
-        moved = type(error)(faults)
-        raise moved.moved(lambda pointer: f"{path}#{pointer}" if pointer else str(path)) from None
+        raise type(error)(_placed(path, error.faults)) from None
+    except ProblemError as error:
+        found = error.problem.get("errors") if error.status == 422 else None
+        if not found:
+            raise
+        faults = _placed(path, [Fault(each["pointer"], each["code"], each["message"]) for each in found])
+        told = {"detail": faults[0].message, "errors": [asdict(fault) for fault in faults]}
+        raise ProblemError(error.status, {**error.problem, **told}) from None
+
+
+def _placed(path: Path, faults: Sequence[Fault]) -> list[Fault]:
+    known = places(path.read_bytes()) if path.suffix in DOCUMENTS else {}
+    return [
+        replace(
+            fault,
+            pointer=f"{path}#{fault.pointer}" if fault.pointer else str(path),
+            message=fault.message + _where(fault, known),
+        )
+        for fault in faults
+    ]
 
 
 def _where(fault: Fault, known: Mapping[str, tuple[int, int]]) -> str:

@@ -79,7 +79,9 @@ def submit(
         document = read_document(file)
         if label is not None and isinstance(document, dict):
             document["label"] = label
-        return _queued(client, client.submit_job(document), wait, patience, json)
+        with named(file):
+            job = client.submit_job(document)
+        return _queued(client, job, wait, patience, json)
 
 
 @with_server

@@ -70,7 +70,7 @@ def submit(
         document |= {"note": note} if note else {}
         document |= {"visibility": "private"} if private else {}
     with server.client() as client:
-        with waiting("deriving"):
+        with waiting("deriving"), named(file):
             answer = client.request("POST", "/v1/substructures", document)
         version = answer.json()
         if answer.status_code == 202:

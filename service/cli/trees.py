@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from service.cli.documents import is_document, read_document
+from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
@@ -44,7 +45,8 @@ def tree(
     if isinstance(body, dict):
         body |= {"note": note} if note else {}
         body |= {"visibility": "private"} if private else {}
-    return _changed(server, "POST", "/v1/trees", body, wait, json)
+    with named(Path(tree)) if is_document(tree) else nullcontext():
+        return _changed(server, "POST", "/v1/trees", body, wait, json)
 
 
 @with_server

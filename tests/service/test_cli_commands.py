@@ -91,6 +91,16 @@ def test_a_tree_grows_and_goes(run: Runner) -> None:
     assert "not 'grown@3'" in run("rm", "grown@3", code=1)
 
 
+def test_faults_that_the_server_finds_have_their_lines(run: Runner, tmp_path: Path) -> None:
+    part, tree = tmp_path / "part.yaml", tmp_path / "tree.yaml"
+    part.write_text("name: a\nbodies:\n  - {name: b, parent: base, mass: m, joint: {type: revolute, coordinate: q}}\n")
+    told = run("submit", str(part), code=1)
+    assert f"{part}#/bodies/0/mass: unknown name 'm'" in told
+    assert "(line 3, column " in told
+    tree.write_text("name: t\ninstances:\n  - {name: a, substructure: pendulum, at: b.tip}\n")
+    assert f"{tree}#/instances/0/at: " in run("tree", str(tree), code=1)
+
+
 def test_numbers_here_and_there(run: Runner, tmp_path: Path) -> None:
     (tmp_path / "cell.json").write_text(json.dumps(TREE))
     (tmp_path / "pendulum.json").write_text(json.dumps(PENDULUM))
