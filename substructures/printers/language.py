@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
 from substructures.expr.program import Program
+from substructures.printers.meanings import Label
 from substructures.printers.numbers import shortest_decimal
 
 SUM, NEGATION, PRODUCT, POWER, ATOM = range(5)
@@ -48,11 +50,16 @@ class Language(ABC):
     is_for_people = False
     #: what else is to be said about names
     remark = ""
+    #: what letters mean, a line each
+    legend: Sequence[str] = ()
+    #: by operation what it is called in mechanics; those become temporaries, however often they are used
+    meanings: Mapping[int, Label] = MappingProxyType({})
     times, power_sign = "*", "^"
     functions: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, program: Program) -> None:
         self.program = program
+        self._called: dict[int, Label | int] = {}
 
     @abstractmethod
     def render(self, listing: Listing, name: str) -> str:
@@ -65,6 +72,23 @@ class Language(ABC):
     def temporary(self, n: int) -> Piece:
         """Temporary number n, from 1."""
         return Piece(f"t{n}")
+
+    def call_temporary(self, n: int, operation: int) -> Piece:
+        """Temporary number n, which is this operation: by what it means, or else by a number of its own."""
+        if not self.meanings:
+            return self.temporary(n)
+        label = self.meanings.get(operation)
+        self._called[n] = 1 + sum(isinstance(x, int) for x in self._called.values()) if label is None else label
+        return self.called(n)
+
+    def called(self, n: int) -> Piece:
+        """What temporary number n is called."""
+        found = self._called.get(n, n)
+        return self.temporary(found) if isinstance(found, int) else self.labelled(found)
+
+    def labelled(self, label: Label) -> Piece:
+        """A quantity of mechanics."""
+        return Piece(label.text)
 
     def pi(self) -> Piece:
         """The constant pi."""

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
+from substructures.printers.meanings import Label
 from substructures.printers.names import comment, latex_names
 from substructures.printers.numbers import decimal_text
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, solid, width
@@ -43,6 +44,10 @@ class Latex(Language):
     def temporary(self, n: int) -> Piece:
         """A letter that no symbol begins with, with a number below."""
         return Piece(f"{self.letter}_{{{n}}}")
+
+    def labelled(self, label: Label) -> Piece:
+        """A letter with numbers and component below."""
+        return Piece(label.latex)
 
     def pi(self) -> Piece:
         """The Greek letter."""
@@ -127,7 +132,7 @@ class Latex(Language):
 
     def render(self, listing: Listing, name: str) -> str:
         """An ``aligned`` environment; comments say what the symbols are."""
-        lines = [f"% {comment(x)}" for x in (name, self.remark) if x]
+        lines = [f"% {comment(x)}" for x in (name, self.remark, *self.legend) if x]
         lines += [
             f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"
             for n, s in zip(self.names, self.program.symbols, strict=True)
@@ -142,7 +147,7 @@ class Latex(Language):
     def abbreviated(self, listing: Listing) -> list[str]:
         """Rows of abbreviations and temporaries."""
         rows = [f"{name} &= {broken(text)}" for name, text in listing.abbreviations]
-        return rows + [f"{self.letter}_{{{n}}} &= {broken(text)}" for n, text in listing.temporaries]
+        return rows + [f"{self.called(n).text} &= {broken(text)}" for n, text in listing.temporaries]
 
     def rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
         """Rows of an output, its symmetry as the last one."""

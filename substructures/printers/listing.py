@@ -32,9 +32,9 @@ def compact(program: Program, language: Language, limit: int) -> Listing:
     for i in needed:
         piece = _operation(program, language, i, pieces)
         simple = program.operations[i][0] in ("int", "rat", "sym") or _is_pi(program, i)
-        if not simple and (uses[i] > 1 or len(piece.text) > language.width):
+        if not simple and (uses[i] > 1 or len(piece.text) > language.width or i in language.meanings):
             temporaries.append((len(temporaries) + 1, piece.text))
-            piece = language.temporary(len(temporaries))
+            piece = language.call_temporary(len(temporaries), i)
         pieces[i] = piece
     entries = {name: tuple(pieces[e].text for e in output.entries) for name, output in program.outputs.items()}
     return Listing(tuple(temporaries), entries)

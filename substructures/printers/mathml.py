@@ -14,6 +14,7 @@ from xml.sax.saxutils import escape
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
+from substructures.printers.meanings import Label
 from substructures.printers.names import comment, latex_names, prefix
 from substructures.printers.numbers import decimal_text
 from substructures.printers.symmetry import symmetry_rule
@@ -76,6 +77,10 @@ class MathML(Language):
     def temporary(self, n: int) -> Piece:
         """A letter with a number below."""
         return Piece(f"<msub><mi>{self.prefix}</mi><mn>{n}</mn></msub>")
+
+    def labelled(self, label: Label) -> Piece:
+        """A letter with numbers and component below."""
+        return Piece(named(label.latex))
 
     def abbreviation(self, op: str, digits: str) -> Piece:
         """c with the numbers of the angles of cos(q1 + q2) below."""
@@ -157,10 +162,10 @@ class MathML(Language):
 
     def render(self, listing: Listing, name: str) -> str:
         """A page: what the symbols are, then a paragraph for every element."""
-        lines = [f"<p>{escape(comment(self.remark))}</p>"] if self.remark else []
+        lines = [f"<p>{escape(comment(x))}</p>" for x in (self.remark, *self.legend) if x]
         lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
         lines += [self._line(left, text) for left, text in listing.abbreviations]
-        lines += [self._line(self.temporary(n).text, text) for n, text in listing.temporaries]
+        lines += [self._line(self.called(n).text, text) for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             lines += self._output(output, array, listing.entries[output])
         return _PAGE.format(title=escape(comment(name)), body="\n".join(lines))

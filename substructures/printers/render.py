@@ -21,6 +21,7 @@ from substructures.printers.latex import Latex
 from substructures.printers.latex_document import LatexDocument
 from substructures.printers.listing import check_size, compact, expanded, inlined
 from substructures.printers.mathml import MathML
+from substructures.printers.meanings import LETTERS, meanings
 from substructures.printers.names import short_names
 from substructures.printers.text import Text
 from substructures.printers.textbook import textbook, textbook_inlined
@@ -47,13 +48,22 @@ LIMIT = 100_000
 INLINE_LIMIT = 20_000
 
 
-def render(program: Program, format: str, form: str = "compact", name: str = "model", limit: int = LIMIT) -> str:  # noqa: A002 -- the name in the contract
+def render(
+    program: Program,
+    format: str,  # noqa: A002 -- the name in the contract
+    form: str = "compact",
+    name: str = "model",
+    limit: int = LIMIT,
+    glossary: Program | None = None,
+) -> str:
     """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
     ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
     collected, factored and cancelled (:mod:`substructures.textbook`); ``readable``: ``textbook`` in formats for people
     where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it.
+    ``glossary``: what intermediate quantities are called in the compact form of formats for people
+    (:mod:`substructures.printers.meanings`).
     Raises InvalidDocument for an unknown format or form, TooLarge (size,
     limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
     """
@@ -61,25 +71,46 @@ def render(program: Program, format: str, form: str = "compact", name: str = "mo
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     check_form(form)
     if form == "readable":
-        return _readable(program, format, name, limit)
+        return _readable(program, format, name, limit, glossary)
     if format == "json":
         return _json(program, form, limit)
     for output in program.outputs.values():
         if prod(output.shape) > MAX_ELEMENTS:
             raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
     program, language = _spoken(program, format, form)
+    if form == "compact":
+        _name(language, glossary)
     return language.render(_LISTINGS[form](program, language, limit), name)
 
 
-def _readable(program: Program, format: str, name: str, limit: int) -> str:  # noqa: A002 -- the name in the contract
+def _name(language: Language, glossary: Program | None) -> None:
+    """Let the language call quantities what they are, and say what the letters mean."""
+    if glossary is None or not language.is_for_people:
+        return
+    taken = {symbol.name for symbol in language.program.symbols}
+    found = {i: label for i, label in meanings(language.program, glossary).items() if label.text not in taken}
+    language.meanings = found
+    used = {label.letter for label in found.values()}
+    said = [f"{letter}: {text}" for letter, text in LETTERS.items() if letter in used]
+    language.legend = ["joints are numbered from 1, in the order of the coordinates", *said] if said else []
+
+
+def _readable(
+    program: Program,
+    format: str,  # noqa: A002 -- the name in the contract
+    name: str,
+    limit: int,
+    glossary: Program | None,
+) -> str:
     """The textbook form where it fits, otherwise the compact one with the reason."""
     if format == "json" or not LANGUAGES[format].is_for_people:
-        return render(program, format, "compact", name, limit)
+        return render(program, format, "compact", name, limit, glossary)
     spoken, language = _spoken(program, format, "textbook")
     try:
         return language.render(textbook(spoken, language, limit, AT_ONCE), name)
     except (TooLarge, ZeroDivisionError) as error:
         language = LANGUAGES[format](program)
+        _name(language, glossary)
         language.remark = f"compact, since there is no textbook form: {error}"
         return language.render(compact(program, language, limit), name)
 

@@ -43,12 +43,12 @@ class Text(Language):
 
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
-        lines = [f"# {comment(x)}" for x in (name, self.remark) if x]
+        lines = [f"# {comment(x)}" for x in (name, self.remark, *self.legend) if x]
         lines += [
             f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
         lines += [f"{name} = {text}" for name, text in listing.abbreviations]
-        lines += [f"{self.prefix}{n} = {text}" for n, text in listing.temporaries]
+        lines += [f"{self.called(n).text} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             title = comment(output)
             if array.shape:
