@@ -36,6 +36,11 @@ from substructures.tree.model import Model
 
 __all__ = ["Closed", "Event", "FixedStep", "KnifeEdge", "Linear", "Rolling", "Table", "simulate"]
 
+UNPLACED = (
+    "reactions are not known with velocity constraints: these act on coordinates, by B^T lambda, and a linear one does "
+    "not say where on which body; leave 'reactions' out"
+)
+
 
 def simulate(
     model: Model,
@@ -120,7 +125,9 @@ def simulate(
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
-        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, reactions=reactions, **closed)
+        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, **closed)
+        if reactions is not None:
+            raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
         rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
         return with_limits(model, parameters, simulate_rolling(rolled, progress, folder))
     if model.closures or prescribed:

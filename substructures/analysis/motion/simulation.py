@@ -136,7 +136,9 @@ def _moved(
     x: Array,
     progress: ProgressReport | None,
     folder: Path | None,
+    turning: bool = True,
 ) -> tuple[IntegratedMotion, dict[str, float]]:
+    """The motion and its figures. ``turning``: it begins anew at corners of force laws."""
     begin = perf_counter()
     span, most, outputs = problem.span, problem.integrator.max_steps, problem.times.grid()
     told = share_of(span, progress)
@@ -151,7 +153,7 @@ def _moved(
         if problem.friction == "exact":
             motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
         else:
-            if problem.integrator.method != TAYLOR:
+            if turning and problem.integrator.method != TAYLOR:
                 watches = [*watches, *f.corners(span[0], x, folder)]
             motion = integrate(f, x, span, outputs, settings, watches, breaks, told, f.enter)
             f.plain()
@@ -248,7 +250,7 @@ def _steps_again(
         """From a state of the motion."""
         times = OutputTimes(span, [span[1]])
         other = replace(problem, times=times, integrator=choice, fixed_step=None, events=())
-        return _moved(replace(conditions, events=()), other, f, x, None, None)[0]
+        return _moved(replace(conditions, events=()), other, f, x, None, None, turning=False)[0]
 
     return steps_again(first, problem.integrator, state_groups(f.n, f.n), problem.drift_limit, again)
 
