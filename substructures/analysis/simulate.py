@@ -72,6 +72,7 @@ def simulate(
     max_steps: int = 1_000_000,
     drift_limit: float = 1e-7,
     reactions: ReactionModel | None = None,
+    bearings: ReactionModel | None = None,
     geodesic: bool = False,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
@@ -95,7 +96,9 @@ def simulate(
     ``form`` of the equations.
 
     ``friction`` of joints that have some: by the smooth law of the formulas, or ``exact``, set-valued at rest, with
-    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``. Of trees alone.
+    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``; or ``loaded``, with
+    what the reactions of joints add (``bearings``: all reactions of the tree): these series, and the check
+    ``friction-load``. Of trees alone.
 
     ``geodesic``: of a tree without any force, q''^a + Gamma^a_bc q'^b q'^c = 0.
 
@@ -106,7 +109,7 @@ def simulate(
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (pointers start with
     names of arguments), MissingValue, and TooLarge.
     """
-    exact = friction if friction == "exact" else None
+    exact = friction if friction != "regularised" else None
     if geodesic:
         closed_by = [*model.closures, *(prescribed or {})]
         others = {"inputs": inputs, "constraints": constraints, "prescribed": closed_by, "reactions": reactions}
@@ -137,7 +140,9 @@ def simulate(
         motion = simulate_closed(loops, progress, folder)
     else:
         _refuse("neither closures nor velocity constraints", **rolling, **closed)
-        motion = simulate_tree(TreeProblem(**given, fixed_step=fixed_step, friction=friction), progress, folder)
+        motion = simulate_tree(
+            TreeProblem(**given, fixed_step=fixed_step, friction=friction, bearings=bearings), progress, folder
+        )
     found = with_limits(model, parameters, motion)
     return found if reactions is None else with_reactions(model, reactions, found, given["start"])
 

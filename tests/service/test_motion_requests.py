@@ -141,7 +141,7 @@ def test_a_loop_state_as_plain_data() -> None:
 @pytest.mark.parametrize(
     ("schemas", "function", "left_out"),
     [
-        ((SimulationRequest, ClosedRequest, RollingRequest), simulate, {"model", "progress", "folder"}),
+        ((SimulationRequest, ClosedRequest, RollingRequest), simulate, {"model", "progress", "folder", "bearings"}),
         ((LoopRequest,), loop_state, {"model", "folder"}),
         ((VelocityConstraints,), quasi_velocity_equations, {"model", "near"}),
         ((SensitivityRequest,), sensitivities, {"model", "progress", "folder"}),
