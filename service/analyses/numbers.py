@@ -15,7 +15,14 @@ from service.analyses.source import Source
 from service.analyses.warnings import warnings_of
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
-from service.schemas.motions import AnySimulationRequest, LoopRequest, SensitivityRequest, SpanRequest, WithReactions
+from service.schemas.motions import (
+    AnySimulationRequest,
+    LoopRequest,
+    SensitivityRequest,
+    SimulationRequest,
+    SpanRequest,
+    WithReactions,
+)
 from service.schemas.stability import (
     EquilibriaRequest,
     LinearisationRequest,
@@ -84,6 +91,8 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
         numbers += 12 * len(transmitted.rows)
     _check_size(source, len(request.output_times().grid()), numbers)
     rest = _without(given, "q", "reactions")
+    if isinstance(request, SimulationRequest) and request.friction == "loaded":
+        rest["bearings"] = _reactions(source, "/friction")
     return simulate(model, request.q, **rest, reactions=transmitted, progress=report, folder=source.folder)
 
 
@@ -92,10 +101,15 @@ def _transmitted(source: Source, request: SpanRequest) -> ReactionModel | None:
     wanted = request.reactions if isinstance(request, WithReactions) else False
     if wanted is False:
         return None
-    if source.reactions is None:
-        raise InvalidArgument.at("/reactions", "needs-parts", "reactions need the parts of the tree")
-    found = source.reactions()
+    found = _reactions(source, "/reactions")
     return found if wanted is True else found.of(read_joints(wanted, found.rows, "/reactions"))
+
+
+def _reactions(source: Source, pointer: str) -> ReactionModel:
+    """All reactions of a tree. Raises InvalidArgument."""
+    if source.reactions is None:
+        raise InvalidArgument.at(pointer, "needs-parts", "reactions need the parts of the tree")
+    return source.reactions()
 
 
 def _sensitivities(source: Source, request: SensitivityRequest, report: ProgressReport) -> Any:
@@ -105,7 +119,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         for name in ("events", "fixed_step", "series", "reactions", "geodesic")
         if getattr(request, name)
     ]
-    if request.friction == "exact":
+    if request.friction != "regularised":
         faults.append(Fault("/friction", "not-supported", "sensitivities are of the smooth law of friction alone"))
     if faults:
         raise InvalidArgument(faults)

@@ -25,4 +25,7 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     told = type(request).__name__ in NEAR or motion is not None
     q: Any = None if told else getattr(request, "q", None)
     states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
-    return [*value_warnings(sources, given, inputs, states), *(motion.warnings if motion else ())]
+    notices = value_warnings(sources, given, inputs, states)
+    if getattr(request, "friction", None) == "loaded":
+        notices = [each for each in notices if each["code"] != "friction-left-out"]
+    return [*notices, *(motion.warnings if motion else ())]

@@ -163,8 +163,9 @@ class SimulationRequest(WithReactions):
 
     method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
     fixed_step: FixedStep | None = None
-    friction: Literal["regularised", "exact"] = Field(
-        "regularised", description="of joints: by the smooth law of the formulas, or set-valued at rest"
+    friction: Literal["regularised", "exact", "loaded"] = Field(
+        "regularised",
+        description="of joints: by the smooth law of the formulas, set-valued at rest, or smooth with their load",
     )
     geodesic: bool = Field(False, description="of the metric: a motion on which no force acts")
 

@@ -14,9 +14,10 @@ closed           ``loops``: mobility, redundancy, reactions at a state; motions 
                  (``constrained``: the equations at a state, ``projection``: consistent states, ``reductions``: to
                  ordinary differential equations, ``prescribed``: motions that are given)
 motion           ``problem``: what a motion is computed from (``signals``, ``events``, ``output_times``);
-                 ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``; ``judges``
-                 and ``trajectory``: checks and results; ``second_run``, ``single_steps``: judge what no first integral
-                 does; ``limits``; ``parameter_sensitivity``; ``writers``: trajectories as files
+                 ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``;
+                 ``corners``: force laws on one side of them; ``judges`` and ``trajectory``: checks and results;
+                 ``second_run``, ``single_steps``: judge what no first integral does; ``limits``;
+                 ``parameter_sensitivity``; ``writers``: trajectories as files
 equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
                  ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
                  dependencies between functions; ``formulas``: a model in a new graph

@@ -36,6 +36,11 @@ from substructures.tree.model import Model
 
 __all__ = ["Closed", "Event", "FixedStep", "KnifeEdge", "Linear", "Rolling", "Table", "simulate"]
 
+UNPLACED = (
+    "reactions are not known with velocity constraints: these act on coordinates, by B^T lambda, and a linear one does "
+    "not say where on which body; leave 'reactions' out"
+)
+
 
 def simulate(
     model: Model,
@@ -67,6 +72,7 @@ def simulate(
     max_steps: int = 1_000_000,
     drift_limit: float = 1e-7,
     reactions: ReactionModel | None = None,
+    bearings: ReactionModel | None = None,
     geodesic: bool = False,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
@@ -90,7 +96,9 @@ def simulate(
     ``form`` of the equations.
 
     ``friction`` of joints that have some: by the smooth law of the formulas, or ``exact``, set-valued at rest, with
-    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``. Of trees alone.
+    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``; or ``loaded``, with
+    what the reactions of joints add (``bearings``: all reactions of the tree): these series, and the check
+    ``friction-load``. Of trees alone.
 
     ``geodesic``: of a tree without any force, q''^a + Gamma^a_bc q'^b q'^c = 0.
 
@@ -101,7 +109,7 @@ def simulate(
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (pointers start with
     names of arguments), MissingValue, and TooLarge.
     """
-    exact = friction if friction == "exact" else None
+    exact = friction if friction != "regularised" else None
     if geodesic:
         closed_by = [*model.closures, *(prescribed or {})]
         others = {"inputs": inputs, "constraints": constraints, "prescribed": closed_by, "reactions": reactions}
@@ -120,7 +128,9 @@ def simulate(
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
-        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, reactions=reactions, **closed)
+        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, **closed)
+        if reactions is not None:
+            raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
         rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
         return with_limits(model, parameters, simulate_rolling(rolled, progress, folder))
     if model.closures or prescribed:
@@ -130,7 +140,9 @@ def simulate(
         motion = simulate_closed(loops, progress, folder)
     else:
         _refuse("neither closures nor velocity constraints", **rolling, **closed)
-        motion = simulate_tree(TreeProblem(**given, fixed_step=fixed_step, friction=friction), progress, folder)
+        motion = simulate_tree(
+            TreeProblem(**given, fixed_step=fixed_step, friction=friction, bearings=bearings), progress, folder
+        )
     found = with_limits(model, parameters, motion)
     return found if reactions is None else with_reactions(model, reactions, found, given["start"])
 

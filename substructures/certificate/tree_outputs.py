@@ -75,6 +75,7 @@ def tree_outputs(
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
     _limits(result, bodies, definitions, loads)
     _friction(result, bodies, definitions, loads)
+    _friction_load(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
         closure_outputs(result, bodies, tree["closures"], numbers, rates)
@@ -241,6 +242,26 @@ def _friction(
                 given = law.get(field)
                 given = law["coulomb"] if given is None and field == "static" else given
                 result.array("friction", (n, 4))[a, i] = arb(0) if given is None else inside.read(given)
+
+
+def _friction_load(
+    result: Outputs,
+    bodies: Bodies,
+    definitions: Mapping[str, Plain],
+    loads: list[tuple[str, Numbers, range]],
+) -> None:
+    """mu r and mu r_a, of prismatic joints mu and 0, of trees in which a friction has a load."""
+    n = len(bodies.joints)
+    for name, inside, joints in loads:
+        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
+            law = (of_step(joint.get("friction"), step) or {}).get("load")
+            if law is None:
+                continue
+            mu = inside.read(law["coefficient"])
+            arm = arb(1) if bodies.joints[a].prismatic else inside.read(law["radius"])
+            result.array("friction_load", (n, 2))[a, 0] = mu * arm
+            along = law.get("axial_radius")
+            result.array("friction_load", (n, 2))[a, 1] = arb(0) if along is None else mu * inside.read(along)
 
 
 def _kinematics(result: Outputs, bodies: Bodies) -> None:

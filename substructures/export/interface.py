@@ -44,7 +44,7 @@ _SIGNATURES: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("inverse_metric", "christoffel_second_kind"), ("q", "p")),
     **dict.fromkeys(("composite", "momentum", "linear_momentum", "angular_momentum"), ("q", "p")),
     **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum", "generalised_momenta"), ("q", "qd", "p")),
-    **dict.fromkeys(("limits", "friction", PREPARE), ("p",)),
+    **dict.fromkeys(("limits", "friction", "friction_load", PREPARE), ("p",)),
     "potential_energy": ("t", "q", "p"),
     "forces": ("t", "q", "qd", "u", "p"),
     "forward_dynamics": ("t", "q", "qd", "u", "p"),

@@ -85,6 +85,16 @@ class LimitStop(DocumentPart):
     damping: Number = Field(0, description="N m s/rad^2 or N s/m^2; of a rate of 1, for 1 rad or 1 m beyond the limit")
 
 
+class FrictionLoad(DocumentPart):
+    """What the force R that a joint transmits adds to F_c: of a revolute joint mu (r |R beside the axis| +
+    r_a |R along it|), of a prismatic one mu |R beside its axis|. In simulations with ``friction: loaded`` alone.
+    """
+
+    coefficient: Number = Field(description="mu")
+    radius: Number | None = Field(None, description="r of a revolute joint's journal; m")
+    axial_radius: Number | None = Field(None, description="r_a of its thrust bearing; m")
+
+
 class JointFriction(DocumentPart):
     """Dry friction of a coordinate, against its rate v: (F_c + (F_s - F_c) exp(-(v/v_s)^2)) tanh(v/v_0).
 
@@ -95,6 +105,7 @@ class JointFriction(DocumentPart):
     static: Number | None = Field(None, description="F_s, at rest, default as coulomb; N m or N")
     stribeck: Number | None = Field(None, description="v_s, over which it falls from static to coulomb; rad/s or m/s")
     velocity: Number = Field(description="v_0, over which the direction changes; rad/s or m/s")
+    load: FrictionLoad | None = Field(None, description="what the reactions of the joint add")
 
 
 class Joint(DocumentPart):

@@ -23,7 +23,7 @@ from substructures.mechanics.linear3 import (
     scale,
     transpose,
 )
-from substructures.part.definition import Body, Definition
+from substructures.part.definition import Body, Definition, FrictionLoad
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
 from substructures.part.parameters import si_unit
@@ -281,9 +281,27 @@ class _Builder:
                 what = "positive" if is_speed else "not negative"
                 self.scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is {what}")
                 return None
+        if given.load is not None:
+            self._friction_load(entry, given.load, f"{place}/load")
         if self.scope.faults:
             return None
         return Friction(read["coulomb"], read.get("static", read["coulomb"]), read.get("stribeck"), read["velocity"])
+
+    def _friction_load(self, entry: JointEntry, given: FrictionLoad, place: str) -> None:
+        """Check what reactions add to friction: simulations take it, formulas do without."""
+        needed = ("radius",) if not entry.s else ()
+        for name in ("coefficient", "radius", "axial_radius"):
+            value = getattr(given, name)
+            if value is None:
+                if name in needed:
+                    self.scope.fault(f"{place}/{name}", "missing", "the friction of a revolute joint has a 'radius'")
+            elif entry.s and name != "coefficient":
+                message = f"a prismatic joint has no '{name}': its friction is mu |R beside its axis|"
+                self.scope.fault(f"{place}/{name}", "bad-friction", message)
+            else:
+                x = self.scope.read(value, f"{place}/{name}")
+                if x.is_number and x.negative and not self.scope.faults:
+                    self.scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is not negative")
 
     def _inertia(self, frame: Frame, i: int, body: Body, pointer: str) -> None:
         scope, tensor = self.scope, body.inertia

@@ -9,7 +9,7 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.expr.unit_check import Notice, steps_of
-from substructures.part.definition import Definition, JointFriction, Parameter
+from substructures.part.definition import Definition, FrictionLoad, JointFriction, Parameter
 
 
 def si_unit(unit: str) -> str:
@@ -82,7 +82,7 @@ def names_in_limits(definition: Definition) -> set[str]:
 
 def _flat(given: Any) -> Iterator[Any]:
     for x in given or ():
-        if isinstance(x, JointFriction):
-            yield from (in_si(each) for _, each in x)
+        if isinstance(x, JointFriction | FrictionLoad):
+            yield from _flat(each for _, each in x)
         else:
             yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)

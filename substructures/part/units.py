@@ -53,6 +53,11 @@ FRICTION: dict[str, tuple[Dimension, Dimension]] = {
     **dict.fromkeys(("coulomb", "static"), EFFORT),
     **dict.fromkeys(("stribeck", "velocity"), RATE),
 }
+#: of what reactions add to it
+FRICTION_LOAD: dict[str, tuple[Dimension, Dimension]] = {
+    "coefficient": (NUMBER, NUMBER),
+    **dict.fromkeys(("radius", "axial_radius"), (LENGTH, LENGTH)),
+}
 #: of end stops: stiffness, and damping of a rate for a depth
 STOP: dict[str, tuple[Dimension, Dimension]] = {
     "stiffness": JOINT["stiffness"],
@@ -151,9 +156,15 @@ def _laws(
         if isinstance(given, tuple):
             law, place = (given[step], f"{pointer}/{step}") if step < len(given) else (None, pointer)
         if law is not None:
-            for name, dimensions in fields.items():
-                if getattr(law, name) is not None:
-                    yield f"{place}/{name}", getattr(law, name), dimensions[s]
+            yield from _fields(place, law, fields, s)
+            if getattr(law, "load", None) is not None:
+                yield from _fields(f"{place}/load", law.load, FRICTION_LOAD, s)
+
+
+def _fields(pointer: str, law: Any, fields: Mapping[str, tuple[Dimension, Dimension]], s: int) -> Iterator[Place]:
+    for name, dimensions in fields.items():
+        if getattr(law, name) is not None:
+            yield f"{pointer}/{name}", getattr(law, name), dimensions[s]
 
 
 def _by_coordinate(

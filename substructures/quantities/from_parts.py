@@ -46,6 +46,7 @@ LOADS, LOAD_POTENTIAL = "loads", "load_potential"
 ASKED_FOR = {
     "limits": ("limits",),
     "friction": ("friction",),
+    "friction_load": ("friction_load",),
     FOUND: ("potential_energy",),
     LOADS: ("forces", "inverse_dynamics"),
     LOAD_POTENTIAL: ("potential_energy",),
@@ -117,6 +118,8 @@ class NumericTree:
         outputs["limits"] = array((len(limits), 2), lambda k, i: limits[k][i])
         laws = list(self.assembly.friction.values())
         outputs["friction"] = array((len(laws), 4), lambda k, i: laws[k][i])
+        loads = list(self.assembly.friction_load.values())
+        outputs["friction_load"] = array((len(loads), 2), lambda k, i: loads[k][i])
         for k, m in enumerate(self.assembly.mounted):
             outputs[f"E.{k}"] = array((3, 3), lambda i, j, m=m: m.E[i][j])
             outputs[f"position.{k}"] = array((3,), lambda i, m=m: m.position[i])
@@ -186,7 +189,9 @@ class NumericTree:
         rows = numbers.get("friction", [])
         laws = zip(rows[::4], rows[1::4], rows[2::4], rows[3::4], strict=True)
         friction = dict(zip(self.assembly.friction, laws, strict=False))
-        constants: dict[str, Any] = {"limits": limits, "friction": friction}
+        pairs = numbers.get("friction_load", [])
+        loads = dict(zip(self.assembly.friction_load, zip(pairs[::2], pairs[1::2], strict=True), strict=False))
+        constants: dict[str, Any] = {"limits": limits, "friction": friction, "friction_load": loads}
         assembly = replace(self.assembly, mounted=mounted, gravity=tuple(numbers["gravity"]), **constants)
         # the coupling of formulas (notation.md, section 6), over the numbers that the formulas of the parts have
         coupled = couple_parts(self._run(), mounted, assembly.gravity, "christoffel" in quantities, False)

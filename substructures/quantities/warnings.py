@@ -13,7 +13,7 @@ Notice = Mapping[str, str]
 #: warnings about a tree that its parameters decide, so that those given here are looked at instead
 BY_VALUE = frozenset(("negative-mass", "negative-armature", "impossible-inertia"))
 #: warnings about a tree that concern whoever evaluates it
-TOLD = frozenset(("gravity-not-given",))
+TOLD = frozenset(("gravity-not-given", "friction-left-out"))
 
 
 def value_warnings(

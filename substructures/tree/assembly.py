@@ -35,6 +35,7 @@ class Assembly:
     inputs: dict[str, dict[str, object]]
     limits: dict[int, tuple[Expr, Expr]]  #: of coordinates by index, of those that have limits
     friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 by coordinate
+    friction_load: dict[int, tuple[Expr, Expr]]  #: by coordinate: of the force beside the axis, and along it
     reading: Reading  #: for what is read when the parts have their places
 
 
@@ -78,11 +79,12 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
     limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
     friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i).items()}
+    loaded = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction_load(i).items()}
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
     return Assembly(
-        scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, friction, reading
+        scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, friction, loaded, reading
     )
 
 
@@ -295,6 +297,20 @@ class Reading:
                     for x in (law.coulomb, static, law.stribeck or 0, law.velocity)
                 )
                 found[c] = F, S, v, w
+        return found
+
+    def friction_load(self, i: int) -> dict[int, tuple[Expr, Expr]]:
+        """mu r and mu r_a, of prismatic joints mu and 0, of the coordinates of an instance with such friction."""
+        instance, found = self.spec.instances[i], {}
+        for c, entry in enumerate(self.parts[instance.name].topology.joints):
+            given = self.parts[instance.name].definition.bodies[entry.body].joint.friction
+            law = given[entry.step] if isinstance(given, tuple) else given
+            if law is not None and law.load is not None:
+                mu, r, along = (
+                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
+                    for x in (law.load.coefficient, 1 if entry.s else law.load.radius, law.load.axial_radius or 0)
+                )
+                found[c] = mu * r, mu * along
         return found
 
     def cut(self, i: int) -> Cut:

@@ -19,6 +19,7 @@ U, Omega               frames n 3   partial velocities of the origin, partial an
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
 limits                 n 2          lowest and highest value of the coordinates that have limits
 friction               n 4          F_c, F_s, v_s (0: none) and v_0 of the coordinates that have dry friction
+friction_load          n 2          what the force that a joint transmits adds to F_c: beside its axis, along it
 =====================  ===========  ==========================================================================
 
 A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
@@ -78,19 +79,24 @@ def model_outputs(
         outputs |= {name: array((n,), lambda a, some=some: some[a]) for name, some in found.items()}
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
-    if assembly.limits and wanted("limits"):
-        rows: dict[tuple[int, ...], Scalar] = {
-            (a, i): x for a, pair in assembly.limits.items() for i, x in enumerate(pair)
-        }
-        outputs["limits"] = Formulas((n, 2), rows)
-    if assembly.friction and wanted("friction"):
-        laws: dict[tuple[int, ...], Scalar] = {
-            (a, i): x for a, law in assembly.friction.items() for i, x in enumerate(law)
-        }
-        outputs["friction"] = Formulas((n, 4), laws)
+    outputs |= {name: found for name, found in _joint_laws(assembly, n).items() if wanted(name)}
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
+
+
+def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
+    """Limits and friction, of trees in which a joint has some."""
+    given: dict[str, tuple[int, Mapping[int, tuple[Expr, ...]]]] = {
+        "limits": (2, assembly.limits),
+        "friction": (4, assembly.friction),
+        "friction_load": (2, assembly.friction_load),
+    }
+    return {
+        name: Formulas((n, width), {(a, i): x for a, row in rows.items() for i, x in enumerate(row)})
+        for name, (width, rows) in given.items()
+        if rows
+    }
 
 
 def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequence[Scalar]]:

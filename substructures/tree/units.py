@@ -145,6 +145,9 @@ def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, m
     notices = []
     if moves and "gravity" not in spec.model_fields_set:
         notices.append(_notice("/gravity", "gravity-not-given", "gravity is not given and is taken as zero"))
+    if "friction_load" in program.outputs:
+        message = "friction by the load of joints acts in simulations with 'friction': 'loaded' alone"
+        notices.append(_notice("", "friction-left-out", f"{message}; formulas and other numbers leave it out"))
     used = {symbol.name for symbol in program.symbols}
     for name in spec.parameters:
         if name not in used:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 
-from substructures import InvalidInput
+from substructures import InvalidArgument, InvalidInput
 from substructures.analysis.motion.rolling import FORMS
 from substructures.analysis.simulate import Closed, Event, KnifeEdge, Linear, Rolling, Table, simulate
 
@@ -178,3 +180,10 @@ def test_bad_arguments(change: Plain, pointer: str, code: str) -> None:
 
 
 SLEIGH = sleigh()
+
+
+def test_reactions_are_not_known() -> None:
+    """A constraint may be one of coordinates."""
+    transmitted: Any = object()
+    with pytest.raises(InvalidArgument, match="does not say where on which body"):
+        simulate(sleigh(), [0, 0, 0], (0, 1), constraints=[BLADE], reactions=transmitted)

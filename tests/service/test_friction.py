@@ -44,6 +44,46 @@ def test_its_numbers_are_an_output(incline: TestClient) -> None:
     assert text["outputs"]["friction"]["shape"] == [1, 4]
 
 
+@pytest.fixture
+def loaded(client: TestClient) -> TestClient:
+    """A block on an incline with mu = 0.25, and a second one published from a tree of it."""
+    friction = {"coulomb": 0, "velocity": 0.001, "load": {"coefficient": "mu"}}
+    joint = {"type": "prismatic", "coordinate": "x", "friction": friction}
+    definition = {
+        "name": "sledge", "parameters": {"mu": {"value": "1/4"}},
+        "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": joint}],
+    }  # fmt: skip
+    tree = {"name": "slope", "gravity": [0, -8, 6], "instances": [{"name": "a", "definition": definition}]}
+    answer = client.post("/v1/trees", json=tree)
+    assert answer.status_code == 201, answer.text
+    return client
+
+
+def test_friction_by_the_load_of_joints(loaded: TestClient) -> None:
+    """a = 6 - 8/4, in a simulation that asks for it; others tell that they leave it out."""
+    url, body = "/v1/trees/slope/simulations", {**START, "friction": "loaded"}
+    motion = loaded.post(url, json=body).json()
+    assert (motion["is_right"], motion["warnings"]) == (True, [])
+    assert motion["q"][-1][0] == pytest.approx(1 + 4 / 2, abs=1e-12)
+    assert motion["series"]["friction"][-1] == pytest.approx([-2.0], abs=1e-12)
+    assert "friction-load" in {check["name"] for check in motion["checks"]}
+    without = loaded.post(url, json=START).json()
+    assert [each["code"] for each in without["warnings"]] == ["friction-left-out"]
+    assert without["q"][-1][0] == pytest.approx(1 + 6 / 2, abs=1e-12)
+    text = loaded.get("/v1/trees/slope/friction_load?format=json").json()
+    assert text["outputs"]["friction_load"]["shape"] == [1, 2]
+
+
+def test_a_published_part_keeps_it(loaded: TestClient) -> None:
+    answer = loaded.post("/v1/trees/slope/publish", json={"name": "slope-part"})
+    assert answer.status_code == 201, answer.text
+    tree = {"name": "again", "gravity": [0, -8, 6], "instances": [{"name": "a", "substructure": "slope-part"}]}
+    answer = loaded.post("/v1/trees", json=tree)
+    assert answer.status_code == 201, answer.text
+    motion = loaded.post("/v1/trees/again/simulations", json={**START, "friction": "loaded"}).json()
+    assert motion["q"][-1][0] == pytest.approx(1 + 4 / 2, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("change", "url", "pointer"),
     [
@@ -52,6 +92,10 @@ def test_its_numbers_are_an_output(incline: TestClient) -> None:
         ({"friction": "exact", "prescribed": {"a.x": "t"}}, URL, "/friction"),
         ({"friction": "exact", "by": ["a.F"]}, "/v1/trees/incline/sensitivities", "/friction"),
         ({"friction": "exact", "parameters": {"a.F": -1}}, URL, "/parameters"),
+        ({"friction": "loaded"}, URL, "/friction"),
+        ({"friction": "loaded", "fixed_step": {"step": 0.01}}, URL, "/friction"),
+        ({"friction": "loaded", "prescribed": {"a.x": "t"}}, URL, "/friction"),
+        ({"friction": "loaded", "by": ["a.F"]}, "/v1/trees/incline/sensitivities", "/friction"),
     ],
 )
 def test_what_is_refused(incline: TestClient, change: dict[str, Any], url: str, pointer: str) -> None:

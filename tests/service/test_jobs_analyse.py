@@ -52,6 +52,18 @@ def test_a_template_with_choices(library: MemoryLibrary) -> None:
     assert found[0].summary["media_type"] == "text/csv"
 
 
+def test_friction_by_the_load_of_joints() -> None:
+    """Which needs the parts of the tree."""
+    (rod,) = PENDULUM["bodies"]
+    load = {"coefficient": "1/2", "radius": "1/10"}
+    joint = {**rod["joint"], "friction": {"coulomb": 0, "velocity": "1/100", "load": load}}
+    library = MemoryLibrary([{**PENDULUM, "bodies": [{**rod, "joint": joint}]}], [TREE])
+    request = {**SWING, "friction": "loaded"}
+    (found,) = outcomes(library, "simulate", {"items": [{"tree": "cell", "request": request}]})
+    assert found.summary["is_right"]
+    assert "friction-load" in {check["name"] for check in json.loads(found.files["result"])["checks"]}
+
+
 def test_optimise(library: MemoryLibrary) -> None:
     request = {
         "controls": ["tau.arm.q"], "cost": {"running": "tau.arm.q^2"}, "horizon": 1, "intervals": 4, "q": [0],

@@ -99,10 +99,16 @@ def test_loops(change: Plain, pointer: str, code: str) -> None:
         ({"constraints": [BLADE, {"name": "c", "type": "linear"}]}, "/constraints/1/expression", "missing"),
         ({"form": "lagrange"}, "/form", "literal-error"),
         ({"fixed": ["s.x"]}, "/fixed", "extra-forbidden"),
+        ({"reactions": True}, "/reactions", "extra-forbidden"),
+        ({"friction": "loaded"}, "/friction", "extra-forbidden"),
     ],
 )
 def test_constraints(change: Plain, pointer: str, code: str) -> None:
     assert faults(SLEIGH, "simulations", ROLLING | change) == [(pointer, code)]
+
+
+def test_friction_that_loops_do_not_have() -> None:
+    assert faults(CRANK, "simulations", CLOSED | {"friction": "loaded"}) == [("/friction", "extra-forbidden")]
 
 
 def test_a_body_is_an_object() -> None:
@@ -141,7 +147,7 @@ def test_a_loop_state_as_plain_data() -> None:
 @pytest.mark.parametrize(
     ("schemas", "function", "left_out"),
     [
-        ((SimulationRequest, ClosedRequest, RollingRequest), simulate, {"model", "progress", "folder"}),
+        ((SimulationRequest, ClosedRequest, RollingRequest), simulate, {"model", "progress", "folder", "bearings"}),
         ((LoopRequest,), loop_state, {"model", "folder"}),
         ((VelocityConstraints,), quasi_velocity_equations, {"model", "near"}),
         ((SensitivityRequest,), sensitivities, {"model", "progress", "folder"}),

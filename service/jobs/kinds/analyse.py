@@ -82,7 +82,9 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    has_parts = ANALYSES[item["analysis"]].needs_parts or bool(item["request"].get("reactions"))
+    request = item["request"]
+    needed = bool(request.get("reactions")) or request.get("friction") == "loaded"
+    has_parts = ANALYSES[item["analysis"]].needs_parts or needed
     return pinned(item, library, item["limits"]["program_nodes"], has_parts)
 
 

@@ -24,10 +24,12 @@ from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import read_conditions, state_names
+from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.errors import InvalidArgument
@@ -103,7 +105,7 @@ class Constrained:
         self.inputs = VaryingInputs(self.conditions, self._t, self._x, folder)
         self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
         columns = [(state_names(self.model), self._x), *self.inputs.columns]
-        self._run = kernel.bind(self._out, self.conditions.values | {"t": self._t}, columns=columns)
+        self._laws = Laws(source, kernel, self._out, self.conditions.values | {"t": self._t}, columns)
         self.g = self._out["metric"][0]
 
     def _sizes(self, t: float) -> tuple[Array, Array]:
@@ -132,7 +134,7 @@ class Constrained:
         self.t, self.q, self.qd = t, q, qd
         x[:n], x[n:], self._t[0] = q, qd, t
         self.inputs.fill()
-        self._run()
+        self._laws.run()
         # f = Q - Gamma q'q'
         np.subtract(out["forces"][0], out["bias"][0], out=self.f)
         m = self.closed
@@ -144,6 +146,28 @@ class Constrained:
             motion = self.prescribed.at(t)
             self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
             self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
+
+    def corners(self, t: float, x: Array, folder: Path | None) -> list[Watch]:
+        """Follow force laws on one side of their corners, from (q, q', ...) on; the corners are to be watched."""
+        moving = ("t", *state_names(self.model), *self.inputs.moving)
+        return follow([*self.inputs.laws, self._laws], moving, self._move, self._rates, (t, x), folder)
+
+    def plain(self) -> None:
+        """Force laws as they are."""
+        for laws in (*self.inputs.laws, self._laws):
+            laws.plain()
+
+    def _move(self, t: float, x: Array) -> None:
+        self.move(t, *np.split(x[: 2 * self.n], 2))
+
+    def _rates(self, t: float, x: Array) -> Array:
+        """(q', q'', 0) of (q, q', work); not finite where the accelerations are not determined."""
+        self._move(t, x)
+        try:
+            q2, _ = self.accelerations(self.independent_rows())
+        except Singular:
+            q2 = np.full(self.n, np.nan)
+        return np.concatenate((self.qd, q2, (0.0,)))
 
     @property
     def velocity_residual(self) -> Array:

@@ -117,7 +117,7 @@ def _steps_again(
     def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
         """From a state of the motion."""
         other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
-        return _moved(s, other, x, rank, None, None)
+        return _moved(s, other, x, rank, None, None, turning=False)
 
     return steps_again(first, problem.integrator, state_groups(s.n, s.n), problem.drift_limit, again)
 
@@ -128,26 +128,36 @@ def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:
 
 
 def _moved(
-    s: Constrained, problem: ClosedProblem, x: Array, rank: int, progress: ProgressReport | None, folder: Path | None
+    s: Constrained,
+    problem: ClosedProblem,
+    x: Array,
+    rank: int,
+    progress: ProgressReport | None,
+    folder: Path | None,
+    turning: bool = True,
 ) -> IntegratedMotion:
+    """The motion. ``turning``: it begins anew at corners of force laws."""
     reduction: Reduction = REDUCTIONS[problem.reduction](s, rank)
-    inner = problem.integrator.stepper()
+    inner, span, breaks = problem.integrator.stepper(), problem.span, s.conditions.breaks(problem.span)
+    s.inputs.enter(span[0], [*breaks, span[1]][0])
 
     def stepper(_f: object, t: float, y: Array, end: float) -> ClosedStepper:
         """The stepper that lands on the closures."""
         return ClosedStepper(reduction, inner, t, y, end)
 
+    corners = s.corners(span[0], x, folder) if turning else []
     motion = integrate(
         reduction.rates,
         x,
-        problem.span,
+        span,
         problem.times.grid(),
         IntegratorSettings(stepper, problem.integrator.max_steps, ADVICE),
-        s.conditions.watches(lambda _, y: y[:-1], folder),
-        s.conditions.breaks(problem.span),
-        share_of(problem.span, progress),
+        [*s.conditions.watches(lambda _, y: y[:-1], folder), *corners],
+        breaks,
+        share_of(span, progress),
         s.inputs.enter,
     )
+    s.plain()
     s.inputs.leave()
     return motion
 

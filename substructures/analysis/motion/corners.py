@@ -2,15 +2,16 @@
 
 From one corner to the next x' = f(t, x) is smooth: |x| = s x and sign x = s with the side s = 1 or -1 that x is on,
 also where a step goes too far, so that the zero of x is found on a smooth path, and steps keep their order. Corners are
-those of ``abs``, ``sign``, ``min``, ``max`` and linear tables.
+those of ``abs``, ``sign``, ``min``, ``max`` and linear tables, in the formulas of a model and in those of its inputs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def has_corners(source: Program) -> bool:
 
 
 def sided(source: Program, moving: Collection[str]) -> Sided | None:
-    """A program on one side of its corners, as far as they depend on symbols that are ``moving``, and on no inputs.
+    """A program on one side of its corners, as far as they depend on symbols that are ``moving``.
 
     None where there are no corners, or too many.
     """
@@ -59,26 +60,25 @@ def sided(source: Program, moving: Collection[str]) -> Sided | None:
     graph = Graph()
     made = replay(source, graph, {})
     entries = [e for output in made.values() for e in output.entries.values() if isinstance(e, Expr)]
-    nodes = [node for node in corners(entries) if node.op in LAWS and _moves(inner(node), moving, source)]
+    nodes = [node for node in corners(entries) if node.op in LAWS and _moves(inner(node), moving)]
     found = list(dict.fromkeys(map(inner, nodes)))
     if not found or len(found) > MOST:
         return None
     names = tuple(f"side {k}" for k in range(len(found)))
     symbol = {x: graph.symbol(name) for x, name in zip(found, names, strict=True)}
-    new = dict(zip(entries, on_side(entries, {node: symbol[inner(node)] for node in nodes}), strict=True))
+    every = [*entries, *found]
+    new = dict(zip(every, on_side(every, {node: symbol[inner(node)] for node in nodes}), strict=True))
     outputs = {
         name: Formulas(o.shape, {i: new[e] if isinstance(e, Expr) else e for i, e in o.entries.items()}, o.symmetry)
         for name, o in made.items()
     }
     symbols = {s.name: s for s in source.symbols} | {name: Symbol(name, "parameter") for name in names}
-    places = {CORNERS: array((len(found),), lambda k: found[k])}
+    places = {CORNERS: array((len(found),), lambda k: new[found[k]])}
     return Sided(program(graph, outputs, symbols), program(graph, places, symbols), names)
 
 
-def _moves(x: Expr, moving: Collection[str], source: Program) -> bool:
-    names = {str(node.value) for node in reachable([x]) if node.op == "sym"}
-    inputs = {s.name for s in source.symbols if s.kind == "input"}
-    return bool(names & set(moving)) and not names & inputs
+def _moves(x: Expr, moving: Collection[str]) -> bool:
+    return any(node.op == "sym" and str(node.value) in moving for node in reachable([x]))
 
 
 @lru_cache(maxsize=32)
@@ -95,30 +95,126 @@ def kernels(source: Program, moving: Sequence[str], folder: Path | None) -> tupl
     return _kernels(Known(source.digest, source), tuple(moving), folder)
 
 
-class Corners:
-    """The sides that a motion is on. ``places``: what the signs are of, at (t, x); ``rates``: x' = f(t, x) there;
-    ``leave``: called when the motion slides along a corner, where it has no side.
+class Laws:
+    """A program that a motion evaluates by :attr:`run`, as its formulas are or on one side of their corners.
+
+    ``outputs``: its outputs and where they are written; ``values`` and ``columns``: of its symbols.
     """
 
     def __init__(
         self,
-        sides: Array,
+        source: Program,
+        kernel: Kernel,
+        outputs: Mapping[str, Array],
+        values: Mapping[str, Any],
+        columns: Sequence[tuple[Sequence[str], Array]],
+    ) -> None:
+        self._source, self._outputs, self._values, self._columns = source, outputs, dict(values), columns
+        self.run = self._plain = kernel.bind(outputs, values, columns=columns)
+
+    def plain(self) -> None:
+        """The formulas as they are."""
+        self.run = self._plain
+
+    def on_sides(self, moving: Sequence[str], folder: Path | None) -> tuple[Array, Callable[[], Array]] | None:
+        """Take sides (k,), which are not set yet; what looks at the places that they are of (k,), as bound.
+
+        None where there are no corners.
+        """
+        found = kernels(self._source, moving, folder) if has_corners(self._source) else None
+        if found is None:
+            return None
+        kernel, places, of = found
+        sides, levels = np.ones(len(of.names)), np.zeros((1, len(of.names)))
+        values = self._values | {name: sides[k : k + 1] for k, name in enumerate(of.names)}
+        self.run = kernel.bind(self._outputs, values, columns=self._columns)
+        look = places.bind({CORNERS: levels}, values, columns=self._columns)
+
+        def looked() -> Array:
+            """The places at the state at hand."""
+            look()
+            return levels[0]
+
+        return sides, looked
+
+
+def follow(
+    laws: Sequence[Laws],
+    moving: Sequence[str],
+    move: Callable[[float, Array], None],
+    rates: Callable[[float, Array], Array],
+    start: tuple[float, Array],
+    folder: Path | None,
+) -> list[Watch]:
+    """Follow laws on one side of their corners, from a start (t, x) on; the corners are to be watched.
+
+    ``moving``: symbols that change along a motion; ``move``: makes (t, x) the state at hand, ``rates``: x' there. Laws
+    stand behind those that they depend on.
+    """
+    found = [taken for law in laws if (taken := law.on_sides(moving, folder)) is not None]
+    places = [(sides, k) for sides, _ in found for k in range(len(sides))]
+
+    def levels(t: float, x: Array) -> Array:
+        """What the signs are of."""
+        move(t, x)
+        return np.concatenate([look() for _, look in found])
+
+    def leave() -> None:
+        """Take no sides."""
+        for law in laws:
+            law.plain()
+
+    corners = Corners(places, levels, rates, leave)
+    if corners.begin(*start):
+        return corners.watches
+    leave()
+    return []
+
+
+class Corners:
+    """The sides that a motion is on: ``sides`` are elements of arrays; ``places``: what the signs are of, at (t, x);
+    ``rates``: x' = f(t, x) there; ``leave``: called when the motion slides along a corner, where it has no side.
+    """
+
+    def __init__(
+        self,
+        sides: Sequence[tuple[Array, int]],
         places: Callable[[float, Array], Array],
         rates: Callable[[float, Array], Array],
         leave: Callable[[], None],
     ) -> None:
-        self.sides, self.places, self.leave, self._rates = sides, places, leave, rates
+        self._sides, self.places, self.leave, self._rates = sides, places, leave, rates
         self.watches = [Watch(CORNERS, self._place(k), stops=False, corner=_Side(self, k)) for k in range(len(sides))]
+
+    def side(self, k: int) -> float:
+        """The side of a corner that is taken."""
+        where, place = self._sides[k]
+        return float(where[place])
+
+    def take(self, k: int, side: float) -> None:
+        """Take a side of a corner."""
+        where, place = self._sides[k]
+        where[place] = side
 
     def begin(self, t: float, x: Array) -> bool:
         """Take the sides of a start; False where it is between them, and does not leave to one."""
-        self.sides[:] = np.sign(self.places(t, x))
-        return all(side != 0 or self._leaves(k, t, x) for k, side in enumerate(self.sides))
+        every = range(len(self._sides))
+        # one corner may be inside another: those inside come first
+        for k in every:
+            self._starts(k, t, x)
+        return all(self._starts(k, t, x) or self._leaves(k, t, x) for k in every)
+
+    def _starts(self, k: int, t: float, x: Array) -> bool:
+        """Whether a start is beside a corner; then the corner has that side."""
+        side = float(np.sign(self.places(t, x)[k]))
+        if side:
+            self.take(k, side)
+        return bool(side)
 
     def _leaves(self, k: int, t: float, x: Array) -> bool:
         """Whether the motion goes from a corner to a side and stays on it, which becomes that of the corner."""
         for side in (1.0, -1.0):
-            self.sides[k] = side
+            self.take(k, side)
             if self.ahead(k, t, x) == side:
                 return True
         return False
@@ -142,11 +238,11 @@ class _Side:
     @property
     def side(self) -> float:
         """The side that is taken."""
-        return float(self.corners.sides[self.number])
+        return self.corners.side(self.number)
 
-    def turn(self) -> None:
-        """Take the other one."""
-        self.corners.sides[self.number] *= -1
+    def take(self, side: float) -> None:
+        """Take a side."""
+        self.corners.take(self.number, side)
 
     def stays(self, t: float, x: Array) -> bool:
         """Whether the motion goes on at that side; if not, no corner has one any more."""

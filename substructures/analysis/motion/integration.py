@@ -27,6 +27,8 @@ KEPT = 20_000
 PATIENCE, TINY = 200, 1e-12
 #: the level of a watch that is zero, with a sign
 LEAST = 1e-300
+#: of the largest level so far: what a level that jumps changes by at least
+JUMP = 1e-9
 STIFF = "try the method 'Radau' for stiff equations"
 
 
@@ -109,6 +111,7 @@ def integrate(
     run.last = span[0], x
     run.collect(span[0], lambda _: x)
     run.levels = [w.function(span[0], x) for w in watches]
+    run.sizes = np.abs(run.levels).tolist()
     # the method's order holds where the right-hand side is smooth: from break to break
     ends = [*breaks, span[1]]
     start = span[0]
@@ -116,6 +119,8 @@ def integrate(
         for end in ends:
             if enter is not None:
                 enter(start, end)
+            if start > span[0]:
+                run.broken(start, x)
             x = run.segment(start, x, end)
             if motion.status != "finished":
                 break
@@ -139,6 +144,8 @@ class _Run:
         self.outputs = outputs.tolist()
         self.next = 0
         self.levels: list[float] = []
+        #: the largest that they were
+        self.sizes: list[float] = []
         self.span, self.tiny = span[1] - span[0], 0
         self.motion = IntegratedMotion()
         self.last: tuple[float, Array] | None = None
@@ -219,7 +226,7 @@ class _Run:
         zeros, earlier = [], list(self.levels)
         for k, watch in enumerate(self.watches):
             before, after = self.levels[k], watch.function(solver.t, solver.y)
-            self.levels[k] = after
+            self.levels[k], self.sizes[k] = after, max(self.sizes[k], abs(after))
             zeros += [(t, k) for t in zeros_of(watch, solver, dense, (before, after))]
         zeros.sort()
         for i, (t, k) in enumerate(zeros):
@@ -250,10 +257,30 @@ class _Run:
         self.last = self.corner = t, x
         turned = self.watches[k].corner
         if turned is not None:
-            turned.turn()
+            before = [watch.function(t, x) for watch in self.watches]
+            turned.take(-turned.side)
+            self._jumped(t, x, before)
             if not turned.stays(t, x):
-                self.watches = [watch for watch in self.watches if watch.corner is None]
+                kept = [i for i, watch in enumerate(self.watches) if watch.corner is None]
+                self.watches, self.sizes = [self.watches[i] for i in kept], [self.sizes[i] for i in kept]
         self.levels = [watch.function(t, x) for watch in self.watches]
         for i, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
             side = signs.get(i, self.levels[i]) if watch.corner is None else watch.corner.side
             self.levels[i] = math.copysign(max(abs(self.levels[i]), LEAST), side)
+
+    def broken(self, t: float, x: Array) -> None:
+        """Go on behind a break, where levels of corners may have jumped."""
+        self._jumped(t, x, self.levels)
+        for i, watch in enumerate(self.watches):
+            if watch.corner is not None:
+                self.levels[i] = math.copysign(max(abs(watch.function(t, x)), LEAST), watch.corner.side)
+
+    def _jumped(self, t: float, x: Array, before: Sequence[float]) -> None:
+        """Take the sides of corners that were jumped over; those that others depend on come first."""
+        for i, watch in enumerate(self.watches):
+            if watch.corner is None:
+                continue
+            after = watch.function(t, x)
+            self.sizes[i] = max(self.sizes[i], abs(after))
+            if abs(after - before[i]) > JUMP * self.sizes[i]:
+                watch.corner.take(math.copysign(1.0, after))

@@ -6,7 +6,7 @@ algebra. W' is the power of the forces without potential; H - W is constant for 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import numpy as np
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, state_names
-from substructures.analysis.motion.corners import CORNERS, Corners, has_corners, kernels
+from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
@@ -75,51 +75,32 @@ class RightHandSide:
         folder: Path | None = None,
     ) -> None:
         self.n = n = model.dof
-        self._model, self._zero = model, frozenset(zero)
+        self._names = state_names(model)
         self.kernel = forward_kernel(model, zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
         self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, self._x, folder)
-        self._columns = [(state_names(model), self._x), *([] if self.inputs is None else self.inputs.columns)]
-        self._values = dict(values) | {"t": self._t}
-        self._run = self._plain = self._bound(self.kernel, {})
-
-    def _bound(self, kernel: Kernel, more: Mapping[str, Array]) -> Callable[[], None]:
+        columns = [(self._names, self._x), *([] if self.inputs is None else self.inputs.columns)]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
-        return kernel.bind(outputs, {**self._values, **more}, columns=self._columns)
+        source = _forward_program(Known(model.program.digest, model), frozenset(zero))
+        self._laws = Laws(source, self.kernel, outputs, dict(values) | {"t": self._t}, columns)
 
     def corners(self, t: float, x: Array, folder: Path | None = None) -> list[Watch]:
         """Follow force laws on one side of their corners, from a start on; the corners are to be watched."""
-        model = self._model
-        if not has_corners(model.program):
-            return []
-        source = _forward_program(Known(model.program.digest, model), self._zero)
-        found = kernels(source, ("t", *state_names(model)), folder)
-        if found is None:
-            return []
-        kernel, places, of = found
-        sides, levels = np.zeros(len(of.names)), np.zeros((1, len(of.names)))
-        named = {name: sides[k : k + 1] for k, name in enumerate(of.names)}
-        on_sides = self._bound(kernel, named)
-        look = places.bind({CORNERS: levels}, self._values, columns=self._columns[:1])
-
-        def placed(at: float, y: Array) -> Array:
-            """What the signs are of."""
-            self._t[0], self._x[0] = at, y[: 2 * self.n]
-            look()
-            return levels[0].copy()
-
-        self._run = on_sides
-        corners = Corners(sides, placed, self, self.plain)
-        if corners.begin(t, x):
-            return corners.watches
-        self.plain()
-        return []
+        given, moving = ((), ()) if self.inputs is None else (self.inputs.laws, self.inputs.moving)
+        return follow([*given, self._laws], ("t", *self._names, *moving), self._move, self, (t, x), folder)
 
     def plain(self) -> None:
         """Force laws as they are."""
-        self._run = self._plain
+        for laws in () if self.inputs is None else self.inputs.laws:
+            laws.plain()
+        self._laws.plain()
+
+    def _move(self, t: float, x: Array) -> None:
+        self._t[0], self._x[0] = t, x[: 2 * self.n]
+        if self.inputs is not None:
+            self.inputs.fill()
 
     @property
     def size(self) -> int:
@@ -138,11 +119,8 @@ class RightHandSide:
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""
-        self._t[0] = t
-        self._x[0] = x[: 2 * self.n]
-        if self.inputs is not None:
-            self.inputs.fill()
-        self._run()
+        self._move(t, x)
+        self._laws.run()
         return self._out[0][0], self._out[1][0], float(self._out[2][0])
 
     def __call__(self, t: float, x: Array) -> Array:

@@ -14,6 +14,7 @@ from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
 from substructures.analysis.motion.output_times import OutputTimes
@@ -24,6 +25,7 @@ from substructures.analysis.motion.single_steps import steps_again
 from substructures.analysis.motion.steppers import METHODS
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.motion.zeros import Watch
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.compile import compile_program
@@ -76,7 +78,22 @@ class _Rolling:
         rates = compile_program(equations.program, ["rates"], folder)
         self._move = rates.bind({"rates": self._rates}, values, columns=columns)
         kernel = compile_program(equations.program, wanted, folder)
-        self._run = kernel.bind(self._out, values, columns=[*columns, *self.inputs.columns])
+        source = equations.program.select(wanted)
+        self._laws = Laws(source, kernel, self._out, values, [*columns, *self.inputs.columns])
+
+    def corners(self, t: float, y: Array, folder: Path | None) -> list[Watch]:
+        """Follow force laws on one side of their corners, from a start on; the corners are to be watched."""
+        moving = ("t", *self.columns, *self.inputs.moving)
+        return follow([*self.inputs.laws, self._laws], moving, self._fill, self.rates, (t, y), folder)
+
+    def plain(self) -> None:
+        """Force laws as they are."""
+        for laws in (*self.inputs.laws, self._laws):
+            laws.plain()
+
+    def _fill(self, t: float, y: Array) -> None:
+        self._x[0] = self.state(t, y)
+        self.inputs.fill()
 
     def state(self, t: float, y: Array) -> Array:
         """(q, q') of y (a new array)."""
@@ -87,9 +104,8 @@ class _Rolling:
     def rates(self, t: float, y: Array) -> Array:
         """y'; not finite where the reduced metric is singular."""
         # g* v' = forces - bias, g* = T^T g T, q' = T v  (quasi_velocities)
-        self._x[0] = self.state(t, y)
-        self.inputs.fill()
-        self._run()
+        self._fill(t, y)
+        self._laws.run()
         out, result = self._out, np.empty(len(y))
         force = out["forces"][0] - out[self.form][0]
         # LAPACK takes no matrix without rows: nothing is left free
@@ -154,27 +170,37 @@ def _steps_again(
     def again(span: tuple[float, float], y: Array, choice: IntegratorChoice) -> IntegratedMotion:
         """From a state of the motion."""
         other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
-        return _moved(rolling, other, y, None, None)
+        return _moved(rolling, other, y, None, None, turning=False)
 
     groups = state_groups(rolling.n, rolling.p, "v")
     return steps_again(first, problem.integrator, groups, problem.drift_limit, again)
 
 
 def _moved(
-    rolling: _Rolling, problem: RollingProblem, y: Array, progress: ProgressReport | None, folder: Path | None
+    rolling: _Rolling,
+    problem: RollingProblem,
+    y: Array,
+    progress: ProgressReport | None,
+    folder: Path | None,
+    turning: bool = True,
 ) -> IntegratedMotion:
-    integrator, conditions = problem.integrator, rolling.conditions
+    """The motion. ``turning``: it begins anew at corners of force laws."""
+    integrator, conditions, span = problem.integrator, rolling.conditions, problem.span
+    breaks = conditions.breaks(span)
+    rolling.inputs.enter(span[0], [*breaks, span[1]][0])
+    corners = rolling.corners(span[0], y, folder) if turning else []
     motion = integrate(
         rolling.rates,
         y,
-        problem.span,
+        span,
         problem.times.grid(),
         IntegratorSettings(integrator.stepper(), integrator.max_steps, ADVICE),
-        conditions.watches(rolling.state, folder),
-        conditions.breaks(problem.span),
-        share_of(problem.span, progress),
+        [*conditions.watches(rolling.state, folder), *corners],
+        breaks,
+        share_of(span, progress),
         rolling.inputs.enter,
     )
+    rolling.plain()
     rolling.inputs.leave()
     return motion
 

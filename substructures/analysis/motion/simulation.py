@@ -19,6 +19,7 @@ from substructures.analysis.motion.dry_run import DryRun, integrate_dry, stickin
 from substructures.analysis.motion.fixed_step import FixedStep, march
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
+from substructures.analysis.motion.loaded_friction import LoadedRightHandSide
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem
 from substructures.analysis.motion.progress import ProgressReport, share_of
@@ -35,8 +36,9 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
 from substructures.quantities.limits import reached
+from substructures.quantities.reactions import ReactionModel
 
-FrictionMode = Literal["regularised", "exact"]
+FrictionMode = Literal["regularised", "exact", "loaded"]
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
@@ -47,18 +49,26 @@ SINGULAR = (
 @dataclass(frozen=True, kw_only=True)
 class TreeProblem(MotionProblem):
     """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q'); ``fixed_step``: in real-time mode;
-    ``friction``: by the smooth law of the formulas, or set-valued at rest.
+    ``friction``: by the smooth law of the formulas, set-valued at rest, or by the smooth law with the load of joints,
+    which needs ``bearings``: the reactions of the tree.
     """
 
     fixed_step: FixedStep | None = None
     friction: FrictionMode = "regularised"
+    bearings: ReactionModel | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        one_of(self.friction, "friction", ("regularised", "exact"))
+        one_of(self.friction, "friction", ("regularised", "exact", "loaded"))
         if self.friction == "exact" and (self.fixed_step is not None or self.integrator.method == TAYLOR):
             message = "joints that stick exactly need steps of any size: leave 'fixed_step' and the method Taylor out"
             raise InvalidArgument.at("/friction", "not-supported", message)
+        if self.friction == "loaded" and (self.fixed_step is not None or self.integrator.method == TAYLOR):
+            message = "friction by the load of joints is iterated: leave 'fixed_step' and the method Taylor out"
+            raise InvalidArgument.at("/friction", "not-supported", message)
+        if self.friction == "loaded" and self.bearings is None:
+            message = "friction by the load of joints needs the reactions of the tree, 'bearings'"
+            raise InvalidArgument.at("/friction", "needs-parts", message)
 
 
 def simulate_tree(
@@ -75,7 +85,7 @@ def simulate_tree(
     conditions = tree_conditions(problem)
     _check_method(conditions, problem)
     try:
-        f = RightHandSide(problem.model, conditions.values, conditions.zero, conditions, folder)
+        f = _right_hand_side(conditions, problem, folder)
     except InvalidInput as error:
         if any(fault.code == "singular-metric" for fault in error.faults):
             return _failed(conditions, problem, str(error))
@@ -94,9 +104,20 @@ def simulate_tree(
     return replace(found, checks=(*found.checks, instead, *repeated))
 
 
+def _right_hand_side(conditions: Conditions, problem: TreeProblem, folder: Path | None) -> RightHandSide:
+    """x' = f(t, x), with friction by the load of joints where that is asked for."""
+    given = problem.model, conditions.values, conditions.zero, conditions
+    if problem.friction == "loaded" and problem.bearings is not None:
+        return LoadedRightHandSide(*given, problem.bearings, folder)
+    return RightHandSide(*given, folder)
+
+
 def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Array) -> str:
     """Why there are no accelerations at the start that formulas of them can be trusted with."""
-    acceleration, pivots, _ = f.evaluate(problem.span[0], x)
+    try:
+        acceleration, pivots, _ = f.evaluate(problem.span[0], x)
+    except ArithmeticError as error:
+        return f"at the start {error}"
     if not (is_definite(pivots) and (pivots >= LEAST).all() and (pivots <= MOST).all()):
         states = _states(conditions, f, np.array([problem.span[0]]), x[None])
         model = problem.model
@@ -136,7 +157,9 @@ def _moved(
     x: Array,
     progress: ProgressReport | None,
     folder: Path | None,
+    turning: bool = True,
 ) -> tuple[IntegratedMotion, dict[str, float]]:
+    """The motion and its figures. ``turning``: it begins anew at corners of force laws."""
     begin = perf_counter()
     span, most, outputs = problem.span, problem.integrator.max_steps, problem.times.grid()
     told = share_of(span, progress)
@@ -151,7 +174,7 @@ def _moved(
         if problem.friction == "exact":
             motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
         else:
-            if problem.integrator.method != TAYLOR:
+            if turning and problem.integrator.method != TAYLOR:
                 watches = [*watches, *f.corners(span[0], x, folder)]
             motion = integrate(f, x, span, outputs, settings, watches, breaks, told, f.enter)
             f.plain()
@@ -179,6 +202,9 @@ def _judged(
     model = problem.model
     # inputs that are 0 all the time leave more constant
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
+    if isinstance(f, LoadedRightHandSide):
+        # as by a motor there: what is no force of the formulas changes energy and momenta
+        acting += [f"tau.{name}" for name in f.loads.names]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
@@ -187,6 +213,8 @@ def _judged(
     more: tuple[Check, ...] = ()
     if isinstance(motion, DryRun):
         more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
+    if isinstance(f, LoadedRightHandSide):
+        more = (_with_loads(series, f, states, x, problem.drift_limit),)
     checks = judge(model, integrals, states, series, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
@@ -219,6 +247,19 @@ def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: 
     return sticking(dry, motion, t, force, limit)
 
 
+def _with_loads(
+    series: dict[str, Array], f: LoadedRightHandSide, states: MotionStates, x: Array, limit: float
+) -> Check:
+    """Accelerations and friction as further series; whether that is the law of the reactions."""
+    second, force = f.along(states.t, x)
+    if "power" in series:
+        series["power"] = series["power"] + (force * states.qd).sum(axis=1)
+    whole, smooth = force.copy(), f.loads.smooth
+    whole[:, smooth.places] += smooth.smooth(states.qd[:, smooth.places])
+    series |= {"qdd": second, "friction": whole}
+    return f.check(states, force, limit)
+
+
 def _repeated(
     conditions: Conditions,
     problem: TreeProblem,
@@ -248,7 +289,7 @@ def _steps_again(
         """From a state of the motion."""
         times = OutputTimes(span, [span[1]])
         other = replace(problem, times=times, integrator=choice, fixed_step=None, events=())
-        return _moved(replace(conditions, events=()), other, f, x, None, None)[0]
+        return _moved(replace(conditions, events=()), other, f, x, None, None, turning=False)[0]
 
     return steps_again(first, problem.integrator, state_groups(f.n, f.n), problem.drift_limit, again)
 

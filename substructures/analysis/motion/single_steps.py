@@ -2,7 +2,8 @@
 
 A motion along which energy and momenta are constant may still be at the wrong place: on its way too early or too late,
 or turned within what they leave open. So some of the accepted steps, and of the results between them, are integrated
-once more from where they begin, each on its own: the difference at its end is the error of the step.
+once more from where they begin, each on its own: the difference at its end is the error of the step. Force laws are
+taken as they are there, with their corners, so that a motion on the wrong side of one is seen.
 """
 
 from __future__ import annotations

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.corners import Laws
 from substructures.array import Array
 
 
 class VaryingInputs:
-    """``columns``: names of inputs, and arrays (1, k) of their values. Not for several threads at a time."""
+    """``columns``: names of inputs, and arrays (1, k) of their values; ``moving``: names of those with formulas, which
+    are ``laws``. Not for several threads at a time.
+    """
 
     def __init__(self, conditions: Conditions, t: Array, x: Array, folder: Path | None) -> None:
         """``t`` (1,), ``x`` (1, 2n): where the state is written before :meth:`fill`."""
@@ -21,19 +23,21 @@ class VaryingInputs:
         self._curves = dict(conditions.curves)
         found, self._table = np.zeros((1, len(conditions.formulas))), np.zeros((1, len(self._curves)))
         self.columns = [(list(conditions.formulas), found), (list(self._curves), self._table)]
-        self._run: Callable[[], None] | None = None
+        self.moving = conditions.formulas
+        self.laws: tuple[Laws, ...] = ()
         if conditions.formulas:
             columns = [(state_names(conditions.model), x)]
             kernel = program_kernel(conditions.expressions, folder)
-            self._run = kernel.bind({"inputs": found}, conditions.values | {"t": t}, columns=columns)
+            source = conditions.expressions.select(["inputs"])
+            self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, columns),)
 
     def fill(self) -> None:
         """Evaluate at the present state and time."""
         # u_k = s_k(t) of tables, then u = u(q, q', t) of expressions, in place
         for k, curve in enumerate(self._curves.values()):
             self._table[0, k] = curve(self._t[0])
-        if self._run is not None:
-            self._run()
+        for laws in self.laws:
+            laws.run()
 
     def enter(self, start: float, end: float) -> None:
         """Times are between two breaks of the tables until the next call."""

@@ -27,8 +27,8 @@ class Corner(Protocol):
     def side(self) -> float:
         """The side that is taken."""
 
-    def turn(self) -> None:
-        """Take the other one."""
+    def take(self, side: float) -> None:
+        """Take a side."""
 
     def stays(self, t: float, x: Array) -> bool:
         """Whether the motion goes on at that side; if not, it slides along the corner, and nothing takes sides."""
