@@ -79,9 +79,9 @@ class Language(ABC):
             return self.temporary(n)
         label = self.meanings.get(operation)
         self._called[n] = 1 + sum(isinstance(x, int) for x in self._called.values()) if label is None else label
-        return self.called(n)
+        return self.step(n)
 
-    def called(self, n: int) -> Piece:
+    def step(self, n: int) -> Piece:
         """What temporary number n is called."""
         found = self._called.get(n, n)
         return self.temporary(found) if isinstance(found, int) else self.labelled(found)

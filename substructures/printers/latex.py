@@ -147,7 +147,7 @@ class Latex(Language):
     def abbreviated(self, listing: Listing) -> list[str]:
         """Rows of abbreviations and temporaries."""
         rows = [f"{name} &= {broken(text)}" for name, text in listing.abbreviations]
-        return rows + [f"{self.called(n).text} &= {broken(text)}" for n, text in listing.temporaries]
+        return rows + [f"{self.step(n).text} &= {broken(text)}" for n, text in listing.temporaries]
 
     def rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
         """Rows of an output, its symmetry as the last one."""

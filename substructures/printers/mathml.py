@@ -165,7 +165,7 @@ class MathML(Language):
         lines = [f"<p>{escape(comment(x))}</p>" for x in (self.remark, *self.legend) if x]
         lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
         lines += [self._line(left, text) for left, text in listing.abbreviations]
-        lines += [self._line(self.called(n).text, text) for n, text in listing.temporaries]
+        lines += [self._line(self.step(n).text, text) for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             lines += self._output(output, array, listing.entries[output])
         return _PAGE.format(title=escape(comment(name)), body="\n".join(lines))

@@ -48,7 +48,7 @@ class Text(Language):
             f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
         lines += [f"{name} = {text}" for name, text in listing.abbreviations]
-        lines += [f"{self.called(n).text} = {text}" for n, text in listing.temporaries]
+        lines += [f"{self.step(n).text} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             title = comment(output)
             if array.shape:

@@ -1,7 +1,7 @@
 """What the intermediate quantities of a tree are called in mechanics, as a program: for names in derivations.
 
-Joints are numbered from 1 in the order of the coordinates of the tree. For joint c with all that it carries, about O_c in
-its frame (notation.md, sections 3 to 5):
+Joints are numbered from 1 in the order of the coordinates of the tree. For joint c with all that it carries, about O_c
+in its frame (notation.md, sections 3 to 5):
 
 =============  ====================================================================================================
 m, s, J        mass, first moments and Binet tensor of what joint c carries; Theta: its moment about the axis
