@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
+from service.analyses.grouping import check_group
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
@@ -30,6 +31,8 @@ from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
+GROUP = "in base parameters: symbols for what masses and lengths occur in together, with their definitions"
+Group = Annotated[bool, Query(description=GROUP)]
 READ = [needs("read")]
 BINARY = {NPZ: binary(), ARROW: binary()}
 BODY: dict[str, Any] = body_of("EvaluationRequest", others=BINARY)
@@ -134,7 +137,7 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
 async def get_quantity(
-    ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf
+    ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf, group: Group = False
 ) -> Response:
     """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...
 
@@ -143,17 +146,25 @@ async def get_quantity(
     """
     item = f'{{"tree": "{ref[:80]}", "quantity": "{quantity[:80]}", "format": "{style.format}", ...}}'
     advice = f"submit a job of kind 'export' with the item {item}"
-    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options), advice)
+    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options, group), advice)
 
 
 def _quantity(
-    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options
+    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options, group: bool
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
         tree = trees.find(connection, request.state.viewer, ref)
         model = store.model(connection, tree)
     lasting = is_pinned(ref) and tree.is_public
+    if group:
+        if quantity not in QUANTITIES:
+            models.check_quantity(model, quantity)
+        check_options(quantity, options)
+        check_group(quantity, style)
+        source = analyses.source_of(store, tree, model)
+        tag = etag(tree.digest, tree.program, quantity, "grouped", *style.identity)
+        return remembered(request, tag, lasting, lambda: analyses.grouped(source, quantity, style))
     if quantity in QUANTITIES:
         source = analyses.source_of(store, tree, model)
         tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)

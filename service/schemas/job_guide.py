@@ -25,7 +25,7 @@ split into items of at most `job_states`.
 or `.../optimal-controls`.
 - `analyse`: the same with `analysis`, the last part of the path of any endpoint of the group analyses that computes \
 numbers, such as `linearisations`, `root-loci`; a request is the body of that endpoint.
-- `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`], which mean what they mean for `GET \
+- `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`, `group`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
 `request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
 `together`, `packed`, `fmi`, `precision`, `stages`], as of `GET /v1/trees/{ref}/export`; with `substructure` in place \

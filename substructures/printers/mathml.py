@@ -159,6 +159,9 @@ class MathML(Language):
         """A page: what the symbols are, then a paragraph for every element."""
         lines = [f"<p>{escape(comment(self.remark))}</p>"] if self.remark else []
         lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
+        for left, text, note in listing.definitions:
+            lines += [f"<p>{self.finished(left)} stands for {escape(comment(note))}:</p>"] if note else []
+            lines.append(self._line(left, text))
         lines += [self._line(left, text) for left, text in listing.abbreviations]
         lines += [self._line(self.temporary(n).text, text) for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():

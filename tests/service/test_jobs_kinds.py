@@ -151,6 +151,16 @@ def test_export_prints_what_the_service_prints(library: MemoryLibrary) -> None:
     assert "= 11/5\n" in second.files["text"].decode()  # m l^2 + m l^2 / 10
 
 
+def test_export_prints_grouped_symbols(library: MemoryLibrary) -> None:
+    item = {"tree": "cell", "quantity": "metric", "format": "text", "group": True}
+    (found,) = outcomes(library, "export", {"items": [item]})
+    assert "stands for" in found.files["text"].decode()
+    for wrong, pointer in (({"quantity": "potential_energy"}, "/group"), ({"group": "yes"}, "/group")):
+        with pytest.raises(InvalidDocument) as caught:
+            library.items("export", {"items": [{**item, **wrong}]})
+        assert caught.value.faults[0].pointer.endswith(pointer)
+
+
 def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
     item = {"tree": "cell", "target": "maxima", "quantities": ["metric"]}
     first, second = outcomes(library, "export", {"items": [item, {**item, "target": "c", "name": "arm"}]})

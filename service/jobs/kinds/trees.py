@@ -102,4 +102,5 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
         Limits(**limits),
         plausibility=judge,
         reactions=sources.reactions,
+        parts=(lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None,
     )
