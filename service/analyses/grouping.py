@@ -40,7 +40,7 @@ def check_group(quantity: str, style: Style) -> None:
 
 def grouped_of(source: Source) -> Grouped:
     """The model in grouped symbols, remembered. Raises InvalidInput for closures, TooLarge, TypeError without parts."""
-    key = source.digest, source.model.program.digest, source.limits.program_nodes
+    key = source.digest, source.model.program.digest, source.regressor().program.digest, source.limits.program_nodes
     found = _grouped.get(key)
     if found is None:
         if source.parts is None:

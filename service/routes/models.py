@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -9,6 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.analyses.grouping import check_group
+from service.analyses.printing import needs_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
@@ -16,7 +18,8 @@ from service.http.responses import remembered
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
-from service.operations.sources import engine_of, sources_of, tree_parts
+from service.operations.sources import engine_of, part_programs, sources_of, tree_parts
+from service.queries.trees import Tree
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
@@ -132,7 +135,13 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
             )
         )
 
-    return remembered(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref) and tree.is_public, make)
+    tag = etag(tree.digest, *_programs(store, tree, wanted.quantities), reference, *wanted.identity)
+    return remembered(request, tag, is_pinned(ref) and tree.is_public, make)
+
+
+def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
+    """The digests of the programs that quantities are printed from."""
+    return [tree.program, *(part_programs(store, tree) if any(map(needs_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -163,15 +172,18 @@ def _quantity(
         check_options(quantity, options)
         check_group(quantity, style)
         source = analyses.source_of(store, tree, model)
-        tag = etag(tree.digest, tree.program, quantity, "grouped", *style.identity)
+        tag = etag(tree.digest, tree.program, *part_programs(store, tree), quantity, "grouped", *style.identity)
         return remembered(request, tag, lasting, lambda: analyses.grouped(source, quantity, style))
     if quantity in QUANTITIES:
         source = analyses.source_of(store, tree, model)
-        tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
+        programs = _programs(store, tree, [quantity])
+        tag = etag(tree.digest, *programs, quantity, str(sorted(options.items())), *style.identity)
         return remembered(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
     check_options(quantity, options, models.options_of_quantity(quantity))
-    tag = etag(tree.digest, quantity, *(f"{name}={x}" for name, x in options.items()), *style.identity)
+    programs = _programs(store, tree, [quantity])
+    chosen = [f"{name}={x}" for name, x in options.items()]
+    tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
 
     def make() -> Answer:
         """Form, bind and print."""

@@ -206,10 +206,18 @@ def test_faults_of_formulas_point_into_the_item(library: MemoryLibrary, given: d
     assert "/query" not in outcome.problem["detail"]
 
 
+@pytest.mark.parametrize("item", [{"substructure": "*"}, {"tree": "*"}])
+def test_upgrade_keeps_what_is_as_short(library: MemoryLibrary, item: dict[str, str]) -> None:
+    for outcome in outcomes(library, "upgrade", {"items": [item]}):
+        assert outcome.summary["outcome"] == "as it was"
+        assert outcome.summary["before"] == outcome.summary["after"]
+        assert not outcome.files
+
+
 def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
-    assert KINDS[5] == "compare"
-    assert KINDS[6:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[5:7] == ("upgrade", "compare")
+    assert KINDS[7:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:
