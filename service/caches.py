@@ -1,4 +1,5 @@
-"""What is kept decoded in memory, by kind. Content never changes, so a cached value is never out of date."""
+"""What is kept decoded in memory, by kind. Content never changes, so a cached value is never out of date; programs
+that take the place of others (:mod:`service.operations.upgrade`) have keys of their own."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ SECTIONS = 8 * 2**20  # characters of formulas on pages
 
 @dataclass(frozen=True)
 class Caches:
-    """Decoded values: ``parts`` by digest of the definition, ``models`` by that of the tree, ``derived`` programs by
+    """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
     model and quantity, ``regressors``, ``reactions``, ``numeric_trees`` and ``plausibilities`` by digest of the tree,
     ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose by digest, ``blobs``
     by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.

@@ -50,13 +50,14 @@ class Store:
 
     def part(self, connection: Connection, digest: str) -> Part | None:
         """The part with this digest, decoded; None when it is not stored. Raises Refused for damaged content."""
-        part = self.caches.parts.get(digest)
+        program = content.program_of(connection, digest)
+        part = self.caches.parts.get((digest, program))
         self.metrics.cache("part", part is not None)
         if part is None and (stored := content.get_part(connection, digest)) is not None:
             with reading("a part", digest):
                 definition = Definition.stored(read_json(stored.definition))
                 part = Part.load(definition, stored.program, read_json(stored.certificate))
-            self.caches.parts.put(digest, part)
+            self.caches.parts.put((digest, program), part)
         return part
 
     def required_part(self, connection: Connection, digest: str) -> Part:
@@ -79,11 +80,11 @@ class Store:
 
     def remember_part(self, part: Part) -> None:
         """Keep a part that was just derived."""
-        self.caches.parts.put(part.definition.digest, part)
+        self.caches.parts.put((part.definition.digest, part.program.digest), part)
 
     def model(self, connection: Connection, tree: Tree) -> Model:
         """The model of a revision, decoded. Raises Refused for content that is damaged or gone."""
-        model = self.caches.models.get(tree.digest)
+        model = self.caches.models.get((tree.digest, tree.program))
         self.metrics.cache("model", model is not None)
         if model is None:
             program = content.get_program(connection, tree.program)
@@ -95,7 +96,7 @@ class Store:
                 if "inputs" not in summary:
                     summary |= self._declared(connection, tree)
                 model = Model.load(summary, program)
-            self.caches.models.put(tree.digest, model)
+            self.caches.models.put((tree.digest, tree.program), model)
         return model
 
     def _declared(self, connection: Connection, tree: Tree) -> dict[str, Any]:
@@ -107,11 +108,12 @@ class Store:
 
     def coupled(self, spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
         """The model of a tree that is not stored, coupled unless it is remembered. Raises as ``couple`` does."""
-        model = self.caches.models.get(spec.digest)
+        programs = tuple(part.program.digest for part in parts.values())
+        model = self.caches.models.get((spec.digest, *programs))
         self.metrics.cache("model", model is not None)
         if model is None:
             model = couple(spec, parts, self.settings.limits.program_nodes)
-            self.caches.models.put(spec.digest, model)
+            self.caches.models.put((spec.digest, *programs), model)
         return model
 
     def derived(self, model: Model, quantity: str) -> Program:
@@ -131,4 +133,4 @@ class Store:
 
     def remember_model(self, digest: str, model: Model) -> None:
         """Keep a model that was just coupled."""
-        self.caches.models.put(digest, model)
+        self.caches.models.put((digest, model.program.digest), model)

@@ -7,16 +7,21 @@ from typing import Any
 import numpy as np
 from random_trees import Plain
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 
 SQUEEZER = ("beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon")
 
 
-def tree_model(document: Plain, definitions: Plain) -> Model:
+def tree_parts(document: Plain, definitions: Plain) -> tuple[TreeSpec, dict[str, Part]]:
     """``definitions``: by the reference that instances give."""
     parts = {name: derive(Definition.read(data)) for name, data in definitions.items()}
     full = {"name": "loop"} | document
-    return couple(TreeSpec.read(full), {i["name"]: parts[i["substructure"]] for i in full["instances"]})
+    return TreeSpec.read(full), {i["name"]: parts[i["substructure"]] for i in full["instances"]}
+
+
+def tree_model(document: Plain, definitions: Plain) -> Model:
+    """``definitions``: by the reference that instances give."""
+    return couple(*tree_parts(document, definitions))
 
 
 def closed_entry(name: str, closures: list[Plain], gravity: Any = (0, 0, 0), **parameters: Any) -> Model:

@@ -99,7 +99,8 @@ def check_options(name: str, given: Iterable[str], known: Sequence[str] = ()) ->
 
 
 def _remembered(source: Source, quantity: _Quantity, options: Options) -> Made:
-    key = source.digest, source.limits.program_nodes, quantity.make, tuple(sorted(options.items()))
+    programs = (source.model.program.digest, *([source.regressor().program.digest] if quantity.needs_parts else []))
+    key = source.digest, programs, source.limits.program_nodes, quantity.make, tuple(sorted(options.items()))
     found = _made.get(key)
     if found is None:
         try:

@@ -16,6 +16,7 @@ from substructures.export import Interface, render
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
 from substructures.printers import entries
+from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import MOMENTA, momentum
@@ -131,22 +132,32 @@ def text_of(
     interface: Interface,
     members: Mapping[str, Any] | None = None,
     limit: int = LIMIT,
+    definitions: Definitions | None = None,
 ) -> str:
-    """The program in the format chosen; ``interface``: of what it was made for; ``members`` are put before it in JSON.
+    """The program in the format chosen; ``interface``: of what it was made for; ``members`` are put before it in JSON;
+    ``definitions``: of symbols that stand for formulas, for people.
+
     Raises TooLarge for more than ``limit`` nodes, InvalidArgument for a bad name of a function."""
     if style.format in TO_READ:
         program = program.select([name for name in program.outputs if name not in JUDGES] or list(program.outputs))
-    text = _rendered(program, style, quantity, interface, limit)
+    text = _rendered(program, style, quantity, interface, limit, definitions)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, interface.vectors["q"].names)
     return _joined(members, text) if style.format == JSON and members else text
 
 
-def _rendered(program: Program, style: Style, quantity: str, interface: Interface, limit: int) -> str:
+def _rendered(
+    program: Program,
+    style: Style,
+    quantity: str,
+    interface: Interface,
+    limit: int,
+    definitions: Definitions | None = None,
+) -> str:
     """The program, as a function of what was not bound where it is code."""
     left = interface.bound(bound_names(interface.vectors["p"].with_default, style.bind))
     try:
-        return render(program, style.format, style.form, style.name, limit, left, quantity)
+        return render(program, style.format, style.form, style.name, limit, left, quantity, definitions)
     except InvalidInput as error:
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 

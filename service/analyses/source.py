@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from service.settings import Limits
+from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
+from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -17,7 +19,8 @@ from substructures.tree.plausibility import Plausibility
 @dataclass(frozen=True)
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there.
+    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there;
+    ``parts``: the document of the tree and its parts by instance.
     """
 
     model: Model
@@ -28,3 +31,4 @@ class Source:
     engine: Evaluator = interpreted
     plausibility: Callable[[], Plausibility] | None = None
     reactions: Callable[[], ReactionModel] | None = None
+    parts: Callable[[], tuple[TreeSpec, Mapping[str, Part]]] | None = None

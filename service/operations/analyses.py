@@ -8,6 +8,7 @@ from typing import Any
 import orjson
 
 from service.analyses.formulas import Made, Options, made, velocity_equations_of
+from service.analyses.grouping import grouped_text
 from service.analyses.numbers import ANALYSES
 from service.analyses.printing import Style, made_text
 from service.analyses.results import trajectory_of, written
@@ -15,7 +16,7 @@ from service.analyses.source import Source
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.operations import trees
-from service.operations.sources import sources_of
+from service.operations.sources import sources_of, tree_parts
 from service.queries.trees import Tree
 from service.store import Store
 from service.viewer import Viewer
@@ -27,7 +28,8 @@ def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
     sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility, sources.reactions)
+    kept = sources.plausibility, sources.reactions, lambda: tree_parts(store, tree)
+    return Source(model, tree.digest, sources.columns, *tools, *kept)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
@@ -36,6 +38,13 @@ def printed(source: Source, quantity: str, options: Options, style: Style) -> An
     Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
     """
     return _printed(source, quantity, made(source, quantity, options), style)
+
+
+def grouped(source: Source, quantity: str, style: Style) -> Answer:
+    """A quantity in grouped symbols, with what they stand for. Raises InvalidDocument, TooLarge, Refused 422."""
+    interface = interface_of_model(source.model, digest=source.digest)
+    text = grouped_text(source, quantity, style, interface)
+    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 
 def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, style: Style) -> Answer:

@@ -8,11 +8,13 @@ from typing import Any
 
 from service.addresses import tree_path, version_path
 from service.database.connections import Connection
+from service.improvement import Improvement
 from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import ENTRY
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
 from service.operations.provenance import Origin
+from service.operations.upgrade import TreeProgram, put_part, put_tree
 from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
@@ -54,6 +56,8 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
             stored = _tree(connection, viewer, read_json(attempt.item.encode()), outcome)
         case "derive":
             stored = _version(connection, viewer, read_json(attempt.item.encode()), outcome)
+        case "upgrade":
+            stored = _upgraded(connection, viewer, read_json(attempt.item.encode()), outcome)
         case _:
             files = outcome.files
     return results.Result(attempt.key, attempt.kind, write_json({**outcome.summary, **stored}).decode(), files)
@@ -76,6 +80,18 @@ def _version(connection: Connection, viewer: Viewer, item: Mapping[str, Any], ou
     submission = PartSubmission(part.name, part.digest, part, entry=entry, origin=origin)
     version, _ = catalogue.submit(connection, viewer, submission)
     return {"version": version.version, "location": version_path(version)}
+
+
+def _upgraded(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
+    """Nothing more is told than what the outcome says."""
+    files, told = outcome.files, outcome.summary
+    found = Improvement(told["before"], told["after"], told["outcome"])
+    if found.is_one and "tree" in item:
+        made = TreeProgram(files["program"], told["program"], told["nodes"], told["dof"], files["summary"])
+        put_tree(connection, viewer, told["name"], told["digest"], item["program"], made, found)
+    elif found.is_one:
+        put_part(connection, viewer, item["substructure"], item["program"], PartContent.of_files(files), found)
+    return {}
 
 
 def _entry(item: Mapping[str, Any]) -> Entry:

@@ -22,7 +22,7 @@ from service.viewer import Viewer
 from substructures.documents import write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
-STORING = ("assemble", "derive")  # kinds whose results are trees and versions
+STORING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions
 YIELD = 8  # items that are resolved at a stretch
 LONGEST_LABEL = 200
 RECENT = 30.0  # seconds over which the rate is measured

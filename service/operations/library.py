@@ -12,7 +12,7 @@ from service.operations.owners import private_parts, wanted
 from service.operations.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
-from service.queries.owners import Kind
+from service.queries.owners import Kind, ownership
 from service.queries.trees import Tree
 from service.references import parse_reference
 from service.refusals import Refused
@@ -56,10 +56,24 @@ class StoreLibrary:
         """References ``name@3`` to all revisions of trees."""
         return [f"{name}@{number}" for name, number in trees.all_revisions(self._connection, self._viewer)]
 
+    def own(self, kind: str) -> Sequence[str]:
+        """References to the latest versions or revisions of what may be changed."""
+        if kind == "tree":
+            found = trees.own_revisions(self._connection, self._viewer)
+            return [f"{name}@{number}" for name, number in found]
+        return list(catalogue.own_contents(self._connection, self._viewer).values())
+
+    def may_change(self, kind: str, name: str) -> bool:
+        """Whether a name belongs to whoever submits."""
+        found = ownership(self._connection, "tree" if kind == "tree" else "substructure", name)
+        return found is not None and self._viewer.may_change(found.owner)
+
     def owned(self, kind: str, item: ItemDocument) -> ItemDocument:
         """The members of an item of kind ``assemble`` or ``derive`` that say for whom it stores what; equal items of
         others are others. Raises InvalidDocument for a name or a part that may not be used.
         """
+        if kind == "upgrade":
+            return {}
         entry, what = PartEntry(**item.get(ENTRY, {})), item["definition" if kind == "derive" else "tree"]
         named: Kind = "substructure" if kind == "derive" else "tree"
         try:

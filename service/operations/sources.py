@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from service.integrity import reading
 from service.operations.trees import parts_of
+from service.queries import trees
 from service.queries.trees import Tree
 from service.store import Store
 from service.viewer import ANYBODY
@@ -67,17 +68,25 @@ def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
             return spec, parts_of(store, connection, ANYBODY, spec)  # the tree was found for whoever asks
 
 
+def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:
+    """The digests of what is derived of a tree beside its own program is made of."""
+    with store.database.read() as connection:
+        return trees.part_programs(connection, tree.name, tree.revision)
+
+
 def _reactions(store: Store, tree: Tree) -> ReactionModel:
-    found = store.caches.reactions.get(tree.digest)
+    key = tree.digest, part_programs(store, tree)
+    found = store.caches.reactions.get(key)
     if found is None:
         found = reactions(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.caches.reactions.put(tree.digest, found)
+        store.caches.reactions.put(key, found)
     return found
 
 
 def _regressor(store: Store, tree: Tree) -> RegressorModel:
-    found = store.caches.regressors.get(tree.digest)
+    key = tree.digest, part_programs(store, tree)
+    found = store.caches.regressors.get(key)
     if found is None:
         found = regressor(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.caches.regressors.put(tree.digest, found)
+        store.caches.regressors.put(key, found)
     return found

@@ -128,7 +128,7 @@ def prepare_change(store: Store, viewer: Viewer, change: TreeChange) -> Revision
 def tree_tag(tree: trees.Tree, withdrawn: Sequence[Withdrawn] = ()) -> str:
     """The ETag of a tree; ``withdrawn``: those of its instances whose parts are withdrawn."""
     gone = [f"{each.instance}:{each.successor}" for each in withdrawn]
-    return etag(tree.digest, str(tree.revision), *([] if tree.is_public else [tree.visibility]), *gone)
+    return etag(tree.digest, tree.program, str(tree.revision), *([] if tree.is_public else [tree.visibility]), *gone)
 
 
 def withdrawn(connection: Connection, viewer: Viewer, tree: trees.Tree) -> Sequence[Withdrawn]:

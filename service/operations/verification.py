@@ -79,7 +79,7 @@ def _verified(
         with database.write() as connection:
             mend(connection, key)
     except Exception as error:  # whatever it is, the next one is looked at, too
-        return Finding(what, key, fault, f"cannot be derived anew: {_told(error)}")
+        return Finding(what, key, fault, f"cannot be derived anew: {told(error)}")
     again = _fault(database, key, check)
     return Finding(what, key, fault, (again and f"derived anew, and still wrong: {again}") or MENDED)
 
@@ -89,11 +89,12 @@ def _fault(database: Database, key: str, check: Callable[[Connection, str], obje
         with database.read() as connection:
             check(connection, key)
     except Exception as error:  # damage may show as anything
-        return _told(error)
+        return told(error)
     return ""
 
 
-def _told(error: Exception) -> str:
+def told(error: Exception) -> str:
+    """What went wrong, in words."""
     is_known = isinstance(error, (Refused, SubstructuresError, ValueError))
     return str(error) if is_known and str(error) else f"{type(error).__name__}: {error}"
 
@@ -120,7 +121,7 @@ def _mend_part(connection: Connection, digest: str) -> None:
     mend_part(connection, part_content(derive(Definition.stored(read_json(definition)))))
 
 
-def _tree(connection: Connection, reference: str) -> tuple[Tree, TreeSpec]:
+def read_tree(connection: Connection, reference: str) -> tuple[Tree, TreeSpec]:
     """A revision whose document is sound."""
     name, _, number = reference.partition("@")
     tree = trees.get_damaged(connection, name, int(number))
@@ -130,7 +131,8 @@ def _tree(connection: Connection, reference: str) -> tuple[Tree, TreeSpec]:
     return tree, TreeSpec.stored(read_json(tree.spec.encode()))
 
 
-def _definitions(connection: Connection, spec: TreeSpec) -> dict[str, Definition]:
+def stored_definitions(connection: Connection, spec: TreeSpec) -> dict[str, Definition]:
+    """What every instance is. Raises ValueError for what is gone."""
     found = {}
     for instance in spec.instances:
         digest = (instance.substructure or "").partition("@")[2]
@@ -143,22 +145,22 @@ def _definitions(connection: Connection, spec: TreeSpec) -> dict[str, Definition
 
 def _check_tree(connection: Connection, reference: str) -> None:
     """Raises what is wrong with a tree, its program and its summary."""
-    tree, spec = _tree(connection, reference)
+    tree, spec = read_tree(connection, reference)
     checked("its summary", tree.summary_digest, tree.summary.encode())
     data = content.get_program(connection, tree.program)
     if data is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
     summary: dict[str, Any] = read_json(tree.summary.encode())
-    recheck_tree(spec, _definitions(connection, spec), summary, Program.from_bytes(data))
+    recheck_tree(spec, stored_definitions(connection, spec), summary, Program.from_bytes(data))
     given = read_json(spec.canonical())
     if (summary["gravity"], summary["instances"]) != (given.get("gravity", [0, 0, 0]), given.get("instances", [])):
         raise ValueError("gravity or instances in its summary are not those of its document")
 
 
 def _mend_tree(connection: Connection, reference: str) -> None:
-    tree, spec = _tree(connection, reference)
+    tree, spec = read_tree(connection, reference)
     parts = {}
-    for name, definition in _definitions(connection, spec).items():
+    for name, definition in stored_definitions(connection, spec).items():
         stored = content.get_part(connection, definition.digest)
         parts[name] = derive(definition) if stored is None else Part.load(definition, stored.program, {})
     model = couple(spec, parts)

@@ -175,6 +175,15 @@ def all_contents(connection: Connection) -> dict[str, str]:
     return named | {digest: "" for digest in others if digest not in named}
 
 
+def own_contents(connection: Connection, viewer: Viewer) -> dict[str, str]:
+    """The digests of the latest versions that a viewer may change, with their names."""
+    query = select(substructures.c.digest, substructures.c.name, substructures.c.latest)
+    query = query.where(substructures.c.latest.is_not(None)).order_by(substructures.c.name)
+    if not viewer.is_admin:
+        query = query.where(substructures.c.owner == viewer.owner)
+    return {digest: f"{name}@{number}" for digest, name, number in connection.execute(query)}
+
+
 def all_versions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:
     """Name and number of every version that a viewer sees and that is not withdrawn."""
     query = select(versions.c.name, versions.c.version).join(substructures, substructures.c.name == versions.c.name)

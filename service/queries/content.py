@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, select, update
+from sqlalchemy import Connection, bindparam, select, update
 
 from service.database.packed import unpack
 from service.database.tables import parts, programs, tags
@@ -69,6 +69,11 @@ def replace_program(connection: Connection, digest: str, content: bytes, nodes: 
     connection.execute(update(programs).where(programs.c.digest == digest).values(content=content, nodes=nodes))
 
 
+def program_of(connection: Connection, digest: str) -> str | None:
+    """The digest of the program of a part; None when it is not stored."""
+    return connection.execute(_PROGRAM_OF, {"digest": digest}).scalar()
+
+
 def has_part(connection: Connection, digest: str) -> bool:
     """Whether a part is stored."""
     return connection.execute(select(parts.c.digest).where(parts.c.digest == digest)).first() is not None
@@ -105,3 +110,7 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
         found = get_upload(connection, digest)
         return None if found is None else checked("uploaded states", digest, found)
     return found
+
+
+# Built once: to build a statement takes longer than to execute it.
+_PROGRAM_OF = select(parts.c.program).where(parts.c.digest == bindparam("digest"))

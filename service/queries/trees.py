@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
-from service.database.tables import tree_names, tree_parts, trees, versions
+from service.database.tables import parts, tree_names, tree_parts, trees, versions
 from service.integrity import checked
 from service.queries.owners import seen_by, visible
 from service.references import Reference
@@ -88,6 +88,29 @@ def all_revisions(connection: Connection, viewer: Viewer) -> list[tuple[str, int
     query = select(trees.c.name, trees.c.revision).join(tree_names, tree_names.c.name == trees.c.name)
     query = query.where(_VISIBLE).order_by(trees.c.name, trees.c.revision)
     return [(name, number) for name, number in connection.execute(query, seen_by(viewer))]
+
+
+def own_revisions(connection: Connection, viewer: Viewer, every: bool = False) -> list[tuple[str, int]]:
+    """Name and number of the latest revision of every tree that a viewer may change; ``every``: of all revisions."""
+    query = select(trees.c.name, trees.c.revision).join(tree_names, tree_names.c.name == trees.c.name)
+    query = query if every else query.where(_IS_LATEST)
+    if not viewer.is_admin:
+        query = query.where(tree_names.c.owner == viewer.owner)
+    ordered = query.order_by(trees.c.name, trees.c.revision)
+    return [(name, number) for name, number in connection.execute(ordered)]
+
+
+def part_programs(connection: Connection, name: str, revision: int) -> tuple[str, ...]:
+    """The digests of the programs of the parts of a revision, in the order of the instances' names."""
+    query = select(parts.c.program).join(tree_parts, tree_parts.c.part == parts.c.digest)
+    query = query.where(tree_parts.c.name == name, tree_parts.c.revision == revision)
+    return tuple(connection.execute(query.order_by(tree_parts.c.instance)).scalars())
+
+
+def with_program(connection: Connection, name: str, digest: str, program: str) -> list[Tree]:
+    """The revisions of a tree with this document whose formulas are this program."""
+    query = _all().where(trees.c.name == name, trees.c.digest == digest, trees.c.program == program)
+    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.revision))]
 
 
 def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None:

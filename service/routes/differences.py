@@ -31,7 +31,7 @@ async def part_difference(ref: str, to: To, request: Request, store: StoreOf, vi
         a, b = differences.versions(store, viewer, ref, to)
         is_fixed = is_pinned(ref) and is_pinned(to) and a.is_public and b.is_public
         names = f"{a.name}@{a.version}", f"{b.name}@{b.version}"
-        tag = etag(a.digest, b.digest, "difference", *names)
+        tag = etag(a.digest, a.program, b.digest, b.program, "difference", *names)
         return conditional(request, tag, is_fixed, lambda: _answer(names, differences.of_versions(store, a, b)))
 
     return await in_time(request, answered, ADVICE)
@@ -46,7 +46,7 @@ async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, vi
         a, b = differences.revisions(store, viewer, ref, to)
         is_fixed = is_pinned(ref) and is_pinned(to) and a.is_public and b.is_public
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
-        tag = etag(a.digest, b.digest, "difference", *names)
+        tag = etag(a.digest, a.program, b.digest, b.program, "difference", *names)
         return conditional(request, tag, is_fixed, lambda: _answer(names, differences.of_revisions(store, a, b)))
 
     return await in_time(request, answered, ADVICE)

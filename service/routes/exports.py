@@ -94,7 +94,7 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
         return package_answer(lambda: part_package(part, reference, version.digest, wanted, limit))
 
     lasting = is_pinned(ref) and version.is_public
-    return remembered(request, etag(version.digest, reference, *wanted.identity), lasting, make)
+    return remembered(request, etag(version.digest, version.program, reference, *wanted.identity), lasting, make)
 
 
 def package_answer(make: Callable[[], Package]) -> Answer:

@@ -37,7 +37,7 @@ def list_formulas(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) 
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
         rows = index.list_formulas(connection, version.digest)
-    tag = etag(version.digest, "formulas")
+    tag = etag(version.digest, version.program, "formulas")
     return conditional(
         request, tag, is_pinned(ref) and version.is_public, lambda: json_answer(dump(formulas_view(version, rows)))
     )
@@ -93,7 +93,7 @@ def _formula(
     if found is None:
         raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
     identity = str((chosen.body, chosen.coordinate, chosen.component, chosen.inertia))
-    tag = etag(version.digest, quantity, identity, *style.identity)
+    tag = etag(version.digest, version.program, quantity, identity, *style.identity)
 
     def make() -> Answer:
         """Bind and print."""

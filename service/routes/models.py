@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
+from service.analyses.grouping import check_group
+from service.analyses.printing import needs_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
@@ -15,7 +18,8 @@ from service.http.responses import remembered
 from service.negotiation import MEDIA_TYPES
 from service.operations import analyses, at_hand, models, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
-from service.operations.sources import engine_of, sources_of, tree_parts
+from service.operations.sources import engine_of, part_programs, sources_of, tree_parts
+from service.queries.trees import Tree
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
@@ -30,6 +34,8 @@ from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
+GROUP = "in base parameters: symbols for what masses and lengths occur in together, with their definitions"
+Group = Annotated[bool, Query(description=GROUP)]
 READ = [needs("read")]
 BINARY = {NPZ: binary(), ARROW: binary()}
 BODY: dict[str, Any] = body_of("EvaluationRequest", others=BINARY)
@@ -129,12 +135,18 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
             )
         )
 
-    return remembered(request, etag(tree.digest, reference, *wanted.identity), is_pinned(ref) and tree.is_public, make)
+    tag = etag(tree.digest, *_programs(store, tree, wanted.quantities), reference, *wanted.identity)
+    return remembered(request, tag, is_pinned(ref) and tree.is_public, make)
+
+
+def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
+    """The digests of the programs that quantities are printed from."""
+    return [tree.program, *(part_programs(store, tree) if any(map(needs_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
 async def get_quantity(
-    ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf
+    ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf, group: Group = False
 ) -> Response:
     """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...
 
@@ -143,24 +155,35 @@ async def get_quantity(
     """
     item = f'{{"tree": "{ref[:80]}", "quantity": "{quantity[:80]}", "format": "{style.format}", ...}}'
     advice = f"submit a job of kind 'export' with the item {item}"
-    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options), advice)
+    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options, group), advice)
 
 
 def _quantity(
-    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options
+    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options, group: bool
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
         tree = trees.find(connection, request.state.viewer, ref)
         model = store.model(connection, tree)
     lasting = is_pinned(ref) and tree.is_public
+    if group:
+        if quantity not in QUANTITIES:
+            models.check_quantity(model, quantity)
+        check_options(quantity, options)
+        check_group(quantity, style)
+        source = analyses.source_of(store, tree, model)
+        tag = etag(tree.digest, tree.program, *part_programs(store, tree), quantity, "grouped", *style.identity)
+        return remembered(request, tag, lasting, lambda: analyses.grouped(source, quantity, style))
     if quantity in QUANTITIES:
         source = analyses.source_of(store, tree, model)
-        tag = etag(tree.digest, quantity, str(sorted(options.items())), *style.identity)
+        programs = _programs(store, tree, [quantity])
+        tag = etag(tree.digest, *programs, quantity, str(sorted(options.items())), *style.identity)
         return remembered(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
     models.check_quantity(model, quantity)
     check_options(quantity, options, models.options_of_quantity(quantity))
-    tag = etag(tree.digest, quantity, *(f"{name}={x}" for name, x in options.items()), *style.identity)
+    programs = _programs(store, tree, [quantity])
+    chosen = [f"{name}={x}" for name, x in options.items()]
+    tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
 
     def make() -> Answer:
         """Form, bind and print."""

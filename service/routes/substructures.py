@@ -113,7 +113,8 @@ def version_tag(version: Version, names: Sequence[str], withdrawn: Sequence[With
     """The ETag of a version: what it refers to may become visible, or be withdrawn."""
     seen = (version.derived_from, version.successor, version.tree)
     shown = [*(each for each in seen if each), *(f"{each.instance}:{each.successor}" for each in withdrawn)]
-    return etag(version.digest, str(version.version), str(version.yanked), version.visibility, *shown, *names)
+    said = version.digest, version.program, str(version.version), str(version.yanked), version.visibility
+    return etag(*said, *shown, *names)
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)

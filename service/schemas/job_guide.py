@@ -11,6 +11,9 @@ KINDS = """What every item is, its optional fields in brackets. `tree` and `subs
 - `derive`: a definition, the body of `POST /v1/substructures` (`Definition`); the version is stored.
 - `verify`: `substructure` or `tree`, a reference, or `*` for the whole catalogue or all revisions of trees; the \
 certificate is made anew from what is stored.
+- `upgrade`: `substructure` or `tree`, a reference to something of one's own, or `*` for the latest versions or \
+revisions of all that is; it is derived anew with today's software, and the program takes the place of what is stored \
+where it is shorter.
 - `compare`: `a`, `b`, [`coordinates`], the body of `POST /v1/equivalences` (`EquivalenceRequest`), whose answer is \
 the result. `b` may be a list, one against many, or `*` for all versions of the catalogue: an item each.
 - `evaluate`: `tree`, `request`, [`grid` or `sample`], [`format`: `npz` (default), `arrow`]. `request` is the body of \
@@ -25,7 +28,7 @@ split into items of at most `job_states`.
 or `.../optimal-controls`.
 - `analyse`: the same with `analysis`, the last part of the path of any endpoint of the group analyses that computes \
 numbers, such as `linearisations`, `root-loci`; a request is the body of that endpoint.
-- `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`], which mean what they mean for `GET \
+- `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`, `group`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
 `request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
 `together`, `packed`, `fmi`, `precision`, `stages`], as of `GET /v1/trees/{ref}/export`; with `substructure` in place \
@@ -78,5 +81,6 @@ EXAMPLES: tuple[dict[str, Any], ...] = (
     {"kind": "export", "items": [{"tree": "swing", "quantity": "metric", "format": "latex", "form": "expanded"}]},
     {"kind": "export", "items": [{"tree": "swing", "target": "c", "quantities": ["metric", "forces"]}]},
     {"kind": "verify", "items": [{"substructure": "*"}]},
+    {"kind": "upgrade", "items": [{"substructure": "*"}]},
     {"kind": "compare", "items": [{"a": "swing", "b": ["acrobot", "puma560"], "coordinates": {"rod.q1": "q1"}}]},
 )

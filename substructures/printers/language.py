@@ -27,12 +27,13 @@ class Piece(NamedTuple):
 class Listing:
     """``temporaries`` are (number, formula), each using earlier ones only; ``entries`` go with the outputs' index.
 
-    ``abbreviations`` are (name, formula), used by all others.
+    ``abbreviations`` are (name, formula), used by all others; ``definitions`` are (name, formula, note) of symbols.
     """
 
     temporaries: tuple[tuple[int, str], ...]
     entries: Mapping[str, tuple[str, ...]]
     abbreviations: tuple[tuple[str, str], ...] = ()
+    definitions: tuple[tuple[str, str, str], ...] = ()
 
 
 class Language(ABC):

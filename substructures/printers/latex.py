@@ -139,10 +139,15 @@ class Latex(Language):
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
-        rows = self.abbreviated(listing)
+        lines += [f"% {name} stands for {comment(note)}" for name, _, note in listing.definitions if note]
+        rows = [*self.defined(listing), *self.abbreviated(listing)]
         for output, array in self.program.outputs.items():
             rows += self.rows(output, array, listing.entries[output])
         return "\n".join([*lines, r"\begin{aligned}", " \\\\\n".join(rows), r"\end{aligned}"]) + "\n"
+
+    def defined(self, listing: Listing) -> list[str]:
+        """Rows of symbols that stand for formulas."""
+        return [f"{name} &= {broken(text)}" for name, text, _ in listing.definitions]
 
     def abbreviated(self, listing: Listing) -> list[str]:
         """Rows of abbreviations and temporaries."""

@@ -49,6 +49,9 @@ class LatexDocument(Latex):
     def _sections(self, listing: Listing) -> list[tuple[str, list[str], list[str]]]:
         """Title, what is said before them, and the rows of every section."""
         sections = []
+        if listing.definitions:
+            said = [rf"${name}$ stands for {prose(note)}." for name, _, note in listing.definitions if note]
+            sections.append(("Grouped parameters", ["\n\n".join(said)], self.defined(listing)))
         before = self.abbreviated(listing)
         if before:
             sections.append(("Abbreviations", list[str](), before))

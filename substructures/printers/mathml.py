@@ -164,6 +164,9 @@ class MathML(Language):
         """A page: what the symbols are, then a paragraph for every element."""
         lines = [f"<p>{escape(comment(x))}</p>" for x in (self.remark, *self.legend) if x]
         lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
+        for left, text, note in listing.definitions:
+            lines += [f"<p>{self.finished(left)} stands for {escape(comment(note))}:</p>"] if note else []
+            lines.append(self._line(left, text))
         lines += [self._line(left, text) for left, text in listing.abbreviations]
         lines += [self._line(self.step(n).text, text) for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():

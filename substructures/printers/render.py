@@ -16,6 +16,7 @@ from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
 from substructures.expr.walk import transfer
+from substructures.printers.definitions import Definitions, defined, joined
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
 from substructures.printers.latex_document import LatexDocument
@@ -54,6 +55,7 @@ def render(
     form: str = "compact",
     name: str = "model",
     limit: int = LIMIT,
+    definitions: Definitions | None = None,
     glossary: Program | None = None,
 ) -> str:
     """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
@@ -61,8 +63,9 @@ def render(
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
     ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
     collected, factored and cancelled (:mod:`substructures.textbook`); ``readable``: ``textbook`` in formats for people
-    where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it.
-    ``glossary``: what intermediate quantities are called in the compact form of formats for people
+    where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it;
+    ``definitions``: of symbols that stand for formulas, which are printed first (not in JSON); ``glossary``: what
+    intermediate quantities are called in the compact form of formats for people
     (:mod:`substructures.printers.meanings`).
     Raises InvalidDocument for an unknown format or form, TooLarge (size,
     limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
@@ -71,16 +74,17 @@ def render(
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     check_form(form)
     if form == "readable":
-        return _readable(program, format, name, limit, glossary)
+        return _readable(program, format, name, limit, definitions, glossary)
     if format == "json":
         return _json(program, form, limit)
     for output in program.outputs.values():
         if prod(output.shape) > MAX_ELEMENTS:
             raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
-    program, language = _spoken(program, format, form)
+    said = _Said(program, definitions, limit)
+    spoken, language = _spoken(said.program, format, form)
     if form == "compact":
         _name(language, glossary)
-    return language.render(_LISTINGS[form](program, language, limit), name)
+    return language.render(said.with_definitions(_LISTINGS[form](spoken, language, limit), language), name)
 
 
 def _name(language: Language, glossary: Program | None) -> None:
@@ -100,19 +104,41 @@ def _readable(
     format: str,  # noqa: A002 -- the name in the contract
     name: str,
     limit: int,
+    definitions: Definitions | None,
     glossary: Program | None,
 ) -> str:
     """The textbook form where it fits, otherwise the compact one with the reason."""
     if format == "json" or not LANGUAGES[format].is_for_people:
-        return render(program, format, "compact", name, limit, glossary)
-    spoken, language = _spoken(program, format, "textbook")
+        return render(program, format, "compact", name, limit, definitions, glossary)
+    said = _Said(program, definitions, limit)
+    spoken, language = _spoken(said.program, format, "textbook")
     try:
-        return language.render(textbook(spoken, language, limit, AT_ONCE), name)
+        listing = textbook(spoken, language, limit, AT_ONCE)
     except (TooLarge, ZeroDivisionError) as error:
-        language = LANGUAGES[format](program)
+        language = LANGUAGES[format](said.program)
         _name(language, glossary)
         language.remark = f"compact, since there is no textbook form: {error}"
-        return language.render(compact(program, language, limit), name)
+        listing = compact(said.program, language, limit)
+    return language.render(said.with_definitions(listing, language), name)
+
+
+class _Said:
+    """A program with the definitions of those of its symbols that occur: ``program`` has the symbols of both."""
+
+    def __init__(self, program: Program, definitions: Definitions | None, limit: int) -> None:
+        self.program, self.limit, self.own = program, limit, definitions and definitions.of(program)
+        if self.own and self.own.program.outputs:
+            self.program, self.defining = joined(program, self.own.program)
+
+    def with_definitions(self, listing: Listing, language: Language) -> Listing:
+        """The listing with what symbols stand for, in the names of the language. Raises TooLarge."""
+        if not self.own or not self.own.program.outputs:
+            return listing
+        spoken = language.program.symbols
+        names = {s.name: other.name for s, other in zip(self.program.symbols, spoken, strict=True)}
+        found = defined(replace(self.defining, symbols=spoken), names, language, self.limit)
+        notes = (self.own.notes.get(name, "") for name in self.defining.outputs)
+        return replace(listing, definitions=tuple((*pair, note) for pair, note in zip(found, notes, strict=True)))
 
 
 def first_index(format: str) -> int:  # noqa: A002 -- the name in the contract

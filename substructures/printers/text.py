@@ -47,6 +47,9 @@ class Text(Language):
         lines += [
             f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
         ]
+        for name, text, note in listing.definitions:
+            lines += [f"# {name} stands for {comment(note)}"] if note else []
+            lines.append(f"{name} = {text}")
         lines += [f"{name} = {text}" for name, text in listing.abbreviations]
         lines += [f"{self.step(n).text} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():

@@ -115,7 +115,12 @@ class TextbookWriter:
         if trig in self.short:
             piece = self.language.abbreviation(trig.op, self.short[trig])
             return piece if n == 1 else self.language.power(piece, n)
-        terms = [(c, self._atom(a)) for a, c in trig.angle]
-        mul, number = self.language.mul, self.language.number
-        angle = self._signed((c < 0, a if abs(c) == 1 else mul(number(abs(c)), a)) for c, a in terms)
+        angle = self._signed((c < 0, self._multiple(abs(c), a)) for a, c in trig.angle)
         return self.language.trig(trig.op, angle, n)
+
+    def _multiple(self, c: Fraction, angle: Expr) -> Piece:
+        """A part of an angle: a multiple of an atom, or a number of radians."""
+        if angle.is_number:
+            return self.language.number(c * Fraction(angle.value))
+        atom = self._atom(angle)
+        return atom if c == 1 else self.language.mul(self.language.number(c), atom)

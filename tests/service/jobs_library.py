@@ -57,6 +57,12 @@ class MemoryLibrary:
     def trees(self) -> list[str]:
         return list(self._trees)
 
+    def own(self, kind: str) -> list[str]:
+        return self.trees() if kind == "tree" else self.catalogue()
+
+    def may_change(self, kind: str, name: str) -> bool:
+        return (kind, name) != ("substructure", "other")
+
     def blob(self, digest: str) -> bytes | None:
         return self.blobs.get(digest)
 

@@ -10,6 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.analyses.formulas import QUANTITIES
+from service.analyses.grouping import QUANTITIES as GROUPED
 from service.app import open_store
 from service.negotiation import MEDIA_TYPES
 from service.settings import Settings
@@ -110,6 +111,47 @@ def test_base_parameters_are_combinations(double: TestClient) -> None:
     assert set(found["combinations"]) == set(found["base"])
     more = double.get("/v1/trees/cell/base_parameters?drives=viscous,coulomb").json()
     assert len(more["base"]) == 6 + 4
+
+
+def test_formulas_in_grouped_symbols(double: TestClient) -> None:
+    """ZZ2 = m2 (l2/2)^2 + ..., X2 = m2 l2/2, ZZ1 with the mass of the second rod at the end of the first one."""
+    found = double.get("/v1/trees/cell/metric?group=true").json()
+    told = {each["name"]: each for each in found["definitions"]}
+    assert told.keys() == {"arm.Jxx_rod", "hand.Jxx_rod", "hand.sx_rod"}
+    assert told["arm.Jxx_rod"]["combination"] == {"arm.rod.Jxx": "1", "arm.rod.Jyy": "1", "hand.rod.m": "arm.l^2"}
+    assert (told["hand.sx_rod"]["unit"], told["hand.sx_rod"]["base"]) == ("kg m", "hand.rod.sx")
+    assert {s["name"] for s in found["symbols"]} == {*told, "arm.l", "hand.q"}
+    bound = double.get("/v1/trees/cell/metric?group=true&bind=defaults,hand.sx_rod:3&format=text").text
+    assert "metric[1, 2] = hand.Jxx_rod + 3*cos(hand.q)" in bound
+    assert "hand.Jxx_rod = 0.55" in bound
+    symbols = {name: each["formula"] for name, each in told.items()}
+    assert symbols["hand.sx_rod"] in double.get("/v1/trees/cell/christoffel?group=true&format=text").text
+
+
+@pytest.mark.parametrize("name", ["json", "text", "latex", "latex-document", "mathml"])
+def test_grouped_symbols_are_told_in_all_formats_for_people(double: TestClient, name: str) -> None:
+    for quantity in GROUPED:
+        answer = double.get(f"/v1/trees/cell/{quantity}", params={"format": name, "group": True})
+        assert answer.status_code == 200, answer.text
+        assert "definitions" in answer.text if name == "json" else "stands for" in answer.text
+
+
+@pytest.mark.parametrize(
+    ("path", "status", "code"),
+    [
+        ("cell/potential_energy?group=true", 422, "not-grouped"),
+        ("cell/metric?group=true&format=c", 422, "not-grouped"),
+        ("cell/metric?group=true&joints=arm.q", 422, "unknown-option"),
+        ("cell/nothing?group=true", 404, "unknown-quantity"),
+        ("cell/metric?group=true&bind=arm.k:1", 422, "unknown-parameter"),
+    ],
+)
+def test_what_has_no_grouped_symbols_is_refused(double: TestClient, path: str, status: int, code: str) -> None:
+    answer = double.get(f"/v1/trees/{path}")
+    assert (answer.status_code, answer.json()["errors"][0]["code"] if status == 422 else answer.json()["code"]) == (
+        status,
+        code,
+    )
 
 
 @pytest.mark.parametrize(

@@ -151,6 +151,16 @@ def test_export_prints_what_the_service_prints(library: MemoryLibrary) -> None:
     assert "= 11/5\n" in second.files["text"].decode()  # m l^2 + m l^2 / 10
 
 
+def test_export_prints_grouped_symbols(library: MemoryLibrary) -> None:
+    item = {"tree": "cell", "quantity": "metric", "format": "text", "group": True}
+    (found,) = outcomes(library, "export", {"items": [item]})
+    assert "stands for" in found.files["text"].decode()
+    for wrong, pointer in (({"quantity": "potential_energy"}, "/group"), ({"group": "yes"}, "/group")):
+        with pytest.raises(InvalidDocument) as caught:
+            library.items("export", {"items": [{**item, **wrong}]})
+        assert caught.value.faults[0].pointer.endswith(pointer)
+
+
 def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
     item = {"tree": "cell", "target": "maxima", "quantities": ["metric"]}
     first, second = outcomes(library, "export", {"items": [item, {**item, "target": "c", "name": "arm"}]})
@@ -196,10 +206,18 @@ def test_faults_of_formulas_point_into_the_item(library: MemoryLibrary, given: d
     assert "/query" not in outcome.problem["detail"]
 
 
+@pytest.mark.parametrize("item", [{"substructure": "*"}, {"tree": "*"}])
+def test_upgrade_keeps_what_is_as_short(library: MemoryLibrary, item: dict[str, str]) -> None:
+    for outcome in outcomes(library, "upgrade", {"items": [item]}):
+        assert outcome.summary["outcome"] == "as it was"
+        assert outcome.summary["before"] == outcome.summary["after"]
+        assert not outcome.files
+
+
 def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
-    assert KINDS[5] == "compare"
-    assert KINDS[6:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[5:7] == ("upgrade", "compare")
+    assert KINDS[7:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:

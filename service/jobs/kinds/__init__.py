@@ -17,6 +17,7 @@ from service.jobs.kinds.evaluate import EVALUATE
 from service.jobs.kinds.export import EXPORT
 from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
+from service.jobs.kinds.upgrade import UPGRADE
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
@@ -31,6 +32,7 @@ _KINDS: dict[str, Kind] = {
     "export": EXPORT,
     "derive": DERIVE,
     "verify": VERIFY,
+    "upgrade": UPGRADE,
     "compare": COMPARE,
     "simulate": analysis_kind("simulations"),
     "optimise": analysis_kind("optimal-controls"),

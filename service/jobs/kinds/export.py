@@ -1,10 +1,11 @@
-"""export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name"}``; its outcome is the text. Or
-``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages"}``: what is got by
-``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by ``GET /v1/substructures/.../export``.
+"""export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name", "group"}``; its outcome is the
+text. Or ``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages"}``: what
+is got by ``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by ``GET
+/v1/substructures/.../export``.
 
-The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind`` and ``options`` (lists of
-texts by name, for quantities such as ``state_space``) may be left out. For ``velocity-equations`` there is also
-``request``, the body of its endpoint. Pointers of a problem are relative to the item.
+The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind``, ``options`` (lists of texts
+by name, for quantities such as ``state_space``) and ``group`` may be left out. For ``velocity-equations`` there is
+also ``request``, the body of its endpoint. Pointers of a problem are relative to the item.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ from service.analyses.exporting import (
     tree_package,
 )
 from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
+from service.analyses.grouping import QUANTITIES as GROUPED
+from service.analyses.grouping import grouped_text
 from service.analyses.printing import (
     NAME,
     Style,
@@ -71,8 +74,8 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
     if "target" in item:
         return [{**_spread_target(item), "nodes": limits.job_nodes}]
     body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
-    check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options", "name"))
-    given = {"form": FORMS[0], "bind": "", "options": {}, "name": NAME, **item}
+    check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options", "name", "group"))
+    given = {"form": FORMS[0], "bind": "", "options": {}, "name": NAME, "group": False, **item}
     faults = [
         Fault(f"/{name}", "string-expected", "a text is needed")
         for name in ("quantity", "bind", "name")
@@ -83,6 +86,8 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
             text = given[name]
             what = f"unknown {name} '{text[:40]}'" if isinstance(text, str) else f"the {name} is no text"
             faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; there are {', '.join(known)}"))
+    if not isinstance(given["group"], bool):
+        faults.append(Fault("/group", "boolean-expected", "true or false is needed"))
     if not _is_options(given["options"]):
         faults.append(Fault("/options", "options-expected", "lists of texts by name are needed"))
     if faults:
@@ -140,6 +145,8 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
         message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
         yield Fault("/quantity", "unknown-quantity", message)
         return
+    if item["group"] and quantity not in GROUPED:
+        yield Fault("/group", "not-grouped", f"'{quantity[:80]}' has no formulas in grouped symbols")
     known = tuple(OPTIONS) if quantity in QUANTITIES else options_of_quantity(quantity)
     for name, texts in options.items():
         if texts and name not in known:
@@ -157,7 +164,7 @@ def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fau
         value = "" if given is None else quantity_of(given)
         if not _is_expression(value.value if isinstance(value, Quantity) else value):
             yield Fault("/bind", "bind", f"'{(name if given is None else f'{name}:{given}')[:80]}' is not name:value")
-        elif name not in known and item["quantity"] not in OUTPUTS:
+        elif name not in known and item["quantity"] not in OUTPUTS and not item["group"]:
             message = f"there is no parameter '{name[:80]}'{among(name, known)}"
             yield Fault("/bind", "unknown-parameter", message)
         else:
@@ -192,7 +199,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
         raise InvalidDocument(faults)
-    return pinned(item, library, item["nodes"], needs_parts(item["quantity"]))
+    return pinned(item, library, item["nodes"], item.get("group", False) or needs_parts(item["quantity"]))
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
@@ -203,7 +210,8 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     style = Style(item["format"], item["form"], item["bind"], item["name"])
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
     try:
-        text = (_stored if is_stored else _followed)(source, item, style).encode()
+        write = _grouped if item.get("group") else _stored if is_stored else _followed
+        text = write(source, item, style).encode()
     except InvalidInput as error:
         raise error.moved(_place) from None
     except Refused as error:
@@ -245,8 +253,8 @@ def _moved(faults: Iterable[Fault]) -> list[Fault]:
 
 
 def _place(pointer: str) -> str:
-    if pointer == "/query/bind":
-        return "/bind"
+    if pointer in ("/query/bind", "/query/group"):
+        return pointer.removeprefix("/query")
     return "/options" + pointer.removeprefix("/query") if pointer.startswith("/query") else pointer
 
 
@@ -261,6 +269,11 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     members, parameters = described(sources, quantity)
     program = bound(model_quantity(sources, quantity), parameters, style.bind)
     return text_of(program, style, quantity, _interface(source), members, item["nodes"])
+
+
+def _grouped(source: Source, item: ItemDocument, style: Style) -> str:
+    """A quantity in grouped symbols."""
+    return grouped_text(source, item["quantity"], style, _interface(source), item["nodes"])
 
 
 def _followed(source: Source, item: ItemDocument, style: Style) -> str:

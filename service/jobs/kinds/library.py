@@ -46,5 +46,11 @@ class Library(Protocol):
     def trees(self) -> Sequence[str]:
         """References ``name@3`` to all revisions of trees."""
 
+    def own(self, kind: str) -> Sequence[str]:
+        """References to the latest versions (``substructure``) or revisions (``tree``) of what may be changed."""
+
+    def may_change(self, kind: str, name: str) -> bool:
+        """Whether a name belongs to whoever submits."""
+
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""

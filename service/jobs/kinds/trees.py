@@ -72,21 +72,26 @@ def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
 
 def reactions_of(item: ItemDocument, blobs: Blobs) -> ReactionModel:
     """The reactions of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
-    found = _reactions.get(item["tree"])
+    found = _reactions.get(_key(item))
     if found is None:
         parts = item["parts"]
         found = reactions(*tree_parts(parts, blobs), parts["nodes"])
-        _reactions.put(item["tree"], found)
+        _reactions.put(_key(item), found)
     return found
+
+
+def _key(item: ItemDocument) -> tuple[str, ...]:
+    """What the parts of a tree give depends on: its document, and their programs."""
+    return item["tree"], *sorted(item["parts"]["programs"].values())
 
 
 def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
     """The regressor of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
-    found = _regressors.get(item["tree"])
+    found = _regressors.get(_key(item))
     if found is None:
         parts = item["parts"]
         found = regressor(*tree_parts(parts, blobs), parts["nodes"])
-        _regressors.put(item["tree"], found)
+        _regressors.put(_key(item), found)
     return found
 
 
@@ -102,4 +107,5 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
         Limits(**limits),
         plausibility=judge,
         reactions=sources.reactions,
+        parts=(lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None,
     )

@@ -1,0 +1,88 @@
+"""``group=true``: formulas of a tree in its base parameters, with what was grouped into what."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.analyses.binding import bound
+from service.analyses.printing import JSON, TO_READ, Style, model_quantity, text_of
+from service.analyses.source import Source
+from service.cache import Cache
+from service.refusals import unprocessable
+from substructures.analysis.identification.base_parameters import base_parameters
+from substructures.analysis.identification.grouped import OUTPUTS, Grouped, GroupedSymbol, grouped_model, sum_of
+from substructures.errors import InvalidInput, TooLarge
+from substructures.export import Interface
+from substructures.printers import entries
+from substructures.printers.definitions import Definitions
+from substructures.printers.names import MAX_COMMENT
+from substructures.quantities.evaluation import Sources
+
+#: what follows from the equations of motion alone, and has formulas in grouped symbols
+DERIVED = (
+    *("coriolis", "kinetic_energy", "generalised_momenta", "forward_dynamics", "inverse_metric"),
+    "christoffel_second_kind",
+)
+QUANTITIES = tuple(dict.fromkeys((*OUTPUTS, *DERIVED)))
+
+_grouped: Cache[Grouped] = Cache(2_000_000, lambda found: len(found.model.program))
+
+
+def check_group(quantity: str, style: Style) -> None:
+    """Raise Refused 422 for a quantity that base parameters do not determine, and for formats of code."""
+    if quantity not in QUANTITIES:
+        message = f"'{quantity[:80]}' has no formulas in grouped symbols; these have: {', '.join(QUANTITIES)}"
+        raise unprocessable("not-grouped", message, "/query/group")
+    if style.format not in (JSON, *TO_READ):
+        message = f"functions take the parameters of the tree; grouped symbols are in {', '.join((JSON, *TO_READ))}"
+        raise unprocessable("not-grouped", message, "/query/group")
+
+
+def grouped_of(source: Source) -> Grouped:
+    """The model in grouped symbols, remembered. Raises InvalidInput for closures, TooLarge, TypeError without parts."""
+    key = source.digest, source.model.program.digest, source.regressor().program.digest, source.limits.program_nodes
+    found = _grouped.get(key)
+    if found is None:
+        if source.parts is None:
+            raise TypeError("grouped symbols need the parts of the tree")
+        base = base_parameters(source.regressor())
+        found = grouped_model(*source.parts(), source.model, base, source.limits.program_nodes)
+        _grouped.put(key, found)
+    return found
+
+
+def grouped_text(source: Source, quantity: str, style: Style, interface: Interface, limit: int | None = None) -> str:
+    """A quantity in grouped symbols in the format chosen. Raises as :func:`grouped_of` and ``text_of``."""
+    check_group(quantity, style)
+    try:
+        found = grouped_of(source)
+    except InvalidInput as error:
+        raise error.moved(lambda _: "/query/group") from None
+    parameters = found.model.parameters
+    program = bound(model_quantity(Sources(found.model), quantity), parameters, style.bind)
+    definitions = Definitions(
+        bound(found.definitions, parameters, style.bind), {s.name: _shown(s) for s in found.symbols}
+    )
+    members: dict[str, Any] = {}
+    if style.format == JSON:
+        used = definitions.of(program)
+        members["definitions"] = [_described(s, used) for s in found.symbols if s.name in used.program.outputs]
+    more = {} if limit is None else {"limit": limit}
+    return text_of(program, style, quantity, interface, members, definitions=definitions, **more)
+
+
+def _described(symbol: GroupedSymbol, used: Definitions) -> dict[str, Any]:
+    """What a symbol stands for: ``formula`` in parameters (null where it is too long), ``standard`` as sums."""
+    try:
+        told = entries(used.program, symbol.name, "text")
+        formula = str(told[0]["formula"]) if told else "0"
+    except TooLarge:
+        formula = None
+    named = {"name": symbol.name, "unit": symbol.unit, "base": symbol.named_by, "formula": formula}
+    return {**named, "combination": dict(symbol.standard)}
+
+
+def _shown(symbol: GroupedSymbol) -> str:
+    """The combination in one line, cut between two terms where it is long."""
+    text = sum_of(symbol.standard)
+    return text if len(text) < MAX_COMMENT - 20 else text[: MAX_COMMENT - 20].rpartition(" + ")[0] + " + ..."

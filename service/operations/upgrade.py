@@ -1,0 +1,155 @@
+"""Formulas of older versions of the software derived anew with today's: the command ``substructures upgrade``.
+
+A version is its definition, a revision its document: these never change, nor do their digests. Their programs are
+what follows; where today's derivation gives a shorter one, or outputs that an older software did not store, it takes
+the place of the old one, with a certificate of its own. The old program stays in the store under its digest, for items
+of jobs that are queued with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from service.database.connections import Connection, Database
+from service.database.packed import pack
+from service.improvement import AS_IT_WAS, Improvement, improvement
+from service.integrity import digest_of
+from service.operations.catalogue import mend_part
+from service.operations.verification import read_tree, stored_definitions, told
+from service.queries import audit, catalogue, content, trees
+from service.summaries import PartContent, part_content, tree_summary
+from service.viewer import CONSOLE, OPEN, SCOPES, Viewer
+from substructures.documents import read_json
+from substructures.expr.program import Program
+from substructures.part.certificate import require_no_less
+from substructures.part.definition import Definition
+from substructures.part.part import MAX_NODES, Part, derive
+from substructures.tree.model import couple
+
+#: who works on a store directly
+OPERATOR = Viewer(CONSOLE, OPEN, SCOPES)
+
+
+@dataclass(frozen=True, slots=True)
+class Upgraded:
+    """What was derived anew, e.g. ``substructure arm@2``, with its operations before and after; ``fault``: why it was
+    left as it is, where it could not be.
+    """
+
+    what: str
+    digest: str
+    before: int | None = None
+    after: int | None = None
+    outcome: str = AS_IT_WAS
+    fault: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TreeProgram:
+    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary."""
+
+    program: bytes
+    digest: str
+    nodes: int
+    dof: int
+    summary: bytes
+
+
+def upgrade(
+    database: Database, viewer: Viewer = OPERATOR, every: bool = False, max_nodes: int = MAX_NODES
+) -> Iterator[Upgraded]:
+    """Derive parts anew, then couple trees anew, each in a transaction of its own: what is told of is on the disk.
+
+    The latest versions and revisions of names that the viewer may change (an admin: all); ``every``: of an admin all
+    contents of the store, also older versions, withdrawn ones and what trees brought along. A server may go on using
+    the store: it takes up new programs with the next request.
+    """
+    with database.read() as connection:
+        parts = catalogue.own_contents(connection, viewer)
+        revisions = trees.own_revisions(connection, viewer, every)
+        if every and viewer.is_admin:
+            parts = catalogue.all_contents(connection)
+    for digest, name in parts.items():
+        what = f"substructure {name}" if name else "definition of a tree"
+        yield _tried(what, digest, lambda: _part(database, viewer, what, digest, max_nodes))  # noqa: B023 -- called here
+    for tree, number in revisions:
+        what = f"tree {tree}@{number}"
+        yield _tried(what, what, lambda: _tree(database, viewer, tree, number, max_nodes))  # noqa: B023 -- called here
+
+
+def _tried(what: str, digest: str, work: Callable[[], Upgraded]) -> Upgraded:
+    try:
+        return work()
+    except Exception as error:  # whatever it is, the next one is looked at, too
+        return Upgraded(what, digest, fault=told(error))
+
+
+def _part(database: Database, viewer: Viewer, what: str, digest: str, max_nodes: int) -> Upgraded:
+    with database.read() as connection:
+        stored = content.get_part(connection, digest)
+    if stored is None:
+        raise ValueError("its definition is gone from the store; submit it again")
+    definition = Definition.stored(read_json(stored.definition))
+    old = Part.load(definition, stored.program, read_json(stored.certificate))
+    new = derive(definition, max_nodes)
+    require_no_less(old.certificate, new.certificate)
+    found = improvement(old.program, new.program)
+    if found.is_one:
+        made = part_content(new)
+        with database.write() as connection:
+            put_part(connection, viewer, what.removeprefix("substructure "), old.program.digest, made, found)
+    return Upgraded(what, digest, found.before, found.after, found.outcome)
+
+
+def put_part(
+    connection: Connection, viewer: Viewer, name: str, before: str, made: PartContent, found: Improvement
+) -> None:
+    """Write a program over the one with the digest ``before``; what has another one meanwhile stays as it is."""
+    if content.get_row(connection, made.digest)["program"] != before:
+        return
+    mend_part(connection, made)
+    figures = {"before": found.before, "after": found.after, "program": made.row["program"], "was": before}
+    audit.note(connection, viewer, "substructure.upgrade", name, **figures)
+
+
+def _tree(database: Database, viewer: Viewer, name: str, number: int, max_nodes: int) -> Upgraded:
+    with database.read() as connection:
+        tree, spec = read_tree(connection, f"{name}@{number}")
+        definitions = stored_definitions(connection, spec)
+        stored = {d.digest: content.get_part(connection, d.digest) for d in definitions.values()}
+        data = content.get_program(connection, tree.program)
+    if data is None:
+        raise ValueError(f"its program {tree.program} is gone from the store")
+    parts = {}
+    for instance, definition in definitions.items():
+        kept = stored[definition.digest]
+        parts[instance] = derive(definition, max_nodes) if kept is None else Part.load(definition, kept.program, {})
+    model = couple(spec, parts, max_nodes)
+    require_no_less(read_json(tree.summary.encode()).get("certificate", {}), model.certificate)
+    found = improvement(Program.from_bytes(data), model.program)
+    if found.is_one:
+        figures = model.program.digest, len(model.program), model.dof
+        made = TreeProgram(pack(model.program), *figures, tree_summary(spec, model))
+        with database.write() as connection:
+            put_tree(connection, viewer, tree.name, tree.digest, tree.program, made, found)
+    return Upgraded(f"tree {name}@{number}", tree.digest, found.before, found.after, found.outcome)
+
+
+def put_tree(
+    connection: Connection,
+    viewer: Viewer,
+    name: str,
+    digest: str,
+    before: str,
+    made: TreeProgram,
+    found: Improvement,
+) -> None:
+    """Write a program over the one with the digest ``before``, in all revisions of this document that have it."""
+    content.put_program(connection, made.digest, made.program, made.nodes)
+    for tree in trees.with_program(connection, name, digest, before):
+        summary = made.summary.decode()
+        coupled = replace(tree, program=made.digest, dof=made.dof, summary=summary)
+        trees.replace_model(connection, replace(coupled, summary_digest=digest_of(made.summary)))
+        figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
+        audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

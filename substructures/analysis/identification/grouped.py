@@ -1,0 +1,232 @@
+"""The equations of motion in base parameters: a change of binding, after which no mass is counted twice.
+
+With Y pi = Y_B beta and beta = [1 C] pi (:mod:`.base_parameters`) a tree whose links have the inertial parameters
+pi_B = beta, pi_D = 0 moves as the tree itself: g_ab, Gamma_abc, the gravity forces and all that is made of them are the
+same functions. The stored formulas of the parts take these parameters in place of what their bodies have of their own,
+payloads included; nothing is derived again. What is not determined by motion (potential energy up to a constant,
+momenta in the world, reactions) is not given.
+
+Source: M. Gautier and W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE
+Transactions on Robotics and Automation 6(3), 1990.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.certificate.compare import compare
+from substructures.certificate.linear import Ball
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.rebuilt import outputs_of
+from substructures.certificate.states import states_between
+from substructures.errors import TooLarge, VerificationFailed
+from substructures.expr.direct import ball
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.hoist import hoisted
+from substructures.expr.operations import Symbol
+from substructures.expr.program import Formulas, Program, program
+from substructures.expr.replay import replay
+from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.kinematics import constant_rotation
+from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar
+from substructures.part.inertia_symbols import inertia_names
+from substructures.part.outputs import OWN_INERTIA, PartOutputs, over_formulas
+from substructures.part.part import MAX_NODES, Part
+from substructures.printers.render import INLINE_LIMIT
+from substructures.printers.text import Text
+from substructures.printers.textbook import textbook_inlined
+from substructures.tree.assembly import Assembly, assemble
+from substructures.tree.coupling import couple_parts
+from substructures.tree.document import TreeSpec
+from substructures.tree.loads import load_formulas
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import model_outputs, rate_symbols
+from substructures.tree.mounted_part import MountedPart
+from substructures.tree.velocity_forces import least_forces
+
+#: outputs of a model that base parameters determine
+OUTPUTS = ("metric", "christoffel", "gravity", "forces", "bias", "nonlinear_effects", "inverse_dynamics")
+#: ten values of a carrier, of which those that are not zero stand here by the name of the standard parameter
+_Values = Mapping[str, Expr]
+
+
+@dataclass(frozen=True)
+class GroupedSymbol:
+    """A symbol that stands for a base parameter: ``formula`` in parameters, ``standard``: coefficient (text) by
+    standard parameter, what was grouped into it; ``named_by``: the first of these.
+    """
+
+    name: str
+    unit: str
+    named_by: str
+    formula: str
+    standard: Mapping[str, str] = field(hash=False)
+
+
+@dataclass(frozen=True)
+class Grouped:
+    """A model in grouped symbols, which are parameters of it without a value. ``definitions``: an output for each, by
+    its name, as a function of the parameters of the tree.
+    """
+
+    model: Model
+    symbols: tuple[GroupedSymbol, ...]
+    definitions: Program
+
+
+def grouped_model(
+    spec: TreeSpec, parts: Mapping[str, Part], model: Model, base: BaseParameters, max_nodes: int = MAX_NODES
+) -> Grouped:
+    """The outputs OUTPUTS of a model with a symbol for every base parameter that is more than one parameter.
+
+    ``model``: the tree as it was coupled; ``base``: its base parameters without drives. A base parameter that is a
+    number, or a single parameter of the tree, stands for itself. Raises TooLarge for more than ``max_nodes``
+    operations, VerificationFailed unless the formulas are those of the model.
+    """
+    assembly = assemble(spec, parts)
+    definitions, values, named_by = _symbols(assembly, base)
+    pairs = zip(assembly.mounted, assembly.instances, strict=True)
+    opened = [_opened(m, instance.name, values) for m, instance in pairs]
+    result = hoisted(_coupled(replace(assembly, mounted=tuple(opened)), spec))
+    if len(result) > max_nodes:
+        raise TooLarge("the grouped formulas (in operations)", len(result), max_nodes)
+    _certify(model, result, definitions)
+    symbols = tuple(_described(base, definitions, named_by))
+    own = {s.name: {"value": None, "unit": s.unit, "description": sum_of(s.standard)} for s in symbols}
+    return Grouped(replace(model, program=result, parameters={**model.parameters, **own}), symbols, definitions)
+
+
+def _symbols(assembly: Assembly, base: BaseParameters) -> tuple[Program, _Values, dict[str, str]]:
+    """The definitions of new symbols, which are declared, the value of every base parameter that is not zero, and the
+    standard parameter that a symbol is named by.
+    """
+    graph, values, outputs = Graph(), dict[str, Expr](), dict[str, Formulas]()
+    named_by: dict[str, str] = {}
+    symbols = {s.name: s for s in base.program.symbols}
+    beta = replay(base.program, graph, {}, ["base_parameters"])["base_parameters"].entries
+    here = assembly.scope.graph
+    for (k,), x in beta.items():
+        name = base.names[k]
+        if x.op in ("sym", "int", "rat"):
+            values[name] = here.symbol(str(x.value)) if x.op == "sym" else here.lift(x.value)
+            continue
+        called = _free_name(name, assembly)
+        values[name] = assembly.scope.declare(called, "parameter", base.units[base.base[k]])
+        outputs[called], named_by[called] = Formulas((), {(): x}), name
+    return program(graph, outputs, symbols), values, named_by
+
+
+def _free_name(standard: str, assembly: Assembly) -> str:
+    """``arm.Jxx_link2`` of the base parameter ``arm.link2.Jxx``, where nothing else is called that."""
+    instance, body, entry = standard.split(".")
+    name = f"{instance}.{entry}_{body}"
+    while name in assembly.scope.symbols or name in assembly.parameters:
+        name += "_b"
+    return name
+
+
+def _opened(m: MountedPart, instance: str, values: _Values) -> MountedPart:
+    """A mounted part with base parameters in place of what its bodies have of their own.
+
+    Symbols ``own.<body>.m``, ... take the place of the outputs ``inertia``; what is fixed to the interface is counted
+    with what carries it.
+    """
+    part, graph = m.part, Graph()
+    formulas = replay(part.program, graph, {})
+    symbols = {s.name: s for s in part.program.symbols}
+    bindings = dict(m.bindings)
+    frames = list(part.topology.carrier.values())
+    bodies = list(part.topology.carrier)
+    own = PartOutputs(formulas)
+    carried = {name: dict[tuple[int, ...], Scalar]() for name in OWN_INERTIA}
+    for k in sorted(part.inertia_symbols):
+        frame = frames.index(k)
+        pairs = inertia_names(f"own.{bodies[frame]}")
+        for (name, unit), (standard, _) in zip(pairs, inertia_names(f"{instance}.{bodies[frame]}"), strict=True):
+            symbols[name] = Symbol(name, "parameter", unit)
+            bindings[name] = values.get(standard, 0)
+        mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(name) for name, _ in pairs)
+        # from the frame that the link is named by to the body frame of its carrier
+        inertia = Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)).in_parent(
+            constant_rotation(own.matrix("frame.E", frame)), own.vector("frame.position", frame)
+        )
+        _put(carried, "inertia", (k,), inertia)
+    whole, base = own.inertia("composite"), own.inertia("base")
+    composite = {f"composite.{x}": dict[tuple[int, ...], Scalar]() for x in "msJ"}
+    _put(composite, "composite", (), _less(whole, base))
+    changed = {name: Formulas(formulas[name].shape, some) for name, some in (carried | composite).items()}
+    return replace(m, part=replace(part, program=program(graph, {**formulas, **changed}, symbols)), bindings=bindings)
+
+
+def _put(outputs: Mapping[str, dict[tuple[int, ...], Scalar]], name: str, lead: tuple[int, ...], x: Inertia) -> None:
+    """m, s and the full matrix J at an index."""
+    outputs[f"{name}.m"][lead] = x.m
+    outputs[f"{name}.s"] |= {(*lead, i): x.s[i] for i in range(3)}
+    outputs[f"{name}.J"] |= {(*lead, i, j): x.J[SYMMETRIC_INDEX[i][j]] for i in range(3) for j in range(3)}
+
+
+def _less(a: Inertia, b: Inertia) -> Inertia:
+    """What is left of an inertia without another one about the same point."""
+    s = (a.s[0] - b.s[0], a.s[1] - b.s[1], a.s[2] - b.s[2])
+    xx, yy, zz, xy, xz, yz = (x - y for x, y in zip(a.J, b.J, strict=True))
+    return Inertia(a.m - b.m, s, (xx, yy, zz, xy, xz, yz))
+
+
+def _coupled(assembly: Assembly, spec: TreeSpec) -> Program:
+    """The outputs of the tree; every mass stays where it is."""
+    graph = assembly.scope.graph
+    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, group=lambda _: False)
+    rates, accelerations = rate_symbols(assembly)
+    if spec.loads:
+        acting = load_formulas(assembly, coupled.placed, rates)
+        coupled = coupled.with_loads(acting.forces, acting.potential)
+    least = partial(least_forces, graph, coupled, rates)
+    found = model_outputs(assembly, coupled, rates, accelerations, frozenset(OUTPUTS), least)
+    return program(graph, {name: found[name] for name in OUTPUTS if name in found}, assembly.scope.symbols)
+
+
+def _certify(model: Model, result: Program, definitions: Program) -> None:
+    """Raise VerificationFailed unless the formulas are those of the model, for beta of its parameters."""
+    kinds = {s.name: s.kind for s in (*model.program.symbols, *result.symbols, *definitions.symbols)}
+    kinds = {name: kind for name, kind in kinds.items() if name not in definitions.outputs}
+    given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
+    defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
+
+    def expected(values: Mapping[str, Ball]) -> Outputs:
+        """The grouped formulas at a state."""
+        beta = {name: x.entries[()] for name, x in outputs_of(definitions, values).items()}
+        return outputs_of(result, {**values, **beta})
+
+    source = model.program.select(list(result.outputs))
+    try:
+        compare(source, kinds, expected, defaults, states_between(source.operations, result.operations))
+    except VerificationFailed as error:
+        raise VerificationFailed(f"grouped formulas: {error}") from None
+
+
+def _described(base: BaseParameters, definitions: Program, named_by: Mapping[str, str]) -> Iterator[GroupedSymbol]:
+    """What every symbol stands for. Raises TooLarge for what is too long to be told."""
+    combinations = base.combinations()
+    units = dict(zip(base.standard, base.units, strict=True))
+    told = textbook_inlined(definitions, Text(definitions), INLINE_LIMIT).entries
+    for name in definitions.outputs:
+        standard = named_by[name]
+        yield GroupedSymbol(name, units[standard], standard, told[name][0], combinations[standard])
+
+
+def sum_of(standard: Mapping[str, str]) -> str:
+    """A combination as a text: ``arm.upper.Jxx + arm.l1^2*arm.lower.m``."""
+    found = ""
+    for name, c in standard.items():
+        c, sign = (c[1:], "-") if _is_negative(c) else (c, "+")
+        product = name if c == "1" else f"{f'({c})' if ' ' in c else c}*{name}"
+        found += f" {sign} {product}" if found else (f"-{product}" if sign == "-" else product)
+    return found
+
+
+def _is_negative(text: str) -> bool:
+    """Whether a text is the negative of a single term."""
+    return text.startswith("-") and " " not in text
