@@ -9,7 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
 from service.schemas.shapes import Links, Shape, Time
 
-JobKind = Literal["assemble", "evaluate", "export", "derive", "verify", "compare", "simulate", "optimise", "analyse"]
+JobKind = Literal[
+    "assemble", "evaluate", "export", "derive", "verify", "compare", "simulate", "optimise", "analyse", "mirror"
+]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemDocument = dict[str, Any]
 ChoiceValues = Annotated[list[Any], Field(min_length=1)]

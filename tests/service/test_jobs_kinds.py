@@ -199,7 +199,8 @@ def test_faults_of_formulas_point_into_the_item(library: MemoryLibrary, given: d
 def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
     assert KINDS[5] == "compare"
-    assert KINDS[6:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[6:9] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[9:] == ("mirror",)  # tests/service/test_jobs_mirror.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:
