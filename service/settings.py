@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from service.sources import read_source
 from service.turns import PROCESSES
 from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
@@ -19,6 +20,7 @@ CLIENT = ("key", "server")  # variables of the commands that talk to a server; n
 COMPILER = tuple(name[len(PREFIX) :].lower() for name in VARIABLES)
 #: limits that several processes share out
 SHARED = ("connections", "connections_per_address", "event_streams", "event_streams_per_key")
+LISTS = ("allowed_hosts", "mirror_sources")  # separated by commas
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 # Bounds of limits are what a database, a kernel and a clock can still be told: 2^62, a year, a century.
@@ -99,8 +101,21 @@ class Settings(BaseModel):
     workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
     runner_user: str = Field("", description="user of the processes that compute jobs; empty: that of the server")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
+    mirror_sources: tuple[str, ...] = Field(
+        (), repr=False, description="instances that may be mirrored, with commas: https://host or https://key@host"
+    )
     key_seconds: float = Field(1.0, ge=0, le=86400, description="for how long a key is not checked again, seconds")
     limits: Limits = Limits()
+
+    @field_validator("mirror_sources")
+    @classmethod
+    def _readable(cls, texts: tuple[str, ...]) -> tuple[str, ...]:
+        for number, text in enumerate(texts, 1):
+            try:
+                read_source(text)
+            except ValueError as error:  # not pydantic's, which tells what was given: a key, perhaps
+                raise SettingsError(f"{PREFIX}MIRROR_SOURCES, number {number}: {error}") from None
+        return texts
 
     @property
     def kernel_folder(self) -> Path | None:
@@ -133,8 +148,9 @@ def from_environment(environment: Mapping[str, str], **overrides: object) -> Set
     given = {name: text for name, text in given.items() if name not in (*CLIENT, *COMPILER)}
     prefix = LIMIT_PREFIX.lower()
     values: dict[str, object] = {name: text for name, text in given.items() if not name.startswith(prefix)}
-    if "allowed_hosts" in given:
-        values["allowed_hosts"] = tuple(host.strip() for host in given["allowed_hosts"].split(",") if host.strip())
+    for name in LISTS:
+        if name in given:
+            values[name] = tuple(text.strip() for text in given[name].split(",") if text.strip())
     values["limits"] = {name[len(prefix) :]: text for name, text in given.items() if name.startswith(prefix)}
     values.update({name: value for name, value in overrides.items() if value is not None})
     try:

@@ -67,6 +67,8 @@ def submit(
       simulate, optimise   tree, request or requests, format
       analyse              tree, analysis, request or requests, format
       export               tree, quantity, format, form, bind, options
+      upgrade              substructure (* for all)
+      mirror               source
 
     A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
     instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI

@@ -92,6 +92,11 @@ class Act:
         """Raise Refused 403 unless whoever asks has this scope too."""
         self.viewer.require(scope)
 
+    def require_time(self) -> None:
+        """Raise TimeoutError where none is left: for work in steps, between them."""
+        if self._deadline.is_over:
+            raise TimeoutError
+
     @property
     def prefers_async(self) -> bool:
         """Whether a job is asked for."""

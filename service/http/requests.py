@@ -12,7 +12,7 @@ from fastapi.routing import APIRoute
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 
-from service import keys
+from service import bundles, keys
 from service.answers import JSON
 from service.refusals import Refused, unprocessable
 from service.schemas import forms
@@ -120,9 +120,8 @@ async def raw_body(request: Request) -> bytes:
 async def spooled_body(request: Request) -> AsyncIterator[Spool]:
     """The request body of any kind; the limit is that of its media type. 413 as soon as the body exceeds it."""
     limits = store_of(request).settings.limits
-    limit = {arrays.MEDIA_TYPE: limits.binary_bytes, arrow.MEDIA_TYPE: limits.stream_bytes}.get(
-        media_type(request), limits.json_bytes
-    )
+    by_type = dict.fromkeys((arrays.MEDIA_TYPE, bundles.MEDIA_TYPE), limits.binary_bytes)
+    limit = {**by_type, arrow.MEDIA_TYPE: limits.stream_bytes}.get(media_type(request), limits.json_bytes)
     with closing(Spool()) as body:
         await body.fill(_limited(request, limit))
         yield body

@@ -22,7 +22,8 @@ from service.viewer import Viewer
 from substructures.documents import write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
-STORING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions
+NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions, of which every item names one
+STORING = (*NAMING, "mirror")  # kinds that need the right to write
 YIELD = 8  # items that are resolved at a stretch
 LONGEST_LABEL = 200
 RECENT = 30.0  # seconds over which the rate is measured
@@ -75,7 +76,7 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
     if not isinstance(label, str) or len(label) > LONGEST_LABEL:
         raise InvalidDocument.at("/label", "bad-label", f"a label is a text of at most {LONGEST_LABEL} characters")
     with store.database.read() as connection:
-        library = StoreLibrary(connection, viewer)
+        library = StoreLibrary(connection, viewer, store.settings.mirror_sources)
         skipped: list[Skipped] = []
         if _skips(body):
             items, skipped = _good(kind, body, library, store.settings.limits)
@@ -167,7 +168,7 @@ def _resolved(
             sleep(0)  # other requests need not wait until all items are done
         try:
             pinned, blobs = kinds.resolve(kind, dict(item), library)
-            owned = library.owned(kind, pinned) if kind in STORING else {}
+            owned = library.owned(kind, pinned) if kind in NAMING else {}
             resolved.append(
                 _new_item(kind, {**pinned, **owned, **members}, blobs)
             )  # as text, passed over by collectors

@@ -18,6 +18,7 @@ from service.references import parse_reference
 from service.refusals import Refused
 from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
+from service.sources import read_source
 from service.viewer import OPEN, PUBLIC, Viewer
 from substructures.errors import InvalidDocument
 
@@ -25,9 +26,12 @@ from substructures.errors import InvalidDocument
 class StoreLibrary:
     """Reads in one transaction, so that all items of a submission see the same state; answers are remembered."""
 
-    def __init__(self, connection: Connection, viewer: Viewer) -> None:
-        """``private``: names of what was found and is not for all."""
+    def __init__(self, connection: Connection, viewer: Viewer, sources: Sequence[str] = ()) -> None:
+        """``sources``: settings of the instances that may be mirrored. ``private``: names of what was found and is not
+        for all.
+        """
         self._connection, self._viewer = connection, viewer
+        self._sources = sources
         self.private: set[str] = set()
         self.version = lru_cache(maxsize=None)(self._version)
         self.tree = lru_cache(maxsize=1000)(self._tree)
@@ -93,3 +97,7 @@ class StoreLibrary:
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""
         return content.get_blob(self._connection, digest)
+
+    def sources(self) -> Sequence[str]:
+        """Addresses of the instances that may be mirrored, without keys."""
+        return [read_source(text).address for text in self._sources]

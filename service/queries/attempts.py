@@ -11,6 +11,11 @@ def attempt_id(job: str, position: int, number: int) -> str:
     return f"{job}.{position}.{number}"
 
 
+def job_of(attempt: str) -> str:
+    """The job of a named attempt."""
+    return attempt.split(".")[0]
+
+
 @dataclass(frozen=True, slots=True)
 class Attempt:
     """A claimed item; ``item`` and ``blobs`` are JSON, ``number`` counts the attempts on it."""

@@ -24,6 +24,7 @@ from service.queries import jobs, queue
 from service.queries.attempts import Attempt
 from service.queries.common import is_conflict, is_outage
 from service.queue.backlog import GATHER, Backlog
+from service.queue.mirroring import WithMirrors
 from service.queue.retention import sweep
 from service.queue.rounds import Ended, Round, lock_owned, play, put_back_all
 from service.refusals import Refused, problem
@@ -74,7 +75,7 @@ class Supervisor:
         engine = None
         while not self._stop.is_set():
             try:
-                engine = engine or self._make_engine()
+                engine = engine or WithMirrors(self._make_engine(), self._store)
                 self._step(engine)
             except Exception as error:
                 self._complain("a round failed; it is played again", error)

@@ -10,7 +10,17 @@ from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
 from service.schemas.shapes import Links, Shape, Time
 
 JobKind = Literal[
-    "assemble", "evaluate", "export", "derive", "verify", "upgrade", "compare", "simulate", "optimise", "analyse"
+    "assemble",
+    "evaluate",
+    "export",
+    "derive",
+    "verify",
+    "upgrade",
+    "compare",
+    "simulate",
+    "optimise",
+    "analyse",
+    "mirror",
 ]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemDocument = dict[str, Any]

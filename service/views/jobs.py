@@ -80,11 +80,11 @@ def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:
 
 
 def subject(item: JobItem) -> str | None:
-    """What an item that failed is about: its tree with the parts that were chosen, its part."""
+    """What an item that failed is about: its tree with the parts that were chosen, its part, its source."""
     if item.item is None:
         return None
     about = orjson.loads(item.item)
-    given = about.get("definition") or about.get("tree") or about.get("substructure")
+    given = about.get("definition") or about.get("tree") or about.get("substructure") or about.get("source")
     if not isinstance(given, dict):
         return None if given is None else str(given).partition("@")[0]
     parts = [each.get("substructure", "").partition("@")[0] for each in given.get("instances", ())]

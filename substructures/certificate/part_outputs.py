@@ -128,7 +128,9 @@ def _joints(result: Outputs, bodies: Bodies, masses: dict[int, Moments], carried
 def _factors(result: Outputs, n: int, stored: Mapping[str, Output]) -> None:
     """E = (turn about e3) (tilt about e1), each by cosine and sine and left out where it is none; or E in full."""
     E = result["E"].entries
-    kept = {name: {index[0] for index in stored[f"E.{name}"].index} for name in ("tilt", "turn", "full")}
+    # one that is missing, or no array, is refused where its shape is looked at
+    places = {name: stored[f"E.{name}"].index if f"E.{name}" in stored else () for name in ("tilt", "turn", "full")}
+    kept = {name: {index[0] for index in some if index} for name, some in places.items()}
     turn, tilt, full = (result.array(f"E.{x}", (n, *s)) for x, s in (("turn", (2,)), ("tilt", (2,)), ("full", (3, 3))))
     for name in kept:
         result[f"E.{name}"].scale = arb(1)

@@ -42,7 +42,7 @@ DAMAGED = (zipfile.BadZipFile, RuntimeError, EOFError, OSError, ValueError, stru
 def read_npz(file: IO[bytes], limit: int) -> dict[str, np.ndarray[Any, Any]]:
     """The arrays of an npz file of at most ``limit`` bytes unpacked. Raises InvalidDocument naming the array."""
     try:
-        _check_directory(file)
+        check_directory(file, "npz file")
         with zipfile.ZipFile(file) as archive:
             members = archive.infolist()
             if len(members) > MAX_ARRAYS:
@@ -69,8 +69,10 @@ def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, file: IO[bytes]) ->
     return data
 
 
-def _check_directory(file: IO[bytes]) -> None:
-    """Refuse a directory that is larger than that of any npz file, before it is read."""
+def check_directory(file: IO[bytes], what: str) -> None:
+    """Refuse a directory of a zip that is larger than that of any npz file, before it is read. Raises BadZipFile,
+    TooLarge.
+    """
     size = file.seek(0, io.SEEK_END)
     file.seek(max(0, size - END.size - 2**16))
     tail = file.read()
@@ -79,7 +81,7 @@ def _check_directory(file: IO[bytes]) -> None:
         raise zipfile.BadZipFile("it has no directory")
     listed = END.unpack_from(tail, place)[5]
     if listed > MAX_LISTED or tail[:place].endswith(b"PK\6\7", max(0, place - 20), max(0, place - 16)):
-        raise TooLarge("the directory of the npz file (in bytes)", listed, MAX_LISTED)
+        raise TooLarge(f"the directory of the {what} (in bytes)", listed, MAX_LISTED)
     file.seek(0)
 
 

@@ -8,10 +8,10 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.errors import InvalidDocument, TooLarge, VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
-from substructures.expr.program import Program, program
+from substructures.expr.program import Formulas, Program, program
 from substructures.expr.unit_check import UnitCheck
 from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
@@ -20,7 +20,7 @@ from substructures.part.inertia_symbols import inertia_names
 from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
-from substructures.part.topology import BASE, Topology, entries_of, expected_operations, topology
+from substructures.part.topology import BASE, Entries, Topology, entries_of, expected_operations, topology
 from substructures.part.units import check_units
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
@@ -28,6 +28,7 @@ INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position",
 
 #: most operations of a program by default
 MAX_NODES = 1_000_000
+PROGRAM = "the program of the substructure (in operations)"
 
 
 @dataclass(frozen=True)
@@ -233,25 +234,33 @@ def _derived(
     admit: Callable[[int], None] | None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
 ) -> tuple[Mechanism, UnitCheck, Program]:
+    m, units, entries = _opened(definition)
+    if admit is not None:
+        admit(expected_operations([(j.parent, j.s) for j in m.topology.joints]))
+    known = None if coupled is None else lambda: coupled(m, entries.is_large)
+    outputs = _formulas(m, entries.is_large, known)
+    result = program(m.graph, outputs, m.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge(PROGRAM, len(result), max_nodes)
+    return m, units, result
+
+
+def _opened(definition: Definition) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
     units = check_units(definition, m.topology)
     units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
-    joints = [(j.parent, j.s) for j in m.topology.joints]
-    entries = entries_of(joints)
+    entries = entries_of([(j.parent, j.s) for j in m.topology.joints])
     entries.require("the mechanism")
-    if admit is not None:
-        admit(expected_operations(joints))
+    return m, units, entries
+
+
+def _formulas(m: Mechanism, large: bool, coupled: Callable[[], Coupled] | None = None) -> dict[str, Formulas]:
     loads = read_loads(m)
     try:
-        known = None if coupled is None else coupled(m, entries.is_large)
-        outputs = formulas(m, loads, entries.is_large, known)
+        return formulas(m, loads, large, None if coupled is None else coupled())
     except ZeroDivisionError:
         raise InvalidDocument.at("", "division-by-zero", "a formula divides by zero") from None
-    result = program(m.graph, outputs, m.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the program of the substructure (in operations)", len(result), max_nodes)
-    return m, units, result
 
 
 def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float) -> dict[str, Any]:
@@ -275,6 +284,26 @@ def recheck(part: Part) -> dict[str, Any]:
     certificate = _certificate(m, part.program, check_units(m.definition, m.topology), 0.0)
     require_no_less(part.certificate, certificate)
     return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
+
+
+@without_collections
+def received(definition: Definition, data: bytes, certificate: Mapping[str, Any], max_nodes: int = MAX_NODES) -> Part:
+    """A part that was derived elsewhere: its program as it comes, ``data``, with a certificate made anew, which says no
+    less than the one that comes with it.
+
+    Raises InvalidProgram, VerificationFailed as :func:`recheck`, and as :func:`derive` for the definition.
+    """
+    result = Program.from_bytes(data)
+    if len(result) > max_nodes:
+        raise TooLarge(PROGRAM, len(result), max_nodes)
+    m, units, _ = _opened(definition)
+    _formulas(m, large=True)  # refuses what derivation refuses, and declares all symbols
+    for symbol in result.symbols:
+        if m.scope.symbols.get(symbol.name, symbol) != symbol:
+            raise VerificationFailed(f"the symbol '{symbol.name[:80]}' has another kind or unit than in the definition")
+    made = _certificate(m, result, units, 0.0)
+    require_no_less(certificate, made)
+    return Part(definition, result, made)
 
 
 def told_operations(operations: Mapping[str, int]) -> str:

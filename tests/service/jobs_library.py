@@ -66,6 +66,9 @@ class MemoryLibrary:
     def blob(self, digest: str) -> bytes | None:
         return self.blobs.get(digest)
 
+    def sources(self) -> list[str]:
+        return ["https://parts.example.org"]
+
     def items(self, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> list[dict[str, Any]]:
         """Expanded and resolved; numbers as they are after they were stored."""
         expanded = expand(kind, request, limits or Limits(), self)

@@ -217,7 +217,8 @@ def test_upgrade_keeps_what_is_as_short(library: MemoryLibrary, item: dict[str, 
 def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
     assert KINDS[5:7] == ("upgrade", "compare")
-    assert KINDS[7:] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[7:10] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
+    assert KINDS[10:] == ("mirror",)  # tests/service/test_jobs_mirror.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:

@@ -87,6 +87,9 @@ TABLE: dict[str, Row] = {
     "get /v1/substructures/{ref}/uses": Row(PART + "/{part}/uses", *READ),
     "get /v1/substructures/{ref}/difference": Row(PART + "/{part}/difference?to={part}@1", *READ),
     "delete /v1/trees/{ref}": Row(TREE + "/{tree}", (204, 403, 404), (204, 403, 403)),
+    "get /v1/bundles": Row("/v1/bundles?refs={part}@1", *READ),
+    # that it has to be a zip; whose names may be added to: test_bundles.py
+    "post /v1/bundles": Row("/v1/bundles", (415, 403, 415), (415, 403, 415), {}),
     "get /v1/trees/{ref}/difference": Row(TREE + "/{tree}/difference?to={tree}@1", *READ),
     "get /v1/trees/{name}/revisions": Row(TREE + "/{tree}/revisions", *READ),
     "post /v1/trees/{ref}/publish": Row(

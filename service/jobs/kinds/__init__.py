@@ -17,6 +17,7 @@ from service.jobs.kinds.evaluate import EVALUATE
 from service.jobs.kinds.export import EXPORT
 from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
+from service.jobs.kinds.mirror import MIRROR, MIRROR_KIND
 from service.jobs.kinds.upgrade import UPGRADE
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
@@ -37,6 +38,7 @@ _KINDS: dict[str, Kind] = {
     "simulate": analysis_kind("simulations"),
     "optimise": analysis_kind("optimal-controls"),
     "analyse": analysis_kind(),
+    MIRROR_KIND: MIRROR,
 }
 KINDS = tuple(_KINDS)
 FIELDS = ("kind", "items", "template", "choices", "shared", "on_invalid", "label")

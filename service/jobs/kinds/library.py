@@ -54,3 +54,6 @@ class Library(Protocol):
 
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""
+
+    def sources(self) -> Sequence[str]:
+        """Addresses of the instances that may be mirrored."""

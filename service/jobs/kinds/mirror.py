@@ -1,0 +1,50 @@
+"""mirror: an item is ``{"source": address}``: all public parts of another instance are stored here.
+
+It needs the store at every step, and the network: the process that watches over the engine does it itself
+(:mod:`service.queue.mirroring`), and no runner does.
+"""
+
+from __future__ import annotations
+
+import secrets
+
+from service.jobs.engine import Outcome
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields
+from service.jobs.kinds.library import Library
+from service.refusals import Refused
+from service.schemas.jobs import ItemDocument
+from service.settings import Limits
+from service.sources import SCHEMES, read_source
+from substructures.errors import InvalidDocument
+
+MIRROR_KIND = "mirror"
+SETTING = "SUBSTRUCTURES_MIRROR_SOURCES"
+
+
+def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
+    """The item with the address as it is listed; another run is another item, since there may be new parts."""
+    check_fields(item, ("source",))
+    text = item["source"]
+    try:
+        source = read_source(text if isinstance(text, str) else "")
+    except ValueError:
+        message = f"the address of an instance is needed ({' or '.join(SCHEMES)}://host), without a path"
+        raise InvalidDocument.at("/source", "bad-source", message) from None
+    if source.key is not None:
+        message = f"an address without a key: the operator gives the key in {SETTING}"
+        raise InvalidDocument.at("/source", "bad-source", message)
+    if source.address not in library.sources():
+        message = f"'{source.address[:200]}' is none of the instances that the operator lists in {SETTING}"
+        raise InvalidDocument.at("/source", "source-not-allowed", message)
+    return [{"source": source.address, "run": secrets.token_hex(8), "nodes": limits.job_nodes}]
+
+
+def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
+    return item, ()
+
+
+def _run(_item: ItemDocument, _blobs: Blobs, _progress: ItemProgress) -> Outcome:
+    raise Refused(500, "internal-error", "a mirror is made where the store is, and by no worker")
+
+
+MIRROR = Kind(_spread, _resolve, _run)

@@ -1,0 +1,91 @@
+"""``/v1/bundles``: parts with their programs and certificates from one instance to another, as a zip."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.addresses import version_path
+from service.answers import Answer, etag, json_answer
+from service.bundles import MEDIA_TYPE, read_bundle, write_bundle
+from service.database.connections import Connection
+from service.http.acting import Commit, SpooledActOf, timed
+from service.http.requests import StoreOf, ViewerOf, declared_type, needs
+from service.http.responses import conditional
+from service.integrity import digest_of
+from service.operations import bundles
+from service.queries.catalogue import Version
+from service.references import is_pinned
+from service.refusals import Refused
+from service.routes.bodies import binary
+from service.schemas.bundles import BundleView
+from service.schemas.entries import VISIBILITY, PartEntry, Visibility
+from service.views.resources import dump
+
+router = APIRouter(prefix="/v1/bundles", tags=["catalogue"])
+ZIP: dict[int | str, dict[str, Any]] = {200: {"description": "The bundle", "content": {MEDIA_TYPE: binary()}}}
+BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {MEDIA_TYPE: binary()}}}
+STORED: dict[int | str, dict[str, Any]] = {201: {"description": "Something of it was new", "model": BundleView}}
+
+
+@router.get("", dependencies=[needs("read")], responses=ZIP, response_class=Response)
+def get_bundle(
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    refs: Annotated[str, Query(max_length=60_000, description="references of parts, separated by commas")],
+) -> Response:
+    """Definitions, programs and certificates of parts as they are stored; the same bytes for the same versions."""
+    with store.database.read() as connection:
+        versions = bundles.find(connection, viewer, refs)
+    known = [text for each in versions for text in (each.digest, each.program, digest_of(each.certificate.encode()))]
+    lasting = all(is_pinned(text.strip()) for text in refs.split(",")) and all(each.is_public for each in versions)
+
+    def make() -> Answer:
+        """Read and pack them."""
+        with store.database.read() as connection:
+            parts = [bundles.bundled(connection, version) for version in versions]
+        data = write_bundle(parts, store.settings.limits)
+        name = f"{versions[0].name}.zip" if len(versions) == 1 else "bundle.zip"
+        return Answer(200, data, {"Content-Type": MEDIA_TYPE, "Content-Disposition": f'attachment; filename="{name}"'})
+
+    return conditional(request, etag("bundle", *known), lasting, make)
+
+
+@router.post("", response_model=BundleView, dependencies=[needs("write")], openapi_extra=BODY, responses=STORED)
+@timed("derive")
+def import_bundle(
+    request: Request,
+    store: StoreOf,
+    act: SpooledActOf,
+    visibility: Annotated[Visibility | None, Query(description=VISIBILITY)] = None,
+) -> Response:
+    """Verify the parts of a bundle and store them, all or nothing. 201 when something was new, else 200."""
+    if declared_type(request) != MEDIA_TYPE:
+        raise Refused(415, "unsupported-media-type", f"send {MEDIA_TYPE}", headers={"Accept": MEDIA_TYPE})
+    entry, limit = PartEntry(visibility=visibility), store.settings.limits.program_nodes
+
+    def prepare() -> Commit:
+        """Verify every part by its own definition."""
+        with act.spool.reader() as file:
+            parts = read_bundle(file, store.settings.limits)
+        ready = []
+        for part in parts:
+            act.require_time()
+            ready.append(bundles.prepare(store, act.viewer, part, entry, limit))
+
+        def commit(connection: Connection) -> Answer:
+            """Store all that is new."""
+            found = bundles.commit(connection, act.viewer, parts, ready)
+            items = [_view(version, is_new) for version, is_new in found]
+            return json_answer(dump({"items": items}), 201 if any(is_new for _, is_new in found) else 200)
+
+        return commit
+
+    return act.run(prepare)
+
+
+def _view(version: Version, is_new: bool) -> dict[str, Any]:
+    told = {"name": version.name, "version": version.version, "digest": version.digest}
+    return {**told, "outcome": "stored" if is_new else "same", "links": {"self": version_path(version)}}

@@ -1,0 +1,550 @@
+"""Bundles: what one store gives another stores, verified anew; what is wrong in it is refused whole, with its place."""
+
+from __future__ import annotations
+
+import io
+import json
+import stat
+import struct
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from time import sleep
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service import keys
+from service.app import open_store
+from service.bundles import LIST, MOST_PARTS
+from service.integrity import digest_of
+from service.settings import Limits, Settings
+from service.store import Store
+from substructures.documents import write_json
+
+from .conftest import PENDULUM, SLIDER, make_client
+
+ZIP = {"Content-Type": "application/zip"}
+BUNDLES = "/v1/bundles"
+Files = dict[str, bytes]
+Rows = Callable[[], dict[str, int]]
+
+
+@contextmanager
+def opened(folder: Path, **settings: Any) -> Iterator[TestClient]:
+    """Another server with an empty store."""
+    folder.mkdir()
+    found = Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False, key_seconds=0, **settings)
+    with open_store(found) as store, make_client(store) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def source(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server that knows pendulum and slider."""
+    path = tmp_path_factory.mktemp("source") / "store.db"
+    path.write_bytes(template.read_bytes())
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store, make_client(store) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def files(source: TestClient) -> Files:
+    """The files of a bundle of both."""
+    return unpacked(fetched(source, "pendulum,slider"))
+
+
+def fetched(client: TestClient, refs: str, **headers: str) -> bytes:
+    answer = client.get(BUNDLES, params={"refs": refs}, headers=headers)
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "application/zip"
+    return answer.content
+
+
+def sent(client: TestClient, data: bytes, query: str = "", **headers: str) -> Any:
+    return client.post(BUNDLES + query, content=data, headers={**ZIP, **headers})
+
+
+def unpacked(data: bytes) -> Files:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def packed(files: Files, method: int = zipfile.ZIP_STORED) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", method) as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def listed(files: Files, change: Callable[[Any], None]) -> Files:
+    """With another list."""
+    document = json.loads(files[LIST])
+    change(document)
+    return {**files, LIST: write_json(document)}
+
+
+def consistent(files: Files, name: str, data: bytes) -> Files:
+    """With another file, and all digests as they have to be for it."""
+    old, new = digest_of(files[name]), digest_of(data)
+    found = {**files, name: data}
+    text = found[LIST].replace(old.encode(), new.encode())
+    found[LIST] = text
+    if name.endswith("definition.json"):
+        folder = name.split("/")[0]
+        moved = f"{folder.split('@')[0]}@{new.removeprefix('sha256:')[:12]}"
+        found = {each.replace(folder, moved): data for each, data in found.items()}
+        found[LIST] = text.replace(folder.encode(), moved.encode())
+    return found
+
+
+def path_of(files: Files, part: str, name: str) -> str:
+    return next(path for path in files if path.startswith(f"{part}@") and path.endswith(name))
+
+
+def changed_program(files: Files, change: Callable[[Any], None]) -> Files:
+    path = path_of(files, "pendulum", "/program")
+    program = json.loads(files[path])
+    change(program)
+    return consistent(files, path, write_json(program))
+
+
+def test_there_and_back(source: TestClient, client: TestClient) -> None:
+    """The other store has the same definitions, programs and formulas, and gives what it got."""
+    data = fetched(source, "slider@1,pendulum,slider")
+    answer = sent(client, data)
+    assert answer.status_code == 201, answer.text
+    items = answer.json()["items"]
+    assert [(item["name"], item["version"], item["outcome"]) for item in items] == [
+        ("slider", 1, "stored"),
+        ("pendulum", 1, "stored"),
+    ]
+    for item in items:
+        there, here = (each.get(f"/v1/substructures/{item['name']}").json() for each in (source, client))
+        told = ("digest", "program", "operations", "parameters", "coordinates", "warnings", "title", "tags")
+        assert [there[name] for name in told] == [here[name] for name in told]
+        assert here["certificate"]["direct_form"] == there["certificate"]["direct_form"]
+        assert (here["origin"], item["links"]["self"]) == ("import", f"/v1/substructures/{item['name']}@1")
+        index = [each.get(f"/v1/substructures/{item['name']}/formulas").json() for each in (source, client)]
+        assert index[0] == index[1]
+    definitions = [path for path in unpacked(data) if path != LIST and not path.endswith("certificate.json")]
+    again = unpacked(fetched(client, "slider,pendulum"))
+    assert {path: again[path] for path in definitions} == {path: unpacked(data)[path] for path in definitions}
+    tree = {"name": "both", "instances": [{"name": "a", "substructure": "slider"}]}
+    assert client.post("/v1/trees", json=tree).status_code == 201
+
+
+def test_the_same_bytes_for_the_same_versions(source: TestClient, files: Files) -> None:
+    answers = [source.get(BUNDLES, params={"refs": refs}) for refs in ("pendulum,slider", "pendulum@1, slider@1")]
+    assert answers[0].content == answers[1].content
+    tags = [answer.headers["etag"] for answer in answers]
+    assert tags[0] == tags[1] != source.get(BUNDLES, params={"refs": "slider,pendulum"}).headers["etag"]
+    assert not tags[0].startswith("W/")
+    caching = [answer.headers["cache-control"] for answer in answers]
+    assert (caching[0], "immutable" in caching[1]) == ("no-cache", True)
+    known = source.get(BUNDLES, params={"refs": "pendulum,slider"}, headers={"If-None-Match": tags[0]})
+    assert (known.status_code, known.content) == (304, b"")
+    with zipfile.ZipFile(io.BytesIO(answers[0].content)) as archive:
+        assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    document = json.loads(files[LIST])
+    assert [part["name"] for part in document["parts"]] == ["pendulum", "slider"]
+    assert set(document["parts"][0]) == {"name", "digest", "program", "folder", "files"}
+    assert "author" not in files[LIST].decode()
+
+
+def test_the_same_again_changes_nothing(source: TestClient, client: TestClient, rows: Rows) -> None:
+    data = fetched(source, "pendulum,slider")
+    assert sent(client, data).status_code == 201
+    before = rows()
+    again = sent(client, data)
+    assert (again.status_code, {item["outcome"] for item in again.json()["items"]}) == (200, {"same"})
+    assert rows() == before
+
+
+def test_what_is_new_in_part(source: TestClient, client: TestClient) -> None:
+    client.post("/v1/substructures", json=SLIDER)
+    answer = sent(client, fetched(source, "pendulum,slider"))
+    assert (answer.status_code, [item["outcome"] for item in answer.json()["items"]]) == (201, ["stored", "same"])
+    newer = client.post("/v1/substructures", json={**PENDULUM, "title": "newer"})
+    assert newer.json()["version"] == 2
+
+
+def test_a_key_replays_the_answer(source: TestClient, client: TestClient) -> None:
+    data, key = fetched(source, "pendulum"), {"Idempotency-Key": "b1"}
+    first, again = sent(client, data, **key), sent(client, data, **key)
+    assert (first.status_code, again.status_code, again.headers["idempotency-replayed"]) == (201, 201, "true")
+    other = sent(client, fetched(source, "slider"), **key)
+    assert (other.status_code, other.json()["code"]) == (422, "idempotency-key-reused")
+
+
+def test_what_others_packed_is_taken(files: Files, client: TestClient) -> None:
+    assert sent(client, packed(files, zipfile.ZIP_DEFLATED)).status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("refs", "status", "code"),
+    [
+        ("", 422, "refs"),
+        (",", 422, "refs"),
+        (",".join(["pendulum"] * (MOST_PARTS + 1)), 422, "refs"),
+        ("pendulum,nothing", 404, "unknown-substructure"),
+        ("pendulum@7", 404, "unknown-substructure"),
+        ("not a reference", 404, "not-found"),
+    ],
+)
+def test_references_that_are_none(refs: str, status: int, code: str, source: TestClient) -> None:
+    answer = source.get(BUNDLES, params={"refs": refs})
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+
+
+@dataclass
+class Wrong:
+    """A bundle that is refused: with this code, at a pointer that ends so, with these words."""
+
+    make: Callable[[Files], bytes]
+    code: str
+    pointer: str
+    words: str = ""
+
+
+def without(name: str) -> Callable[[Files], bytes]:
+    return lambda files: packed({path: data for path, data in files.items() if not path.endswith(name)})
+
+
+def beside(name: str, mode: int = 0) -> Callable[[Files], bytes]:
+    """With one file more, of a mode."""
+
+    def make(files: Files) -> bytes:
+        buffer = io.BytesIO(packed(files))
+        with zipfile.ZipFile(buffer, "a") as archive:
+            info = zipfile.ZipInfo(name)
+            info.external_attr = mode << 16
+            archive.writestr(info, b"x")
+        return buffer.getvalue()
+
+    return make
+
+
+def with_list(change: Callable[[Any], None]) -> Callable[[Files], bytes]:
+    return lambda files: packed(listed(files, change))
+
+
+def with_program(change: Callable[[Any], None]) -> Callable[[Files], bytes]:
+    return lambda files: packed(changed_program(files, change))
+
+
+def with_definition(change: Callable[[Any], None], form: Callable[[Any], bytes] = write_json) -> Callable[..., bytes]:
+    def make(files: Files) -> bytes:
+        path = path_of(files, "slider", "definition.json")
+        document = json.loads(files[path])
+        change(document)
+        return packed(consistent(files, path, form(document)))
+
+    return make
+
+
+def touched(name: str) -> Callable[[Files], bytes]:
+    """One byte of a file is another."""
+
+    def make(files: Files) -> bytes:
+        path = path_of(files, "slider", name)
+        data = files[path]
+        return packed({**files, path: data[:-2] + bytes([data[-2] ^ 1]) + data[-1:]})
+
+    return make
+
+
+def twice(files: Files) -> bytes:
+    buffer = io.BytesIO(packed(files))
+    path = path_of(files, "slider", "/program")
+    with zipfile.ZipFile(buffer, "a") as archive, pytest.warns(UserWarning, match="Duplicate name"):
+        archive.writestr(path, files[path])
+    return buffer.getvalue()
+
+
+def bomb(files: Files) -> bytes:
+    """A hundred megabytes in a hundred kilobytes."""
+    return packed({**files, path_of(files, "pendulum", "/program"): bytes(10**8)}, zipfile.ZIP_DEFLATED)
+
+
+def shy_bomb(files: Files) -> bytes:
+    """The same, and its directory says that it is small."""
+    return bomb(files).replace(struct.pack("<I", 10**8), struct.pack("<I", 1000))
+
+
+def long_definition(files: Files) -> bytes:
+    return packed({**files, path_of(files, "slider", "definition.json"): b" " * 20 * 2**20}, zipfile.ZIP_DEFLATED)
+
+
+def many_files(files: Files) -> bytes:
+    return packed({**files, **{f"{k}.txt": b"" for k in range(3 * MOST_PARTS)}})
+
+
+def negated(program: Any) -> None:
+    """A sign of the metric is wrong."""
+    output = program["outputs"]["metric"]
+    program["operations"].append(["neg", output["entries"][0]])
+    output["entries"][0] = len(program["operations"]) - 1
+
+
+def no_inertia(program: Any) -> None:
+    del program["outputs"]["composite.m"]
+
+
+def no_tilt(program: Any) -> None:
+    del program["outputs"]["E.tilt"]
+
+
+def flat_turn(program: Any) -> None:
+    program["outputs"]["E.turn"] |= {"shape": [], "index": [[]], "entries": program["outputs"]["E.turn"]["entries"][:1]}
+
+
+def other_unit(program: Any) -> None:
+    next(symbol for symbol in program["symbols"] if symbol["kind"] == "parameter")["unit"] = "furlong"
+
+
+def foreign_symbol(program: Any) -> None:
+    program["symbols"][0]["name"] = "zz"
+
+
+def later_operand(program: Any) -> None:
+    program["operations"][0] = ["neg", 5]
+
+
+def newer(document: Any) -> None:
+    document["version"] = 2
+
+
+def other_name(document: Any) -> None:
+    document["parts"][1]["name"] = "pendulum2"
+
+
+def other_program(document: Any) -> None:
+    document["parts"][0]["program"] = document["parts"][1]["program"]
+
+
+def climbing(document: Any) -> None:
+    document["parts"][0]["folder"] = "../x"
+
+
+def fewer(document: Any) -> None:
+    del document["parts"][1]
+
+
+def heavier(document: Any) -> None:
+    document["bodies"][0]["mass"] = "2*m"
+
+
+def impossible(document: Any) -> None:
+    document["bodies"][0]["mass"] = -1
+
+
+def unknown_field(document: Any) -> None:
+    document["colour"] = "red"
+
+
+def spaced(document: Any) -> bytes:
+    return json.dumps(document).encode()
+
+
+def same(_document: Any) -> None:
+    return None
+
+
+WRONG: dict[str, Wrong] = {
+    "nothing": Wrong(lambda _: b"", "invalid-bundle", "", "not a zip"),
+    "no zip": Wrong(lambda _: b"PK and more", "invalid-bundle", "", "not a zip"),
+    "cut off": Wrong(lambda files: packed(files)[:-40], "invalid-bundle", ""),
+    "no list": Wrong(without(LIST), "invalid-bundle", "/bundle.json", "missing"),
+    "no program": Wrong(without("/program"), "invalid-bundle", "/program", "missing"),
+    "a file more": Wrong(beside("notes.txt"), "invalid-bundle", "/notes.txt", "does not list"),
+    "a path upwards": Wrong(beside("../../etc/cron"), "invalid-bundle", "/../../etc/cron", "leads out"),
+    "an absolute path": Wrong(beside("/etc/cron"), "invalid-bundle", "//etc/cron", "leads out"),
+    "a path of Windows": Wrong(beside("C:\\x"), "invalid-bundle", "", "leads out"),
+    "a link": Wrong(beside("link", stat.S_IFLNK | 0o777), "invalid-bundle", "/link", "a link, a folder"),
+    "a folder": Wrong(beside("folder/"), "invalid-bundle", "/folder/", "a link, a folder"),
+    "a file twice": Wrong(twice, "invalid-bundle", "/program", "twice"),
+    "lzma": Wrong(lambda files: packed(files, zipfile.ZIP_LZMA), "invalid-bundle", "", "deflate"),
+    "a bomb": Wrong(bomb, "too-large", "/program", "67,1"),
+    "a bomb that says it is small": Wrong(shy_bomb, "invalid-bundle", ""),
+    "a long definition": Wrong(long_definition, "too-large", "/definition.json"),
+    "many files": Wrong(many_files, "too-large", "", "number of files"),
+    "a newer format": Wrong(with_list(newer), "newer-format", "/bundle.json/version", "format 2"),
+    "another format": Wrong(with_list(lambda d: d.update(format="x")), "invalid-bundle", "/bundle.json/format"),
+    "a list that is none": Wrong(lambda files: packed({**files, LIST: b"[1"}), "invalid-document", "/bundle.json"),
+    "an empty list": Wrong(with_list(lambda d: d.update(parts=[])), "too-large", "/bundle.json/parts"),
+    "an unknown field": Wrong(with_list(lambda d: d.update(note="x")), "invalid-document", "/bundle.json/note"),
+    "another name": Wrong(with_list(other_name), "invalid-bundle", "/bundle.json/parts/1/folder"),
+    "another folder": Wrong(with_list(climbing), "invalid-bundle", "/definition.json", "missing"),
+    "a part that is not listed": Wrong(with_list(fewer), "invalid-bundle", "", "does not list"),
+    "another program's digest": Wrong(with_list(other_program), "wrong-digest", "/program"),
+    "a byte of the definition": Wrong(touched("definition.json"), "wrong-digest", "/definition.json"),
+    "a byte of the program": Wrong(touched("/program"), "wrong-digest", "/program"),
+    "a byte of the certificate": Wrong(touched("certificate.json"), "wrong-digest", "/certificate.json"),
+    "a wrong sign": Wrong(with_program(negated), "not-verified", "/program", "metric[0, 0]"),
+    "no inertia": Wrong(with_program(no_inertia), "not-verified", "/program", "composite.m is missing"),
+    "no factor": Wrong(with_program(no_tilt), "not-verified", "/program", "E.tilt is missing"),
+    "a factor that is no array": Wrong(with_program(flat_turn), "not-verified", "/program", "E.turn"),
+    "another unit": Wrong(with_program(other_unit), "not-verified", "/program", "unit"),
+    "a foreign symbol": Wrong(with_program(foreign_symbol), "not-verified", "/program", "zz"),
+    "no program at all": Wrong(with_program(later_operand), "invalid-bundle", "/program", "operation 0"),
+    "a heavier body": Wrong(with_definition(heavier), "not-verified", "/program"),
+    "an impossible body": Wrong(with_definition(impossible), "invalid-document", "/definition.json/bodies/0/mass"),
+    "an unknown member": Wrong(with_definition(unknown_field), "invalid-document", "/definition.json/colour"),
+    "another text": Wrong(with_definition(same, spaced), "wrong-digest", "/definition.json", "canonical"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_is_wrong_is_refused_whole(case: str, files: Files, client: TestClient, rows: Rows) -> None:
+    """The part that is right in it is not stored either."""
+    wrong, before = WRONG[case], rows()
+    answer = sent(client, wrong.make(files))
+    problem = answer.json()
+    assert (answer.status_code, problem["code"]) == (422, wrong.code), answer.text
+    assert problem["errors"][0]["pointer"].endswith(wrong.pointer)
+    assert wrong.words in problem["detail"]
+    assert rows() == before
+    assert sent(client, packed(files)).status_code == 201
+
+
+def test_a_wrong_program_of_what_is_known_is_refused(files: Files, client: TestClient) -> None:
+    """Content that is there already is no reason to look away."""
+    assert sent(client, packed(files)).status_code == 201
+    answer = sent(client, packed(changed_program(files, negated)))
+    assert (answer.status_code, answer.json()["code"]) == (422, "not-verified")
+
+
+def test_another_right_program_of_what_is_known_changes_nothing(files: Files, client: TestClient, rows: Rows) -> None:
+    """As another version of the software may derive it."""
+    sent(client, packed(files))
+    before = rows()
+
+    def longer(program: Any) -> None:
+        """m + 0 for every mass."""
+        output = program["outputs"]["composite.m"]
+        program["operations"] += [["int", "0"], ["add", output["entries"][0], len(program["operations"])]]
+        output["entries"][0] = len(program["operations"]) - 1
+
+    found = changed_program(files, longer)
+    answer = sent(client, packed(found))
+    assert (answer.status_code, {item["outcome"] for item in answer.json()["items"]}) == (200, {"same"})
+    assert rows() == before
+
+
+def test_a_certificate_is_made_anew(files: Files, client: TestClient) -> None:
+    """What the other side says of a part is not what is said here."""
+    path = path_of(files, "slider", "certificate.json")
+    boast = json.loads(files[path]) | {"states": 10**6, "seconds": {"derive": 0, "verify": 0}, "praise": "best"}
+    assert sent(client, packed(consistent(files, path, write_json(boast)))).status_code == 201
+    certificate = client.get("/v1/substructures/slider").json()["certificate"]
+    assert (certificate["states"], "praise" in certificate) == (1, False)
+
+
+@pytest.mark.parametrize("certificate", [[], 1, {"direct_form": 1}, {"direct_form": {"max_relative_error": 3}}])
+def test_a_certificate_that_is_none(certificate: Any, files: Files, client: TestClient) -> None:
+    path = path_of(files, "slider", "certificate.json")
+    answer = sent(client, packed(consistent(files, path, write_json(certificate))))
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid-bundle")
+
+
+def test_less_than_the_certificate_says_is_refused(client: TestClient, tmp_path: Path) -> None:
+    """A potential that was not found is none that is wrong; but the certificate knew of one."""
+    load, joint = {"type": "joint", "coordinate": "x", "force": "-exp(x)"}, {"type": "prismatic", "coordinate": "x"}
+    law = {**SLIDER, "name": "law", "bodies": [{**SLIDER["bodies"][0], "joint": joint}], "loads": [load]}
+    with opened(tmp_path / "there") as there:
+        assert there.post("/v1/substructures", json=law).status_code == 201
+        found = unpacked(fetched(there, "law"))
+    path = path_of(found, "law", "certificate.json")
+    certificate = json.loads(found[path])
+    assert certificate["direct_form"].pop("potential_left_out") == ["x"]
+    answer = sent(client, packed(consistent(found, path, write_json(certificate))))
+    assert (answer.status_code, answer.json()["code"]) == (422, "not-verified")
+    assert "the potential of the forces on x is left out" in answer.json()["detail"]
+    assert sent(client, packed(found)).status_code == 201
+
+
+def test_what_takes_too_long_is_not_gone_on_with(files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[str] = []
+
+    def slow(_store: Any, _viewer: Any, part: Any, *_: Any) -> Any:
+        begun.append(part.name)
+        sleep(0.3)
+
+    monkeypatch.setattr("service.operations.bundles.prepare", slow)
+    with opened(tmp_path / "slow", limits=Limits(sync_seconds=0.2)) as client:
+        answer = sent(client, packed(files))
+        assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
+        sleep(0.4)
+    assert begun == ["pendulum"]
+
+
+def test_other_media_types(client: TestClient) -> None:
+    answer = client.post(BUNDLES, json={})
+    assert (answer.status_code, answer.headers["accept"]) == (415, "application/zip")
+
+
+def test_limits(source: TestClient, tmp_path: Path) -> None:
+    data = fetched(source, "pendulum")
+    for name, limit, status, code in (
+        ("binary_bytes", len(data) - 1, 413, "body-too-large"),
+        ("program_nodes", 10, 422, "too-large"),
+        ("sync_seconds", 1e-6, 503, "took-too-long"),
+    ):
+        with opened(tmp_path / name, limits=Limits(**{name: limit})) as client:
+            answer = sent(client, data)
+            assert (answer.status_code, answer.json()["code"]) == (status, code)
+            assert client.get("/v1/substructures").json()["items"] == []
+    with opened(tmp_path / "small", limits=Limits(binary_bytes=len(data) // 2)) as client:
+        client.post("/v1/substructures", json=PENDULUM)
+        answer = client.get(BUNDLES, params={"refs": "pendulum"})
+        assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/query/refs")
+
+
+def key(client: TestClient, owner: str, *scopes: str) -> dict[str, str]:
+    store: Store = client.app.state.store  # type: ignore[attr-defined]
+    with store.database.write() as connection:
+        return {"Authorization": f"Bearer {keys.create(connection, '', scopes, None, owner)}"}
+
+
+def test_names_of_others(files: Files, client: TestClient, rows: Rows) -> None:
+    """One name that belongs to somebody else refuses the bundle whole; what is the same as theirs does not."""
+    acme, bolt = (key(client, owner, "read", "write") for owner in ("acme", "bolt"))
+    client.post("/v1/substructures", json={**SLIDER, "title": "theirs"}, headers=acme)
+    before = rows()
+    answer = sent(client, packed(files), **bolt)
+    assert (answer.status_code, answer.json()["code"]) == (403, "name-taken")
+    assert answer.json()["errors"][0]["pointer"] == "/" + path_of(files, "slider", "/program").split("/")[0]
+    assert rows() == before
+    client.post("/v1/substructures", json=SLIDER, headers=acme)
+    answer = sent(client, packed(files), **bolt)
+    assert [(item["version"], item["outcome"]) for item in answer.json()["items"]] == [(1, "stored"), (2, "same")]
+    owners = [client.get(f"/v1/substructures/{name}", headers=bolt).json()["owner"] for name in ("pendulum", "slider")]
+    assert owners == ["bolt", "acme"]
+
+
+def test_private_parts(files: Files, client: TestClient) -> None:
+    acme, bolt = (key(client, owner, "read", "write") for owner in ("acme", "bolt"))
+    assert sent(client, packed(files), "?visibility=private", **acme).status_code == 201
+    assert client.get("/v1/substructures/slider", headers=acme).json()["visibility"] == "private"
+    for refs in ("slider", "slider@1", "slider@" + json.loads(files[LIST])["parts"][1]["digest"]):
+        assert client.get(BUNDLES, params={"refs": refs}, headers=acme).headers["cache-control"] == "no-cache"
+        answers = [
+            client.get(BUNDLES, params={"refs": ref}, headers=bolt) for ref in (refs, refs.replace("slider", "slidar"))
+        ]
+        told = [{**answer.json(), "request_id": ""} for answer in answers]
+        assert [answer.status_code for answer in answers] == [404, 404]
+        assert json.dumps(told[0]) == json.dumps(told[1]).replace("slidar", "slider")
+    taken = sent(client, packed(files), **bolt)
+    assert (taken.status_code, taken.json()["code"], "acme" in taken.text) == (403, "name-taken", False)
+    shown = sent(client, packed(files), "?visibility=public", **acme)
+    assert (shown.status_code, shown.json()["code"]) == (409, "visibility-differs")
+
+
+def test_who_only_reads(files: Files, client: TestClient) -> None:
+    reads = key(client, "acme", "read")
+    assert sent(client, packed(files), **reads).json()["code"] == "scope-missing"
