@@ -16,6 +16,7 @@ from substructures.export import Interface
 from substructures.printers import entries
 from substructures.printers.definitions import Definitions
 from substructures.printers.names import MAX_COMMENT
+from substructures.printers.render import LIMIT
 from substructures.quantities.evaluation import Sources
 
 #: what follows from the equations of motion alone, and has formulas in grouped symbols
@@ -67,8 +68,8 @@ def grouped_text(source: Source, quantity: str, style: Style, interface: Interfa
     if style.format == JSON:
         used = definitions.of(program)
         members["definitions"] = [_described(s, used) for s in found.symbols if s.name in used.program.outputs]
-    more = {} if limit is None else {"limit": limit}
-    return text_of(program, style, quantity, interface, members, definitions=definitions, **more)
+    most = LIMIT if limit is None else limit
+    return text_of(program, style, quantity, interface, members, most, definitions)
 
 
 def _described(symbol: GroupedSymbol, used: Definitions) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -125,6 +125,13 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
     return {"columns": {"names": found.names, "units": found.units}}, found.parameters
 
 
+def names_of_steps(style: Style, parameters: Mapping[str, Any], make: Callable[[], Program]) -> Program | None:
+    """What steps of a derivation are called, bound as it is; None where there are no steps that people read."""
+    if style.format not in TO_READ or style.form not in ("readable", "compact"):
+        return None
+    return bound(make(), parameters, style.bind)
+
+
 def text_of(
     program: Program,
     style: Style,
@@ -133,14 +140,15 @@ def text_of(
     members: Mapping[str, Any] | None = None,
     limit: int = LIMIT,
     definitions: Definitions | None = None,
+    glossary: Program | None = None,
 ) -> str:
     """The program in the format chosen; ``interface``: of what it was made for; ``members`` are put before it in JSON;
-    ``definitions``: of symbols that stand for formulas, for people.
+    ``definitions``: of symbols that stand for formulas, ``glossary``: of steps of derivations, both for people.
 
     Raises TooLarge for more than ``limit`` nodes, InvalidArgument for a bad name of a function."""
     if style.format in TO_READ:
         program = program.select([name for name in program.outputs if name not in JUDGES] or list(program.outputs))
-    text = _rendered(program, style, quantity, interface, limit, definitions)
+    text = _rendered(program, style, quantity, interface, limit, definitions, glossary)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, interface.vectors["q"].names)
     return _joined(members, text) if style.format == JSON and members else text
@@ -153,11 +161,12 @@ def _rendered(
     interface: Interface,
     limit: int,
     definitions: Definitions | None = None,
+    glossary: Program | None = None,
 ) -> str:
     """The program, as a function of what was not bound where it is code."""
     left = interface.bound(bound_names(interface.vectors["p"].with_default, style.bind))
     try:
-        return render(program, style.format, style.form, style.name, limit, left, quantity, definitions)
+        return render(program, style.format, style.form, style.name, limit, left, quantity, definitions, glossary)
     except InvalidInput as error:
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 

@@ -35,6 +35,7 @@ from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import TreeSpec
+from substructures.tree.glossary import glossary
 from substructures.tree.model import couple
 
 #: what is said of results that are not known to be right
@@ -128,7 +129,11 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
     members, parameters = models.described(sources, what)
     program = models.bound(models.model_quantity(sources, what), parameters, style.bind)
     interface = interface_of_model(source.model, digest=source.digest)
-    return models.printed(program, style, what, interface, members)
+    parts = source.parts
+    named = None
+    if parts is not None:
+        named = models.names_of_steps(style, parameters, lambda: glossary(*parts()))
+    return models.printed(program, style, what, interface, members, named)
 
 
 def _numbers(wanted: _Wanted, name: str, given: Path | None) -> int:
@@ -214,7 +219,8 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
     nodes = limits.program_nodes
     transmitted = lambda: reactions(spec, parts, nodes)  # noqa: E731 -- made when it is asked for
-    return Source(model, spec.digest, lambda: regressor(spec, parts, nodes), limits, reactions=transmitted)
+    made = lambda: regressor(spec, parts, nodes)  # noqa: E731 -- made when it is asked for
+    return Source(model, spec.digest, made, limits, reactions=transmitted, parts=lambda: (spec, parts))
 
 
 COMMANDS = {"simulate": simulate, "analyse": analyse}

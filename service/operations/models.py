@@ -15,6 +15,7 @@ from service.analyses.printing import (
     check_quantity,
     described,
     model_quantity,
+    names_of_steps,
     options_of_quantity,
     quantities,
     text_of,
@@ -35,6 +36,7 @@ __all__ = [
     "check_quantity",
     "described",
     "model_quantity",
+    "names_of_steps",
     "options_of_quantity",
     "part_formulas",
     "printed",
@@ -145,8 +147,15 @@ def _slice(whole: Output, lead: tuple[int, ...], negated: Callable[[int], int]) 
 
 
 def printed(
-    program: Program, style: Style, quantity: str, interface: Interface, members: Mapping[str, Any] | None = None
+    program: Program,
+    style: Style,
+    quantity: str,
+    interface: Interface,
+    members: Mapping[str, Any] | None = None,
+    glossary: Program | None = None,
 ) -> Answer:
-    """The program in the format chosen; ``members`` are put before it in JSON. Raises TooLarge."""
-    text = text_of(program, style, quantity, interface, members)
+    """The program in the format chosen; ``members`` are put before it in JSON; ``glossary``: names of steps. Raises
+    TooLarge.
+    """
+    text = text_of(program, style, quantity, interface, members, glossary=glossary)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})

@@ -24,6 +24,7 @@ from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
+from substructures.tree.glossary import part_glossary
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -99,6 +100,7 @@ def _formula(
         """Bind and print."""
         own = with_own_inertia(part, found) if chosen.inertia == "own" else found
         program = models.bound(own, part.parameters, style.bind)
-        return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest))
+        named = models.names_of_steps(style, part.parameters, lambda: part_glossary(part))
+        return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest), None, named)
 
     return remembered(request, tag, is_pinned(ref) and version.is_public, make)

@@ -32,6 +32,7 @@ from service.viewer import Viewer
 from substructures.export import interface_of_model
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
+from substructures.tree.glossary import glossary
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
 GROUP = "in base parameters: symbols for what masses and lengths occur in together, with their definitions"
@@ -191,6 +192,7 @@ def _quantity(
         members, parameters = models.described(sources, quantity)
         program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
         interface = interface_of_model(model, digest=tree.digest)
-        return models.printed(program, style, quantity, interface, members)
+        named = models.names_of_steps(style, parameters, lambda: glossary(*tree_parts(store, tree)))
+        return models.printed(program, style, quantity, interface, members, named)
 
     return remembered(request, tag, lasting, make)

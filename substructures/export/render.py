@@ -73,19 +73,20 @@ def render(
     interface: Interface | None = None,
     quantity: str = "",
     definitions: Definitions | None = None,
+    glossary: Program | None = None,
 ) -> str:
     """A program in one of FORMATS, ``form`` compact or expanded.
 
     In a language it is the function ``name_quantity`` on the calling convention of the ``interface`` that it needs
     (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output. ``definitions``: of
-    symbols, for formats for people.
+    symbols, ``glossary``: names of intermediate quantities, both for formats for people.
     Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name, without an interface,
     and for a quantity that depends on what its signature does not have.
     """
     if format not in FORMATS:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     if format not in LANGUAGES:
-        return write(program, format, form, name, limit, definitions)
+        return write(program, format, form, name, limit, definitions, glossary)
     if interface is None:
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)

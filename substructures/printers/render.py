@@ -46,6 +46,8 @@ _LISTINGS: Mapping[str, Callable[[Program, Language, int], Listing]] = {
 }
 #: nodes of a rendered program, and of formulas without temporaries
 LIMIT = 100_000
+#: nodes from which on a derivation has names for its steps
+NAMED = 60
 INLINE_LIMIT = 20_000
 
 
@@ -89,7 +91,7 @@ def render(
 
 def _name(language: Language, glossary: Program | None) -> None:
     """Let the language call quantities what they are, and say what the letters mean."""
-    if glossary is None or not language.is_for_people:
+    if glossary is None or not language.is_for_people or len(language.program.reachable()) < NAMED:
         return
     taken = {symbol.name for symbol in language.program.symbols}
     found = {i: label for i, label in meanings(language.program, glossary).items() if label.text not in taken}

@@ -13,23 +13,25 @@ c, s           cosine and sine of the angle at joint a; at (a, ..., b): of the s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.evaluation_frames import momentum_before
 from substructures.mechanics.frame_choice import REACH
-from substructures.mechanics.linear3 import Scalar, Vector
+from substructures.mechanics.kinematics import Link
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Scalar, Vector
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.grouping import every, numbers
+from substructures.tree.grouping import Admitted, every, numbers
 from substructures.tree.inertial import planned
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
 
 AXES = "xyz"
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -48,31 +50,49 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False) -> 
     ``group``: as :func:`substructures.tree.model.couple`. Raises InvalidDocument.
     """
     assembly = assemble(spec, parts)
-    graph, run = assembly.scope.graph, over_formulas(assembly.scope.graph)
-    coupled = couple_parts(run, assembly.mounted, assembly.gravity, False, group=every if group else numbers)
-    chain = planned(run, assembly.mounted, False, True).chain
-    found: Glossary = {}
-    found |= _angles(coupled.placed, graph)
-    for here in coupled.placed:
+    admitted = every if group else numbers
+    return _glossary(assembly.scope.graph, assembly.mounted, assembly.gravity, admitted, assembly.scope.symbols)
+
+
+def part_glossary(part: Part) -> Program:
+    """The same of a part by itself, over its own symbols."""
+    alone = MountedPart(part, WORLD, 0, IDENTITY, ZERO, {}, 0)
+    known = {symbol.name: symbol for symbol in part.program.symbols}
+    return _glossary(Graph(), [alone], ZERO, numbers, known)
+
+
+def _glossary(
+    graph: Graph, mounted: Sequence[MountedPart], gravity: Vector, group: Admitted, symbols: Mapping[str, Symbol]
+) -> Program:
+    run = over_formulas(graph)
+    placed = couple_parts(run, mounted, gravity, False, group=group).placed
+    chain = planned(run, mounted, False, True).chain
+    found = _angles(placed, graph)
+    for here in placed:
         for c, momentum in enumerate(here.evaluated.momenta):
-            found |= _carried(here.first + c, momentum)
-            found |= _columns(here, c)
-    for here in coupled.placed:
+            found |= {**_carried(here.first + c, momentum), **_columns(here, c)}
+    for here in placed:
         for c, momentum in enumerate(here.evaluated.momenta, here.first):
-            p, H, e = momentum.p, momentum.H, c
-            found |= {**_vector("p", (c,), p), **_vector("H", (c,), H)}
-            for _ in range(REACH):
-                if chain[e].parent < 0:
-                    break
-                p, H = momentum_before(chain[e], p, H)
-                e = chain[e].parent
-                found |= {**_vector("p", (c, e), p), **_vector("H", (c, e), H)}
+            found |= _momenta(chain, c, momentum)
     outputs = {
         " ".join((letter, ".".join(str(k + 1) for k in joints), component)).rstrip(): Formulas((), {(): x})
         for (letter, joints, component), x in found.items()
         if isinstance(x, Expr) and not x.is_number and x.op != "sym"
     }
-    return program(graph, outputs, assembly.scope.symbols)
+    return program(graph, outputs, dict(symbols))
+
+
+def _momenta(chain: Sequence[Link], c: int, momentum: JointMomentum) -> Glossary:
+    """p and H of a joint, and those in the frames that they may be carried to."""
+    p, H, e = momentum.p, momentum.H, c
+    found = {**_vector("p", (c,), p), **_vector("H", (c,), H)}
+    for _ in range(REACH):
+        if chain[e].parent < 0:
+            break
+        p, H = momentum_before(chain[e], p, H)
+        e = chain[e].parent
+        found |= {**_vector("p", (c, e), p), **_vector("H", (c, e), H)}
+    return found
 
 
 def _vector(letter: str, joints: tuple[int, ...], vector: Vector) -> Glossary:
@@ -95,7 +115,7 @@ def _columns(here: PlacedPart, c: int) -> Glossary:
     return found
 
 
-def _angles(placed: list[PlacedPart], graph: Graph) -> Glossary:
+def _angles(placed: Sequence[PlacedPart], graph: Graph) -> Glossary:
     """Of revolute joints, and of sums of those that follow each other."""
     found: Glossary = {}
     turning: list[tuple[int, Expr]] = []
@@ -111,9 +131,9 @@ def _angles(placed: list[PlacedPart], graph: Graph) -> Glossary:
     return found
 
 
-def _coordinates(placed: list[PlacedPart], graph: Graph) -> Iterator[tuple[int, Expr]]:
+def _coordinates(placed: Sequence[PlacedPart], graph: Graph) -> Iterator[tuple[int, Expr]]:
     for here in placed:
         for c, joint in enumerate(here.part.topology.joints):
             if not joint.s:
-                name = here.mounted.bindings.get(joint.coordinate)
-                yield here.first + c, graph.lift(name)
+                bound = here.mounted.bindings.get(joint.coordinate)
+                yield here.first + c, graph.symbol(joint.coordinate) if bound is None else graph.lift(bound)

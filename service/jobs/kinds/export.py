@@ -39,6 +39,7 @@ from service.analyses.printing import (
     described,
     made_text,
     model_quantity,
+    names_of_steps,
     needs_parts,
     options_of_quantity,
     quantities,
@@ -66,6 +67,7 @@ from substructures.printers.render import FORMS
 from substructures.quantities.evaluation import REACTIONS, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
+from substructures.tree.glossary import glossary
 
 PART = "substructure"
 
@@ -268,7 +270,9 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
     program = bound(model_quantity(sources, quantity), parameters, style.bind)
-    return text_of(program, style, quantity, _interface(source), members, item["nodes"])
+    parts = source.parts
+    named = None if parts is None else names_of_steps(style, parameters, lambda: glossary(*parts()))
+    return text_of(program, style, quantity, _interface(source), members, item["nodes"], glossary=named)
 
 
 def _grouped(source: Source, item: ItemDocument, style: Style) -> str:
