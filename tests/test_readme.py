@@ -112,7 +112,7 @@ def test_python_example(tmp_path: Path) -> None:
     [
         *("demo", "serve", "worker", "derive", "submit", "simulate", "analyse", "backup", "restore", "key create"),
         *("import", "same", "catalogue export", "catalogue import", "list", "search", "show", "tree", "couple", "rm"),
-        *("evaluate", "doctor", "pull", "push", "bundle save", "bundle load", "mirror"),
+        *("evaluate", "doctor", "pull", "push", "bundle save", "bundle load", "mirror", "upgrade"),
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )

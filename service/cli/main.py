@@ -66,6 +66,7 @@ COMMANDS = (
     Command("demo", "demo", "couple a gripper onto a Puma 560 over HTTP and compare with published numbers", SERVICE),
     Command("key", "keys", "manage API keys", SERVICE),
     Command("verify", "verify", "verify every part and tree of a store against its documents", SERVICE),
+    Command("upgrade", "upgrade", "derive a store anew where formulas become shorter", SERVICE),
     Command("backup", "backup", "copy the SQLite store to a file, also while a server runs", SERVICE),
     Command("restore", "backup", "put a backup in the place of the SQLite store", SERVICE),
     Command("doctor", "doctor", "say what is installed, what is where, and what is wrong", SERVICE),

@@ -159,6 +159,36 @@ def test_doctor(run: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert "WRONG: sqlite:///substructures.db: " in run.capsys.readouterr().out
 
 
+def test_parts_between_servers(run: Runner, address: str, tmp_path: Path) -> None:
+    other = Settings(
+        database=f"sqlite:///{tmp_path / 'other.db'}", catalogue=False, workers=1, mirror_sources=(address,)
+    )
+    with background(other) as target:
+        assert run("pull", address, "pendulum", "--server", target).startswith("pendulum@1 stored, sha256:")
+        assert run("push", target, "pendulum@1").startswith("pendulum@1 was stored already")
+        run("bundle", "save", str(tmp_path / "parts.zip"), "pendulum")
+        assert (
+            json.loads(run("bundle", "load", str(tmp_path / "parts.zip"), "--server", target, "--json"))[0]["outcome"]
+            == "same"
+        )
+        content = (tmp_path / "parts.zip").read_bytes()
+        (tmp_path / "parts.zip").write_bytes(content.replace(b'"pendulum"', b'"pendulun"'))
+        assert "422: " in run("bundle", "load", str(tmp_path / "parts.zip"), "--server", target, code=1)
+        assert "there is no substructure 'nothing'" in run("pull", address, "nothing", "--server", target, code=1)
+        run("mirror", address, "--wait", "--server", target)
+        assert "SUBSTRUCTURES_MIRROR_SOURCES" in run("mirror", "http://127.0.0.1:10", "--server", target, code=1)
+
+
+def test_upgrade(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SUBSTRUCTURES_CATALOGUE", "no")
+    url, run = f"sqlite:///{tmp_path / 'x.db'}", Runner(capsys)
+    (tmp_path / "pendulum.json").write_text(json.dumps(PENDULUM))
+    run("submit", str(tmp_path / "pendulum.json"), "--database", url)
+    told = run("upgrade", "--database", url)
+    assert told.splitlines()[-1] == "1 looked at, 0 could not be derived"
+    assert json.loads(run("upgrade", "--database", url, "--json"))[0]["what"] == "substructure pendulum@1"
+
+
 def test_a_port_in_use_makes_no_store(tmp_path: Path, run: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.logs.configure", lambda: None)
     with socket.create_server(("127.0.0.1", 0)) as taken:
