@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from service.refusals import Refused, unprocessable
 from substructures.export.render import FORMATS
@@ -12,17 +12,18 @@ JSON = "json"
 MEDIA_TYPES = dict(FORMATS)
 
 
-def choose_format(wanted: str | None, accept: str) -> str:
+def choose_format(wanted: str | None, accept: str, offered: Mapping[str, str] = MEDIA_TYPES) -> str:
     """The format's name. Raises Refused 422 for an unknown ``format``, 406 when nothing acceptable can be had."""
+    known = ", ".join(f"{name} ({media})" for name, media in offered.items())
     if wanted is not None:
-        if wanted not in MEDIA_TYPES:
-            raise unprocessable("format", f"unknown format '{wanted[:40]}'; there are {_known()}", "/query/format")
+        if wanted not in offered:
+            raise unprocessable("format", f"unknown format '{wanted[:40]}'; there are {known}", "/query/format")
         return wanted
     for pattern in by_preference(accept or "*/*"):
-        for name, media in MEDIA_TYPES.items():
+        for name, media in offered.items():
             if _matches(pattern, media.partition(";")[0]):
                 return name
-    raise Refused(406, "not-acceptable", f"none of these formats is acceptable: {_known()}")
+    raise Refused(406, "not-acceptable", f"none of these formats is acceptable: {known}")
 
 
 def choose_media_type(accept: str, offered: Sequence[str]) -> str:
@@ -39,10 +40,6 @@ def choose_form(wanted: str) -> str:
     if wanted not in FORMS:
         raise unprocessable("form", f"unknown form '{wanted[:40]}'; there are {', '.join(FORMS)}", "/query/form")
     return wanted
-
-
-def _known() -> str:
-    return ", ".join(f"{name} ({media})" for name, media in MEDIA_TYPES.items())
 
 
 def by_preference(accept: str) -> list[str]:

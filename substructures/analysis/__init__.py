@@ -21,6 +21,7 @@ motion           ``problem``: what a motion is computed from (``signals``, ``eve
 equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
                  ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
                  dependencies between functions; ``formulas``: a model in a new graph
+report           a model told in words: structure, symmetries, sizes of terms; as text, LaTeX, a page
 verdict          what checks found, and what they say together: right, wrong, or nobody knows
 ===============  ===================================================================================================
 """

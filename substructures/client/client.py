@@ -53,7 +53,9 @@ class Client(JobCaller):
         bind: str = "",
         **options: str | list[str],
     ) -> str:
-        """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..."""
+        """A quantity of a tree as text in one of the formats; ``options``: of first_integrals, state_space, ..., and
+        ``group="true"`` for formulas in base parameters.
+        """
         wanted = {"format": format, "form": form, "bind": bind, **options}
         return self.request("GET", f"/v1/trees/{step(tree)}/{step(quantity)}", params=wanted).text
 

@@ -28,7 +28,7 @@ VIEW = np.array([[cos(pi / 6), cos(pi / 6), 0.0], [sin(pi / 6), -sin(pi / 6), -1
 
 
 @dataclass(frozen=True)
-class _Scene:
+class Scene:
     """Frames of the tree in the pose, and what has to be drawn between them."""
 
     position: Mapping[str, Array]
@@ -44,8 +44,8 @@ def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = No
 
     Raises InvalidDocument for a wrong ``q``.
     """
-    scene = _scene(spec, parts, model, _pose(parts, model) if q is None else q)
-    project = _projection(scene)
+    scene = scene_of(spec, parts, model, q)
+    project = projection(scene)
     shapes = [_line(project(scene.position[a]), project(scene.position[b]), i) for a, b, i in scene.lines]
     shapes += [_spring(project(scene.position[a]), project(scene.position[b])) for a, b in scene.springs]
     shapes += [_joint(scene, project, *joint) for joint in scene.joints]
@@ -54,6 +54,11 @@ def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = No
     title = escape(f"{spec.name}: {model.dof} coordinates {model.joints}")
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img">'
     return "\n".join([head, f"<title>{title}</title>", *shapes, "</svg>\n"])
+
+
+def scene_of(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> Scene:
+    """What there is to draw at ``q`` (n,), or in a pose that shows the joints. Raises InvalidDocument."""
+    return _scene(spec, parts, model, _pose(parts, model) if q is None else q)
 
 
 def _pose(parts: Mapping[str, Part], model: Model) -> list[float]:
@@ -77,7 +82,7 @@ def _middle(limits: Any, slides: bool) -> float:
     return SLIDE if slides else ANGLE
 
 
-def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _Scene:
+def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> Scene:
     missing = {name: 1.0 for name, p in model.parameters.items() if p["value"] is None}
     kinematics = evaluate(model, "kinematics", q, parameters=missing)["kinematics"]
     index = {name: i for i, name in enumerate(model.frames)}
@@ -86,7 +91,7 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _
     springs = [(load.from_, load.to) for load in spec.loads if isinstance(load, (TreeSpring, Bushing))]
     if any("world" in ends for ends in springs):
         position["world"] = np.zeros(3)
-    scene = _Scene(position, rotation, [], [], [], springs)
+    scene = Scene(position, rotation, [], [], [], springs)
     for colour, instance in enumerate(spec.instances):
         part, name = parts[instance.name], instance.name
         if instance.at != "world":
@@ -104,7 +109,7 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> _
     return scene
 
 
-def _projection(scene: _Scene) -> Any:
+def projection(scene: Scene) -> Any:
     """World point -> picture point, scaled so that everything fits."""
     points = np.array([VIEW @ p for p in scene.position.values()]) if scene.position else np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
@@ -130,7 +135,7 @@ def _line(a: Array, b: Array, colour: int) -> str:
     )
 
 
-def _joint(scene: _Scene, project: Any, frame: str, slides: bool, axis: Array, colour: int) -> str:
+def _joint(scene: Scene, project: Any, frame: str, slides: bool, axis: Array, colour: int) -> str:
     """A disc seen along its axis, or a box along the direction of sliding."""
     centre = project(scene.position[frame])
     along = VIEW @ axis
@@ -152,7 +157,7 @@ def _spring(a: Array, b: Array) -> str:
     return f'<polyline points="{points}" fill="none" stroke="#555" stroke-width="1.5"/>'
 
 
-def _triad(scene: _Scene, project: Any, frame: str) -> str:
+def _triad(scene: Scene, project: Any, frame: str) -> str:
     """The axes of a port: x red, y green, z blue."""
     origin = project(scene.position[frame])
     lines = []

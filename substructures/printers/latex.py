@@ -125,6 +125,8 @@ class Latex(Language):
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A root sign, bars of an absolute value, or the function's name."""
         if op == "sqrt":
+            if width(solid(args[0].text)) > LINE - 50:
+                return Piece(f"{self.parentheses(args[0].text)}^{{1/2}}", POWER)
             return Piece(rf"\sqrt{{{solid(args[0].text)}}}")
         if op == "abs":
             return Piece(rf"\left|{solid(args[0].text)}\right|")

@@ -6,7 +6,7 @@ from substructures.printers.language import Listing
 from substructures.printers.latex import Latex
 from substructures.printers.names import comment
 
-_HEAD = r"""\documentclass[a4paper]{article}
+HEAD = r"""\documentclass[a4paper]{article}
 \usepackage{amsmath,longtable}
 \usepackage[margin=25mm]{geometry}
 \allowdisplaybreaks
@@ -31,14 +31,19 @@ class LatexDocument(Latex):
 
     def render(self, listing: Listing, name: str) -> str:
         """Title, table of symbols, abbreviations, and a section for every output."""
-        lines = [_HEAD, rf"\section*{{{prose(name)}}}"]
+        lines = [HEAD, rf"\section*{{{prose(name)}}}"]
         lines += [f"{prose(self.remark)}.", ""] if self.remark else []
         if self.program.symbols:
             lines += [_TABLE, *self._symbols(), r"\end{longtable}"]
+        return "\n".join([*lines, *self.formulas(listing), r"\end{document}"]) + "\n"
+
+    def formulas(self, listing: Listing) -> list[str]:
+        """The sections of a document."""
+        lines = []
         for title, said, rows in self._sections(listing):
             lines += [rf"\section*{{{title}}}", *said]
             lines += [r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}"]
-        return "\n".join([*lines, r"\end{document}"]) + "\n"
+        return lines
 
     def _symbols(self) -> list[str]:
         return [

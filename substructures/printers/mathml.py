@@ -29,7 +29,7 @@ _CODES = [*range(0x3B1, 0x3BF), 0x3C0, 0x3C1, *range(0x3C3, 0x3CA)]
 _CODES += [0x393, 0x394, 0x398, 0x39B, 0x39E, 0x3A0, 0x3A3, 0x3A5, 0x3A6, 0x3A8, 0x3A9]
 _GREEK = dict(zip(f"{_LOWER} {_UPPER}".split(" "), (f"&#{code};" for code in _CODES), strict=True))
 _PART = re.compile(r"\\(d+)ot\{|\\math(?:rm|it|tt)\{([^}]*)\}|\\([A-Za-z]+)|([A-Za-z]+|[0-9]+)|(.)", re.DOTALL)
-_PAGE = """<?xml version="1.0" encoding="utf-8"?>
+PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml"><head><title>{title}</title><style>
 p {{ line-height: 2; }} math {{ font-size: 1.1em; }} td {{ padding-right: 2em; }}
 </style></head><body><h1>{title}</h1>
@@ -164,6 +164,11 @@ class MathML(Language):
         """A page: what the symbols are, then a paragraph for every element."""
         lines = [f"<p>{escape(comment(x))}</p>" for x in (self.remark, *self.legend) if x]
         lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
+        return PAGE.format(title=escape(comment(name)), body="\n".join([*lines, *self.formulas(listing)]))
+
+    def formulas(self, listing: Listing) -> list[str]:
+        """What symbols stand for, abbreviations, and a paragraph for every element."""
+        lines: list[str] = []
         for left, text, note in listing.definitions:
             lines += [f"<p>{self.finished(left)} stands for {escape(comment(note))}:</p>"] if note else []
             lines.append(self._line(left, text))
@@ -171,7 +176,7 @@ class MathML(Language):
         lines += [self._line(self.step(n).text, text) for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             lines += self._output(output, array, listing.entries[output])
-        return _PAGE.format(title=escape(comment(name)), body="\n".join(lines))
+        return lines
 
     def _described(self, n: int) -> str:
         symbol = self.program.symbols[n]

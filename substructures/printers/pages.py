@@ -1,4 +1,5 @@
-"""LaTeX that fits a page: formulas are broken before the signs of sums, also of those in parentheses.
+"""LaTeX that fits a page: formulas are broken before the signs of sums, also of those in parentheses, and between
+factors of products that are too wide for a line.
 
 While a formula is written its possible breaks and its parentheses are marks; they are decided on when it is whole.
 """
@@ -14,6 +15,7 @@ BREAK, OPENING, CLOSING = "\x1f", "\x1e", "\x1d"
 LINE = 365.0
 
 _SIGN = re.compile(r"\\[A-Za-z]+|\\.|.", re.DOTALL)
+_FACTOR, _SIGNS = re.compile(r"\\[A-Za-z]+|\\.|[{}]", re.DOTALL), (r"\,", r"\cdot")
 _COMMANDS = {r"\,": 1.7, r"\cdot": 7.2, r"\quad": 10.0, r"\\": 0.0, r"\ ": 4.0, r"\_": 5.0}
 _SILENT = "left right bigl bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
 _INVISIBLE = frozenset("\\" + name for name in _SILENT.split(" "))
@@ -32,32 +34,60 @@ def broken(text: str) -> str:
     lines: list[list[_Piece]] = [[]]
     depth = 0
     for part in text.split(BREAK):
-        lines[-1].append(_Piece(part, width(part), depth))
-        depth += part.count(OPENING) - part.count(CLOSING)
-        while len(lines[-1]) > 1 and sum(p.width for p in lines[-1]) > LINE - 20 * (len(lines) > 1):
-            at = _end(lines[-1])
-            lines[-1:] = [lines[-1][:at], lines[-1][at:]]
+        for sign, factor in _factors(part) if width(part) > LINE - 40 else [("", part)]:
+            lines[-1].append(_Piece(factor, width(sign + factor), depth, sign))
+            depth += factor.count(OPENING) - factor.count(CLOSING)
+            while len(lines[-1]) > 1 and sum(p.width for p in lines[-1]) > LINE - 20 * (len(lines) > 1):
+                at = _end(lines[-1])
+                lines[-1:] = [lines[-1][:at], lines[-1][at:]]
     # parentheses that grow cannot be broken
-    whole = " \\\\\n&\\quad ".join(" ".join(p.text for p in line) for line in lines)
+    whole = " \\\\\n&\\quad ".join(map(_joined, lines))
     return whole.replace(OPENING, r"\bigl(").replace(CLOSING, r"\bigr)")
 
 
 class _Piece(NamedTuple):
-    """What stands between two breaks; ``depth``: parentheses around the break before it."""
+    """What stands between two breaks; ``depth``: parentheses around the break before it; ``sign``: of a product before
+    it, where it is a factor.
+    """
 
     text: str
     width: float
     depth: int
+    sign: str = ""
+
+
+def _joined(line: list[_Piece]) -> str:
+    """The pieces of a line; one that a factor begins begins with a dot."""
+    first, *others = line
+    start = r"{} \cdot " if first.sign else ""
+    return " ".join([start + first.text, *(f"{p.sign} {p.text}" if p.sign else p.text for p in others)])
+
+
+def _factors(text: str) -> list[tuple[str, str]]:
+    """The factors of a product with the signs before them, where these stand in no fraction and no function."""
+    found, sign, start, depth = list[tuple[str, str]](), "", 0, 0
+    for match in _FACTOR.finditer(text):
+        token = match.group()
+        if token in _SIGNS and depth == 0:
+            found.append((sign, text[start : match.start()].strip()))
+            sign, start = token, match.end()
+        depth += (token in ("{", r"\left")) - (token in ("}", r"\right"))
+    return [*found, (sign, text[start:].strip())]
 
 
 def _end(line: list[_Piece]) -> int:
     """Which piece of a line that is too long begins the next one: inside of few parentheses, and late."""
     best, filled = len(line) - 1, 0.0
     for n, piece in enumerate(line):
-        if n and filled > LINE * 0.4 and (piece.depth, -n) < (line[best].depth, -best):
+        if n and filled > LINE * 0.4 and (*_cost(piece), -n) < (*_cost(line[best]), -best):
             best = n
         filled += piece.width
     return best
+
+
+def _cost(piece: _Piece) -> tuple[bool, int]:
+    """Between factors only where no sum has a sign."""
+    return bool(piece.sign), piece.depth
 
 
 def width(text: str) -> float:

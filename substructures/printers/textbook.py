@@ -21,23 +21,35 @@ SPELLED_OUT = 24
 
 def textbook(program: Program, language: Language, limit: int, limits: Limits = LIMITS) -> Listing:
     """Every element in its textbook form, long ones with abbreviations. Raises TooLarge, and ZeroDivisionError."""
-    return _listing(program, language, limit, limits, language.is_for_people)
+    return TextbookTerms(program, language, limit, limits, language.is_for_people).listing
+
+
+class TextbookTerms:
+    """The textbook form of a program in a language: its listing, and the terms of its elements one by one."""
+
+    def __init__(
+        self, program: Program, language: Language, limit: int, limits: Limits = LIMITS, abbreviates: bool = True
+    ) -> None:
+        """Raises TooLarge, and ZeroDivisionError."""
+        self.reading = read(program, limits)
+        check_size(self.reading.size, limit)
+        self._short = _abbreviations(program, self.reading) if abbreviates else {}
+        self._writer = TextbookWriter(program, language, self.reading)
+        named = tuple(
+            (language.abbreviation(t.op, n).text, self._writer.trig(t, 1).text) for t, n in self._short.items()
+        )
+        self._writer.short = self._short
+        entries = {name: tuple(self._writer.sum(f).text for f in some) for name, some in self.reading.outputs.items()}
+        self.listing = Listing((), entries, named)
+
+    def text(self, term: Term) -> str:
+        """A term with its sign, in the names of the listing."""
+        return self._writer.sum(Sum((term,))).text
 
 
 def textbook_inlined(program: Program, language: Language, limit: int) -> Listing:
     """Every element in its textbook form, which stands alone. Raises TooLarge, and ZeroDivisionError."""
-    return _listing(program, language, limit, LIMITS, False)
-
-
-def _listing(program: Program, language: Language, limit: int, limits: Limits, abbreviates: bool) -> Listing:
-    reading = read(program, limits)
-    check_size(reading.size, limit)
-    short = _abbreviations(program, reading) if abbreviates else {}
-    writer = TextbookWriter(program, language, reading)
-    named = tuple((language.abbreviation(t.op, n).text, writer.trig(t, 1).text) for t, n in short.items())
-    writer.short = short
-    entries = {name: tuple(writer.sum(f).text for f in some) for name, some in reading.outputs.items()}
-    return Listing((), entries, named)
+    return TextbookTerms(program, language, limit, LIMITS, False).listing
 
 
 def _abbreviations(program: Program, reading: Reading) -> dict[Trig, str]:

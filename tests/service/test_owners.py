@@ -72,6 +72,8 @@ TABLE: dict[str, Row] = {
     "get /v1/substructures/{ref}/definition": Row(PART + "/{part}@1/definition", *READ),
     "get /v1/substructures/{ref}/formulas": Row(PART + "/{part}@1/formulas", *READ),
     "get /v1/substructures/{ref}/formulas/{quantity}": Row(PART + "/{part}@1/formulas/metric", *READ),
+    "get /v1/substructures/{ref}/report": Row(PART + "/{part}@1/report", *READ),
+    "get /v1/trees/{ref}/report": Row(TREE + "/{tree}/report", *READ),
     "get /v1/substructures/{ref}/picture": Row(PART + "/{part}@1/picture", *READ),
     "get /v1/substructures/{name}/aliases": Row(PART + "/{part}/aliases", *READ),
     "get /v1/substructures/{name}/aliases/{alias}": Row(PART + "/{part}/aliases/best", *READ),

@@ -15,7 +15,7 @@ from substructures import Program, catalogue
 from substructures.printers import render
 from substructures.printers.mathml import named
 from substructures.printers.names import latex_names
-from substructures.printers.pages import LINE, width
+from substructures.printers.pages import BREAK, LINE, broken, width
 
 MATH = "{http://www.w3.org/1998/Math/MathML}"
 #: number of children in MathML Core, section 3; others have any number
@@ -107,3 +107,15 @@ def test_documents_compile_and_nothing_is_too_wide(
     assert "Overfull" not in log
     assert "Missing character" not in log
     assert (tmp_path / "it.pdf").stat().st_size > 20_000
+
+
+def test_products_are_broken_between_factors() -> None:
+    factors = [rf"\cos \mathit{{elbow}}_{{{k}}}" for k in range(30)]
+    lines = broken(r" \, ".join(factors) + BREAK + "+ a").split(" \\\\\n")
+    assert len(lines) > 3
+    assert all(width(line.replace("&", "")) <= LINE for line in lines)
+    assert all(line.startswith((r"&\quad {} \cdot \cos", r"&\quad + a")) for line in lines[1:])
+    kept = "".join(lines).replace(r"&\quad {} \cdot ", r" \, ")
+    assert [f for f in factors if f in kept] == factors
+    fraction = r"\frac{" + r" \, ".join(factors) + "}{b}"
+    assert broken(fraction) == fraction, "nothing is broken inside of a fraction"

@@ -1,0 +1,129 @@
+"""The report as a page of XHTML: formulas in MathML, the picture in SVG; nothing is loaded or run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from xml.sax.saxutils import escape
+
+from substructures.analysis.report.report import (
+    QUANTITIES,
+    SECTIONS,
+    Printed,
+    Report,
+    percent,
+    some_terms,
+    told_sizes,
+)
+from substructures.analysis.report.words import DERIVATION, REFERENCE
+from substructures.printers.mathml import MathML, named
+from substructures.printers.names import latex_names
+from substructures.printers.render import LIMIT
+
+MATH = "http://www.w3.org/1998/Math/MathML"
+_PAGE = """<?xml version="1.0" encoding="utf-8"?>
+<html xmlns="http://www.w3.org/1999/xhtml" lang="en"><head><title>{title}</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"/><style>
+body {{ max-width: 60em; margin: 2em auto; padding: 0 1em; font-family: sans-serif; line-height: 1.5; color: #1c2228; }}
+h1, h2, h3 {{ line-height: 1.2; }} h2 {{ margin-top: 2em; border-bottom: 1px solid #ccd; }}
+svg {{ max-width: 28em; display: block; margin: auto; }} table {{ border-collapse: collapse; }}
+th {{ text-align: left; border-bottom: 1px solid #889; }} td, th {{ padding: 0.1em 1.2em 0.1em 0; }}
+p {{ overflow-wrap: anywhere; }} math {{ font-size: 1.08em; }} .formulas p {{ line-height: 2; }}
+.formulas h2 {{ display: none; }} .share {{ white-space: nowrap; font-variant-numeric: tabular-nums; }}
+.small {{ color: #667; }}
+</style></head><body>
+{body}
+</body></html>
+"""
+
+
+def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
+    """Title, picture (SVG as it is drawn here), coordinates, symbols, derivation, formulas, statements, sizes,
+    sources. Raises TooLarge.
+    """
+    heading = found.heading
+    title = heading.title or heading.name
+    lines = [f"<h1>{_e(title)}</h1>", *(f"<p>{_e(x)}</p>" for x in (heading.description, *heading.notes) if x), svg]
+    lines += ["<h2>Coordinates</h2>", *_coordinates(found), "<h2>Symbols</h2>", *_symbols(found)]
+    lines.append("<h2>Derivation</h2>")
+    for words, _, equation in DERIVATION:
+        lines += [f"<p>{_e(words)}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
+    printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
+    for name, each in printed.items():
+        lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *([f"<p>{_e(each.reason)}.</p>"] if each.reason else [])]
+        lines += ['<div class="formulas">', *_formulas(each), "</div>", *_statements(found, name)]
+    lines += _statements(found, "symmetries")
+    lines += _sizes(found, printed["metric"])
+    lines += ["<h2>Sources</h2><ul>"]
+    lines += [f"<li>{_e(f'{s.instance}: {s.title or s.name}. {s.source} {s.license}')}</li>" for s in found.sources]
+    lines += [f"<li>{_e(REFERENCE)}.</li></ul>"]
+    return _PAGE.format(title=_e(title), body="\n".join(lines))
+
+
+def _e(text: str) -> str:
+    """Text that is no markup, without what XML cannot hold."""
+    return escape("".join(c if c.isprintable() or c in "\n\t" else "\ufffd" for c in text))
+
+
+def _math(inner: str) -> str:
+    return f'<math xmlns="{MATH}"><mrow>{inner}</mrow></math>'
+
+
+def _formulas(each: Printed) -> list[str]:
+    if not isinstance(each.language, MathML):
+        raise TypeError("MathML is expected")
+    return each.language.formulas(each.listing)
+
+
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
+    """A table of cells that are markup."""
+    found = ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
+    top = "".join(f"<th>{_e(each)}</th>" for each in head)
+    return [f"<table><thead><tr>{top}</tr></thead><tbody>", *(f"<tr>{row}</tr>" for row in found), "</tbody></table>"]
+
+
+def _coordinates(found: Report) -> list[str]:
+    written = latex_names(each.called for each in found.coordinates)
+    rows = []
+    for latex, each in zip(written, found.coordinates, strict=True):
+        ends = [f"{x:.4g}" if x is not None else "..." for x in (each.low, each.high)]
+        limits = "" if each.low is each.high is None else f"{ends[0]} to {ends[1]}"
+        rows.append((_name(latex, each.called), _e(each.name), each.joint, each.unit, limits))
+    return _table(("symbol", "name", "joint", "unit", "limits"), rows)
+
+
+def _symbols(found: Report) -> list[str]:
+    written = latex_names(each.called for each in found.symbols)
+    rows = []
+    for latex, each in zip(written, found.symbols, strict=True):
+        value = "" if each.value is None else f"{each.value:.6g}"
+        cells = _e(each.name), each.kind, _e(each.unit), value, _e(each.description)
+        rows.append((_name(latex, each.called), *cells))
+    return _table(("symbol", "name", "kind", "unit", "value", "meaning"), rows)
+
+
+def _name(latex: str, called: str) -> str:
+    return _math(f"<mtext>{_e(called)}</mtext>" if latex.startswith(r"\mathtt") else named(latex))
+
+
+def _statements(found: Report, about: str) -> list[str]:
+    said = [f"<li>{_e(each.text)}</li>" for each in found.statements if each.about == about]
+    return [f"<h3>{_e(SECTIONS[about])}</h3><ul>", *said, "</ul>"] if said else []
+
+
+def _sizes(found: Report, metric: Printed) -> list[str]:
+    sizes, reason = found.sizes(metric)
+    lines = ["<h2>Sizes of the terms of the mass matrix</h2>"]
+    if not sizes or metric.terms is None:
+        return [*lines, f"<p>Not told: {_e(reason or 'all elements are one term')}.</p>"]
+    lines.append(f"<p>{_e(told_sizes(found))}</p>")
+    for each in sizes:
+        shown, rest = some_terms(each)
+        index = ",".join(str(i + 1) for i in each.index)
+        lines.append(f"<h3>{_math(f'<msub><mi>g</mi><mn>{index}</mn></msub>')}</h3>")
+        rows = []
+        for t in shown:
+            share = f'<span class="share">{_e(percent(t.share))}{" (small)" if t.is_small else ""}</span>'
+            rows.append((share, metric.language.finished(metric.terms.text(t.term))))
+        lines += _table(("largest share", "term"), rows)
+        lines += [f'<p class="small">{_e(rest)}.</p>'] if rest else []
+    return lines

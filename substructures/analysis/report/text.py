@@ -1,0 +1,45 @@
+"""The report as text."""
+
+from __future__ import annotations
+
+from substructures.analysis.report.report import (
+    QUANTITIES,
+    SECTIONS,
+    Report,
+    percent,
+    some_terms,
+    told_sizes,
+)
+from substructures.printers.render import LIMIT
+from substructures.printers.text import Text
+
+
+def text_report(found: Report, limit: int = LIMIT) -> str:
+    """Statements, sizes of terms, and the formulas. Raises TooLarge."""
+    heading = found.heading
+    lines = [heading.title or heading.name, "=" * len(heading.title or heading.name), ""]
+    lines += [*filter(None, [heading.description]), *heading.notes]
+    for about, title in SECTIONS.items():
+        lines += ["", title, *(f"* {each.text}" for each in found.statements if each.about == about)]
+    printed = {name: found.printed(name, Text, limit) for name in QUANTITIES if name in found.shown}
+    sizes, reason = found.sizes(printed["metric"])
+    lines += [
+        "",
+        "Sizes of terms",
+        told_sizes(found) if sizes else f"Not told: {reason or 'all elements are one term'}.",
+    ]
+    terms = printed["metric"].terms
+    for each in sizes:
+        shown, rest = some_terms(each)
+        lines.append(f"* g[{','.join(str(i + 1) for i in each.index)}]")
+        if terms is not None:
+            lines += [f"    {percent(t.share)}{' (small)' if t.is_small else ''}: {terms.text(t.term)}" for t in shown]
+        lines += [f"    {rest}"] if rest else []
+    for name, p in printed.items():
+        lines += ["", QUANTITIES[name], *([p.reason] if p.reason else []), p.language.render(p.listing, name).rstrip()]
+    lines += ["", "Sources"]
+    lines += [
+        f"* {s.instance}: {s.title or s.name}. {s.source} {f'({s.license})' if s.license else ''}".rstrip()
+        for s in found.sources
+    ]
+    return "\n".join(lines) + "\n"
