@@ -20,6 +20,7 @@ from substructures.part.part import Part
 from substructures.pictures.latex import latex_picture
 from substructures.pictures.tree import picture
 from substructures.tree.document import TreeSpec
+from substructures.tree.glossary import glossary
 from substructures.tree.model import Model
 
 FORMATS: Mapping[str, str] = {
@@ -73,7 +74,12 @@ def of_tree(store: Store, tree: Tree) -> Subject:
 
 def written(store: Store, about: Subject, format: str, document: bool) -> Answer:  # noqa: A002 -- the name in the contract
     """The report in one of FORMATS; ``document``: LaTeX with its head and end. Raises TooLarge."""
-    found = report(about.model, {name: part.definition for name, part in about.parts.items()}, about.heading)
+    found = report(
+        about.model,
+        {name: part.definition for name, part in about.parts.items()},
+        about.heading,
+        glossary(about.spec, about.parts),
+    )
     text = _text(found, about, format, document, store.settings.limits.program_nodes)
     guard = {"Content-Security-Policy": GUARD} if format == "mathml" else {}
     return Answer(200, text, {"Content-Type": FORMATS[format], **guard})

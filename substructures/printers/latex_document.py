@@ -32,7 +32,7 @@ class LatexDocument(Latex):
     def render(self, listing: Listing, name: str) -> str:
         """Title, table of symbols, abbreviations, and a section for every output."""
         lines = [HEAD, rf"\section*{{{prose(name)}}}"]
-        lines += [f"{prose(self.remark)}.", ""] if self.remark else []
+        lines += [line for x in (self.remark, *self.legend) if x for line in (f"{prose(x)}.", "")]
         if self.program.symbols:
             lines += [_TABLE, *self._symbols(), r"\end{longtable}"]
         return "\n".join([*lines, *self.formulas(listing), r"\end{document}"]) + "\n"

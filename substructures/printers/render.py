@@ -85,11 +85,11 @@ def render(
     said = _Said(program, definitions, limit)
     spoken, language = _spoken(said.program, format, form)
     if form == "compact":
-        _name(language, glossary)
+        name_steps(language, glossary)
     return language.render(said.with_definitions(_LISTINGS[form](spoken, language, limit), language), name)
 
 
-def _name(language: Language, glossary: Program | None) -> None:
+def name_steps(language: Language, glossary: Program | None) -> None:
     """Let the language call quantities what they are, and say what the letters mean."""
     if glossary is None or not language.is_for_people or len(language.program.reachable()) < NAMED:
         return
@@ -118,7 +118,7 @@ def _readable(
         listing = textbook(spoken, language, limit, AT_ONCE)
     except (TooLarge, ZeroDivisionError) as error:
         language = LANGUAGES[format](said.program)
-        _name(language, glossary)
+        name_steps(language, glossary)
         language.remark = f"compact, since there is no textbook form: {error}"
         listing = compact(said.program, language, limit)
     return language.render(said.with_definitions(listing, language), name)

@@ -122,7 +122,7 @@ def _quantity(found: Report, name: str, each: Printed) -> list[str]:
     if not isinstance(language, LatexDocument):
         raise TypeError("a LaTeX document is expected")
     lines = language.formulas(each.listing)
-    return [*([f"{words(each.reason)}."] if each.reason else []), *lines, *_statements(found, name)]
+    return [*(f"{words(x)}.\n" for x in each.said), *lines, *_statements(found, name)]
 
 
 def _statements(found: Report, about: str) -> list[str]:

@@ -49,7 +49,7 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
         lines += [f"<p>{_e(words)}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
     printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
-        lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *([f"<p>{_e(each.reason)}.</p>"] if each.reason else [])]
+        lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *(f"<p>{_e(x)}.</p>" for x in each.said)]
         lines += ['<div class="formulas">', *_formulas(each), "</div>", *_statements(found, name)]
     lines += _statements(found, "symmetries")
     lines += _sizes(found, printed["metric"])

@@ -23,7 +23,7 @@ from substructures.part.definition import Definition
 from substructures.printers.language import Language, Listing
 from substructures.printers.listing import compact
 from substructures.printers.names import short_names
-from substructures.printers.render import LIMIT
+from substructures.printers.render import LIMIT, name_steps
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.limits import joint_limits
@@ -100,6 +100,11 @@ class Printed:
     terms: TextbookTerms | None = None
     reason: str = ""
 
+    @property
+    def said(self) -> tuple[str, ...]:
+        """What is said before the formulas: why they are compact, and what the names of steps mean."""
+        return (self.reason, *self.language.legend) if self.reason else ()
+
 
 @dataclass(frozen=True)
 class Report:
@@ -113,6 +118,7 @@ class Report:
     sources: tuple[Source, ...]
     shown: Mapping[str, Program] = field(repr=False)
     called: Mapping[str, str] = field(repr=False)
+    glossary: Program | None = field(default=None, repr=False)
 
     def printed(self, quantity: str, language: type[Language], limit: int = LIMIT) -> Printed:
         """A quantity: the textbook form where it takes about a second at most, otherwise the compact one.
@@ -124,6 +130,8 @@ class Report:
         try:
             terms = TextbookTerms(program, spoken, limit, AT_ONCE)
         except (TooLarge, ZeroDivisionError) as error:
+            spoken = language(program)
+            name_steps(spoken, self.glossary)
             reason = f"compact, since there is no textbook form: {error}"
             return Printed(spoken, compact(program, spoken, limit), None, reason)
         return Printed(spoken, terms.listing, terms)
@@ -177,8 +185,11 @@ def _text(metric: Printed, term: Any) -> str:
     return metric.language.finished(metric.terms.text(term.term))
 
 
-def report(model: Model, definitions: Mapping[str, Definition], heading: Heading) -> Report:
-    """The report about a model; ``definitions``: of its parts, by instance.
+def report(
+    model: Model, definitions: Mapping[str, Definition], heading: Heading, glossary: Program | None = None
+) -> Report:
+    """The report about a model; ``definitions``: of its parts, by instance; ``glossary``: names of steps
+    (:mod:`substructures.tree.glossary`).
 
     Statements count the elements of arrays from 1 in words (g[1,2]) and from 0 in lists. Sizes of terms are at the
     default values of the parameters, over states in the limits of the joints. Formulas are printed when they are asked
@@ -203,12 +214,12 @@ def report(model: Model, definitions: Mapping[str, Definition], heading: Heading
     sources = tuple(Source(instance, d.name, d.title, d.source, d.license or "") for instance, d in definitions.items())
     return Report(
         heading, model, _coordinates(model, called), _symbols(model, known, called), tuple(statements), sources, shown,
-        called,
+        called, None if glossary is None else _renamed(glossary, called),
     )  # fmt: skip
 
 
 def _renamed(program: Program, called: Mapping[str, str]) -> Program:
-    return replace(program, symbols=tuple(replace(s, name=called[s.name]) for s in program.symbols))
+    return replace(program, symbols=tuple(replace(s, name=called.get(s.name, s.name)) for s in program.symbols))
 
 
 def _coordinates(model: Model, called: Mapping[str, str]) -> tuple[Coordinate, ...]:
