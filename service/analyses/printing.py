@@ -19,7 +19,7 @@ from substructures.printers import entries
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import MOMENTA, momentum
-from substructures.quantities.evaluation import REACTIONS, REGRESSOR, Sources
+from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 from substructures.tree.model import Model, require_stored
@@ -63,13 +63,13 @@ def quantities(name: str) -> tuple[str, ...]:
 
 def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity, InvalidDocument for what a large one does not store."""
-    if quantity in (*DERIVED, *OUTPUTS, REACTIONS) or any(
+    if quantity in (*DERIVED, *OUTPUTS, REACTIONS, POWERS) or any(
         name in model.program.outputs for name in quantities(quantity)
     ):
         return
     if quantity == CHRISTOFFEL:  # of a large model, which says why
         require_stored(model.program, [quantity])
-    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES]
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
     like = meant(quantity, names)
     raise not_found(f"there is no quantity '{quantity[:80]}'{like or f'; there are {known}'}", "unknown-quantity")
@@ -77,7 +77,7 @@ def check_quantity(model: Model, quantity: str) -> None:
 
 def needs_parts(quantity: str) -> bool:
     """Whether a quantity needs the parts of the tree, beside its formulas."""
-    return quantity in (*OUTPUTS, REACTIONS, *OF_PARTS)
+    return quantity in (*OUTPUTS, REACTIONS, POWERS, *OF_PARTS)
 
 
 def options_of_quantity(quantity: str) -> tuple[str, ...]:
@@ -102,8 +102,8 @@ def model_quantity(sources: Sources, quantity: str) -> Program:
     """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
     if quantity in DERIVED:
         return sources.program(quantity)
-    if quantity == REACTIONS:
-        return sources.program(REACTIONS)
+    if quantity in (REACTIONS, POWERS):
+        return sources.program(quantity)
     if quantity in OUTPUTS:
         return sources.program(REGRESSOR).select([quantity])
     wanted, whole = quantities(quantity), sources.model.program
@@ -114,6 +114,8 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
     """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
     if quantity == REACTIONS:
         return {"joints": sources.transmitted().rows}, sources.model.parameters
+    if quantity == POWERS:
+        return {"loads": sources.by_load().rows}, sources.model.parameters
     if quantity in MOMENTA:
         return {"momenta": [momentum(name) for name in sources.model.coordinates]}, sources.model.parameters
     if quantity in SYMMETRY_RULES:

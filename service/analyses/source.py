@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.settings import Limits
-from substructures.quantities.evaluation import Evaluator, interpreted
+from substructures.quantities.evaluation import Evaluator, Sources, interpreted
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
@@ -17,7 +18,8 @@ from substructures.tree.plausibility import Plausibility
 @dataclass(frozen=True)
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there.
+    ``plausibility``: what judges values, made when needed; so are ``reactions`` and ``powers``, where the parts are
+    there.
     """
 
     model: Model
@@ -28,3 +30,8 @@ class Source:
     engine: Evaluator = interpreted
     plausibility: Callable[[], Plausibility] | None = None
     reactions: Callable[[], ReactionModel] | None = None
+    powers: Callable[[], PowerModel] | None = None
+
+    def sources(self) -> Sources:
+        """What quantities are made from."""
+        return Sources(self.model, regressor=self.regressor, reactions=self.reactions, powers=self.powers)

@@ -27,7 +27,8 @@ def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
     sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility, sources.reactions)
+    parts = sources.plausibility, sources.reactions, sources.powers
+    return Source(model, tree.digest, sources.columns, *tools, *parts)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:

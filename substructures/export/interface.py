@@ -49,7 +49,7 @@ _SIGNATURES: Mapping[str, tuple[str, ...]] = {
     "forces": ("t", "q", "qd", "u", "p"),
     "forward_dynamics": ("t", "q", "qd", "u", "p"),
     "inverse_dynamics": ("t", "q", "qd", "qdd", "u", "p"),
-    "power": ("t", "q", "qd", "u", "p"),
+    **dict.fromkeys(("power", "powers"), ("t", "q", "qd", "u", "p")),
     "hamiltonian": ("t", "q", "p"),
     "canonical_equations": ("t", "q", "u", "p"),
     "reactions": ("t", "q", "qd", "qdd", "u", "p"),

@@ -43,6 +43,7 @@ from substructures.quantities.table import (
     CONDITION,
     MODEL,
     PARTS,
+    POWERS,
     QUANTITIES,
     REACTIONS,
     REGRESSOR,
@@ -56,6 +57,7 @@ from substructures.quantities.warnings import Notice, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
+    "POWERS",
     "QUANTITIES",
     "REACTIONS",
     "REGRESSOR",
@@ -282,6 +284,7 @@ def _answered(
         states.single,
         (*warnings, *state_warnings(results, told, states.single)),
         sources.transmitted().rows if REACTIONS in found else None,
+        sources.by_load().rows if POWERS in found else None,
     )
 
 

@@ -16,7 +16,16 @@ from substructures.expr.program import Program
 from substructures.quantities.derivatives import FD
 from substructures.quantities.result import Evaluation, ParameterColumns, without_axis
 from substructures.quantities.states import default_numbers
-from substructures.quantities.table import CONDITION, PARTS, QUANTITIES, REGRESSOR, Sources, read_quantities, steps
+from substructures.quantities.table import (
+    CONDITION,
+    PARTS,
+    POWERS,
+    QUANTITIES,
+    REGRESSOR,
+    Sources,
+    read_quantities,
+    steps,
+)
 from substructures.quantities.warnings import value_warnings
 
 #: the arguments that it takes, beside the quantities
@@ -56,6 +65,7 @@ class OneState:
             columns=None if columns is None else ParameterColumns(columns.names, columns.units),
             single=True,
             warnings=tuple(value_warnings(sources, {}, (), None, others)),
+            loads=sources.by_load().rows if POWERS in found else None,
         )
 
     def at(self, given: Mapping[str, Any]) -> Evaluation | None:

@@ -82,7 +82,8 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    has_parts = ANALYSES[item["analysis"]].needs_parts or bool(item["request"].get("reactions"))
+    request = item["request"]
+    has_parts = ANALYSES[item["analysis"]].needs_parts or any(map(request.get, ("reactions", "powers")))
     return pinned(item, library, item["limits"]["program_nodes"], has_parts)
 
 

@@ -60,7 +60,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
 from substructures.printers.render import FORMS
-from substructures.quantities.evaluation import REACTIONS, Sources
+from substructures.quantities.evaluation import POWERS, REACTIONS
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 
@@ -132,10 +132,10 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
     """An unknown quantity, and options that it cannot have."""
     quantity, options = item["quantity"], item["options"]
     outputs = [name for name in summary["operations"] if name != "total"]
-    others = (*DERIVED, *OUTPUTS, REACTIONS, *QUANTITIES, *WITH_DOCUMENT)
+    others = (*DERIVED, *OUTPUTS, REACTIONS, POWERS, *QUANTITIES, *WITH_DOCUMENT)
     if quantity not in others and all(name not in outputs for name in quantities(quantity)):
         names = dict.fromkeys(
-            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
+            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
         )
         message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
         yield Fault("/quantity", "unknown-quantity", message)
@@ -227,9 +227,9 @@ def _part_package(item: ItemDocument, blobs: Blobs) -> Package:
 
 def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     source = source_of(item, blobs, {"program_nodes": item["nodes"]})
-    sources, request = Sources(source.model, regressor=source.regressor, reactions=source.reactions), read_item(item)
+    request = read_item(item)
     return tree_package(
-        sources,
+        source.sources(),
         item["called"],
         item["tree"],
         source.digest,
@@ -251,11 +251,7 @@ def _place(pointer: str) -> str:
 
 
 def _stored(source: Source, item: ItemDocument, style: Style) -> str:
-    quantity, model, sources = (
-        item["quantity"],
-        source.model,
-        Sources(source.model, regressor=source.regressor, reactions=source.reactions),
-    )
+    quantity, model, sources = item["quantity"], source.model, source.sources()
     check_quantity(model, quantity)
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)

@@ -28,9 +28,9 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     """
     span = float(motion.t[0]), float(motion.t[-1])
     conditions = read_conditions(model, start, span, ())
-    values: dict[str, Any] = {**conditions.values, **_states(model, motion)}
+    values: dict[str, Any] = {**conditions.values, **state_values(model, motion)}
     values |= conditions.inputs_at(motion.t, np.concatenate([motion.q, motion.qd], axis=1))
-    seconds = _accelerations(model, motion, values)
+    seconds = accelerations(model, motion, values)
     values |= {f"{name}''": seconds[:, a] for a, name in enumerate(model.coordinates)}
     rows = [f"lambda.{closure.name}.{row}" for closure in model.closures for row in closure.rows]
     values |= {name: motion.series["multipliers"][:, k] for k, name in enumerate(rows)}
@@ -38,12 +38,13 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     return replace(motion, series={**motion.series, **found}, joints=transmitted.rows)
 
 
-def _states(model: Model, motion: Trajectory) -> dict[str, Array]:
+def state_values(model: Model, motion: Trajectory) -> dict[str, Array]:
+    """Time, coordinates and velocities (K,) by their symbols."""
     found = {"t": motion.t} | {name: motion.q[:, a] for a, name in enumerate(model.coordinates)}
     return found | {f"{name}'": motion.qd[:, a] for a, name in enumerate(model.coordinates)}
 
 
-def _accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any]) -> Array:
+def accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any]) -> Array:
     """q'' (K, n) of the motion."""
     if "qdd" in motion.series:
         return motion.series["qdd"]
