@@ -17,7 +17,7 @@ from substructures.analysis.motion.dry_friction import friction_laws
 from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.second_run import ROUNDING
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.motion.transmitted import accelerations, state_values
+from substructures.analysis.motion.transmitted import accelerations, has_not_begun, state_values
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.certificate.powers import OUTPUT
@@ -42,8 +42,7 @@ def with_powers(
     ``start``: what the motion began with; ``prescribed``: coordinates, each of which has a row of its own; ``limit``:
     of the sum less dT/dt, relative to the largest sum of sizes. A motion that did not begin has no powers.
     """
-    is_closed = bool(model.closures or prescribed)
-    if motion.status == "failed" and is_closed and "qdd" not in motion.series:
+    if has_not_begun(model, motion) or (prescribed and "actuation" not in motion.series):
         return motion
     conditions = read_conditions(model, start, (float(motion.t[0]), float(motion.t[-1])), ())
     values: dict[str, Any] = {**conditions.values, **state_values(model, motion)}

@@ -26,6 +26,8 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     ``start``: what the motion began with. Accelerations and multipliers are those of the motion: of closures the series
     ``qdd`` and ``multipliers``, else q'' = g^-1 (Q - Gamma q' q').
     """
+    if has_not_begun(model, motion):
+        return motion
     span = float(motion.t[0]), float(motion.t[-1])
     conditions = read_conditions(model, start, span, ())
     values: dict[str, Any] = {**conditions.values, **state_values(model, motion)}
@@ -36,6 +38,11 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     values |= {name: motion.series["multipliers"][:, k] for k, name in enumerate(rows)}
     found = interpret_in_blocks(transmitted.program, values, list(OUTPUTS), len(motion.t))
     return replace(motion, series={**motion.series, **found}, joints=transmitted.rows)
+
+
+def has_not_begun(model: Model, motion: Trajectory) -> bool:
+    """Whether a motion with closures has no accelerations, since they could not be closed at the start."""
+    return bool(model.closures) and motion.status == "failed" and "qdd" not in motion.series
 
 
 def state_values(model: Model, motion: Trajectory) -> dict[str, Array]:
