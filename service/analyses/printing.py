@@ -8,7 +8,7 @@ from typing import Any
 
 import orjson
 
-from service.analyses.binding import bound, bound_names
+from service.analyses.binding import Parameters, bound, bound_names
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.refusals import not_found
 from substructures.errors import InvalidInput, TooLarge, meant
@@ -126,6 +126,13 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
     return {"columns": {"names": found.names, "units": found.units}}, found.parameters
 
 
+def with_numbers(program: Program, parameters: Parameters, inputs: Parameters, style: Style) -> Program:
+    """Formulas with the numbers of ``bind=``; ``defaults`` are those of inputs, too, but in code, whose arguments are
+    complete. Raises as :func:`bound`.
+    """
+    return bound(program, parameters, style.bind, inputs if style.format in (*TO_READ, JSON) else None)
+
+
 def text_of(
     program: Program,
     style: Style,
@@ -153,12 +160,11 @@ def _rendered(program: Program, style: Style, quantity: str, interface: Interfac
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 
 
-def made_text(
-    found: Made, quantity: str, interface: Interface, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT
-) -> str:
+def made_text(found: Made, quantity: str, interface: Interface, model: Model, style: Style, limit: int = LIMIT) -> str:
     """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
     integrals in text. Raises as :func:`bound`, and TooLarge."""
-    text = _rendered(bound(found.program, parameters, style.bind), style, quantity, interface, limit)
+    program = with_numbers(found.program, model.parameters, model.inputs, style)
+    text = _rendered(program, style, quantity, interface, limit)
     if style.format == JSON and found.members:
         return _joined(found.members, text)
     if style.format != "text":

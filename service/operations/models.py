@@ -18,6 +18,7 @@ from service.analyses.printing import (
     options_of_quantity,
     quantities,
     text_of,
+    with_numbers,
     with_options,
 )
 from service.answers import Answer
@@ -39,6 +40,7 @@ __all__ = [
     "part_formulas",
     "printed",
     "quantities",
+    "with_numbers",
     "with_options",
 ]
 

@@ -24,6 +24,7 @@ from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
+from substructures.part.parameters import described_inputs
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -98,7 +99,7 @@ def _formula(
     def make() -> Answer:
         """Bind and print."""
         own = with_own_inertia(part, found) if chosen.inertia == "own" else found
-        program = models.bound(own, part.parameters, style.bind)
+        program = models.with_numbers(own, part.parameters, described_inputs(part.definition.inputs), style)
         return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest))
 
     return remembered(request, tag, is_pinned(ref) and version.is_public, make)

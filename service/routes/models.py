@@ -166,7 +166,7 @@ def _quantity(
         """Form, bind and print."""
         sources = models.with_options(sources_of(store, tree, model), quantity, options)
         members, parameters = models.described(sources, quantity)
-        program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
+        program = models.with_numbers(models.model_quantity(sources, quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
         return models.printed(program, style, quantity, interface, members)
 

@@ -65,7 +65,9 @@ def signature(quantity: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Vector:
-    """What stands where in an argument: names, SI units (empty where none was given), defaults (NaN: there is none)."""
+    """What stands where in an argument: names, SI units (empty where none was given), defaults (NaN: there is none; of
+    inputs only where one has a default, 0 for the others).
+    """
 
     symbol: str
     names: tuple[str, ...]

@@ -92,7 +92,7 @@ class TreeSpec(Document):
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
-    inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree; 0 when not given")
+    inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree")
     loads: tuple[TreeLoad, ...] = Field((), max_length=1000)
 
     def __repr__(self) -> str:

@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
+from service.analyses.binding import DEFAULTS, bindings, unit_faults
 from service.analyses.exporting import (
     ALL_TARGETS,
     DEFAULT_OPTIONS,
@@ -40,6 +40,7 @@ from service.analyses.printing import (
     options_of_quantity,
     quantities,
     text_of,
+    with_numbers,
     with_options,
 )
 from service.analyses.source import Source
@@ -255,7 +256,7 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     check_quantity(model, quantity)
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
-    program = bound(model_quantity(sources, quantity), parameters, style.bind)
+    program = with_numbers(model_quantity(sources, quantity), parameters, model.inputs, style)
     return text_of(program, style, quantity, _interface(source), members, item["nodes"])
 
 
@@ -268,7 +269,7 @@ def _followed(source: Source, item: ItemDocument, style: Style) -> str:
             found = follow(source, item["request"])
     else:
         found = made(source, name, options)
-    return made_text(found, name, _interface(source), source.model.parameters, style, item["nodes"])
+    return made_text(found, name, _interface(source), source.model, style, item["nodes"])
 
 
 def _interface(source: Source) -> Interface:
