@@ -20,7 +20,7 @@ from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument, InvalidDocument
 from substructures.quantities.evaluation import evaluate
 from substructures.tree.published import Publication, published
 
@@ -155,6 +155,26 @@ def test_what_acts_is_no_symmetry(model: Model, plain: Model) -> None:
     assert first_integrals(model).integrals == first_integrals(plain, ["s.wind", "s.k", "lift"]).integrals
     assert first_integrals(model, ()).integrals == first_integrals(plain).integrals
     assert {"s.k", "s.wind"} <= {symbol.name for symbol in routh(model).program.symbols}
+
+
+def test_a_drive_that_is_on_by_default_is_seen_by_judges() -> None:
+    """It turns the table, so that its momentum is no first integral, and it moves at no constant rate by itself."""
+    drive: Plain = {"type": "torque", "body": "table", "vector": [0, 0, "drive"]}
+    motor = {"unit": "N m", "default": 0.5}
+    definition = {**SWING, "inputs": {**SWING["inputs"], "drive": motor}, "loads": [*SWING["loads"], drive]}
+    spec = TreeSpec.read(
+        {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "s", "definition": definition}]}
+    )
+    model = couple(spec, {"s": derive(Definition.read(definition))})
+    motion = simulate(model, START["q"], (0, 0.5), qd=START["qd"], count=5)
+    assert motion.is_right, motion.checks
+    assert "angular_momentum.z" not in motion.series
+    off = simulate(model, START["q"], (0, 0.5), qd=START["qd"], count=5, inputs={"s.drive": 0})
+    assert off.is_right
+    assert "angular_momentum.z" in off.series
+    with pytest.raises(InvalidArgument, match="no cyclic coordinate"):
+        steady_motions(model, momenta={"s.turn": 2})
+    assert steady_motions(model, momenta={"s.turn": 2}, inputs={"s.drive": 0}).found
 
 
 def test_digests_are_as_before_without_one() -> None:
