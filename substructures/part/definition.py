@@ -10,10 +10,13 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
 from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, unit_of
+from substructures.documents.tables import with_points
 from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.errors import InvalidDocument
 
 MAX_BODIES = 500
 
@@ -227,7 +230,24 @@ class Input(Measured):
         return data if is_stored(info) else _in_its_unit(data, "default")
 
 
-class Definition(Document):
+class WithTables(Document):
+    """A document with curves as CSV text, whose points it has from then on in the place of their names."""
+
+    tables: dict[Name, str] = Field(
+        {}, max_length=500, description="CSV of x and y by name, for table(q1; name); kept as their points in the laws"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_points(cls, data: Any) -> Any:
+        try:
+            return with_points(data)
+        except InvalidDocument as error:
+            told = {"message": error.faults[0].message, "below": error.faults[0].pointer}
+            raise PydanticCustomError(error.faults[0].code, "{message}", told) from None
+
+
+class Definition(WithTables):
     """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
 
     name: LibraryName
