@@ -11,6 +11,7 @@ from service.cache import Cache
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
@@ -26,9 +27,9 @@ SECTIONS = 8 * 2**20  # characters of formulas on pages
 @dataclass(frozen=True)
 class Caches:
     """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
-    model and quantity, ``regressors``, ``reactions``, ``numeric_trees`` and ``plausibilities`` by digest of the tree,
-    ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose by digest, ``blobs``
-    by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
+    model and quantity, ``regressors``, ``reactions``, ``powers``, ``numeric_trees`` and ``plausibilities`` by digest of
+    the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose by digest,
+    ``blobs`` by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
     """
 
     parts: Cache[Part]
@@ -36,6 +37,7 @@ class Caches:
     derived: Cache[Program]
     regressors: Cache[RegressorModel]
     reactions: Cache[ReactionModel]
+    powers: Cache[PowerModel]
     numeric_trees: Cache[NumericTree]
     plausibilities: Cache[Plausibility]
     evaluations: Cache[Any]  # of service.operations.at_hand
@@ -53,6 +55,7 @@ class Caches:
             derived=Cache(nodes // 4, len),
             regressors=Cache(nodes // 8, lambda found: len(found.program)),
             reactions=Cache(nodes // 8, lambda found: len(found.program)),
+            powers=Cache(nodes // 8, lambda found: len(found.program)),
             numeric_trees=Cache(nodes // 8, NumericTree.weight),
             plausibilities=Cache(TREES, lambda _: 1),
             evaluations=Cache(nodes // 8, lambda found: found.weight()),

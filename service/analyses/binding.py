@@ -37,8 +37,8 @@ def bound_names(with_default: Iterable[str], text: str) -> set[str]:
     return found
 
 
-def bound(program: Program, parameters: Parameters, text: str) -> Program:
-    """The program with numbers in place of parameters; ``text`` may contain ``defaults``.
+def bound(program: Program, parameters: Parameters, text: str, inputs: Parameters | None = None) -> Program:
+    """The program with numbers in place of parameters; ``text`` may contain ``defaults``, also those of ``inputs``.
 
     Raises Refused 422 naming the parameter.
     """
@@ -46,6 +46,7 @@ def bound(program: Program, parameters: Parameters, text: str) -> Program:
     for name, value in bindings(text):
         if value is None and name == DEFAULTS:
             given = {n: p["value"] for n, p in parameters.items() if p.get("value") is not None}
+            given |= {n: u["default"] for n, u in (inputs or {}).items() if u.get("default") is not None}
             values = {**given, **values}
         elif value is None:
             raise unprocessable("bind", f"'{name[:80]}' is not name:value", PLACE)

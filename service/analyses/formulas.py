@@ -18,7 +18,7 @@ from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature
-from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.first_integrals import acting_inputs, first_integrals
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation, state_space
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
@@ -31,7 +31,8 @@ from substructures.expr.program import Program
 
 Options = Mapping[str, tuple[str, ...]]
 OPTIONS = {
-    "inputs": "inputs that may have any value (first_integrals; default none), columns of B and D (state_space; all)",
+    "inputs": "inputs that may have any value (first_integrals; those with a default that is not 0 always have), "
+    "columns of B and D (state_space; default all)",
     "zero": "parameters that are 0 (first_integrals)",
     "cyclic": "cyclic coordinates that are removed (routhian; default all)",
     "outputs": "expressions y in coordinates, velocities, inputs, parameters and t (state_space)",
@@ -150,7 +151,8 @@ def curvature_of(source: Source) -> Program:
 
 
 def _first_integrals(source: Source, options: Options) -> Made:
-    found = first_integrals(source.model, options.get("inputs", ()), options.get("zero", ()))
+    named = dict.fromkeys((*options.get("inputs", ()), *acting_inputs(source.model)))
+    found = first_integrals(source.model, named, options.get("zero", ()))
     return Made(found.program, found.summary())
 
 

@@ -42,6 +42,7 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.errors import Fault, InvalidArgument, TooLarge
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel, read_joints
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model
@@ -89,11 +90,24 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
     transmitted = _transmitted(source, request)
     if transmitted is not None:
         numbers += 12 * len(transmitted.rows)
+    by_load = _powers(source, request)
+    if by_load is not None:
+        numbers += len(by_load.rows) + n
     _check_size(source, len(request.output_times().grid()), numbers)
-    rest = _without(given, "q", "reactions")
+    rest = _without(given, "q", "reactions", "powers")
     if isinstance(request, SimulationRequest) and request.friction == "loaded":
         rest["bearings"] = _reactions(source, "/friction")
-    return simulate(model, request.q, **rest, reactions=transmitted, progress=report, folder=source.folder)
+    tools: dict[str, Any] = {"progress": report, "folder": source.folder}
+    return simulate(model, request.q, **rest, reactions=transmitted, powers=by_load, **tools)
+
+
+def _powers(source: Source, request: SpanRequest) -> PowerModel | None:
+    """The powers, where they are wanted along a motion. Raises InvalidArgument."""
+    if not (isinstance(request, WithReactions) and request.powers):
+        return None
+    if source.powers is None:
+        raise InvalidArgument.at("/powers", "needs-parts", "powers need the parts of the tree")
+    return source.powers()
 
 
 def _transmitted(source: Source, request: SpanRequest) -> ReactionModel | None:
@@ -116,7 +130,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     n, given = source.model.dof, arguments(request)
     faults = [
         Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
-        for name in ("events", "fixed_step", "series", "reactions", "geodesic")
+        for name in ("events", "fixed_step", "series", "reactions", "powers", "geodesic")
         if getattr(request, name)
     ]
     if request.friction != "regularised":
@@ -125,7 +139,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "friction", "geodesic")
+    rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "powers", "friction", "geodesic")
     return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import orjson
 
-from service.analyses.binding import bound, bound_names
+from service.analyses.binding import Parameters, bound, bound_names
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.refusals import not_found
 from substructures.errors import InvalidInput, TooLarge, meant
@@ -20,7 +20,7 @@ from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import MOMENTA, momentum
-from substructures.quantities.evaluation import REACTIONS, REGRESSOR, Sources
+from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 from substructures.tree.model import Model, require_stored
@@ -64,13 +64,13 @@ def quantities(name: str) -> tuple[str, ...]:
 
 def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity, InvalidDocument for what a large one does not store."""
-    if quantity in (*DERIVED, *OUTPUTS, REACTIONS) or any(
+    if quantity in (*DERIVED, *OUTPUTS, REACTIONS, POWERS) or any(
         name in model.program.outputs for name in quantities(quantity)
     ):
         return
     if quantity == CHRISTOFFEL:  # of a large model, which says why
         require_stored(model.program, [quantity])
-    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES]
+    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES]
     known = ", ".join(dict.fromkeys(names))
     like = meant(quantity, names)
     raise not_found(f"there is no quantity '{quantity[:80]}'{like or f'; there are {known}'}", "unknown-quantity")
@@ -78,7 +78,7 @@ def check_quantity(model: Model, quantity: str) -> None:
 
 def needs_parts(quantity: str) -> bool:
     """Whether a quantity needs the parts of the tree, beside its formulas."""
-    return quantity in (*OUTPUTS, REACTIONS, *OF_PARTS)
+    return quantity in (*OUTPUTS, REACTIONS, POWERS, *OF_PARTS)
 
 
 def options_of_quantity(quantity: str) -> tuple[str, ...]:
@@ -103,8 +103,8 @@ def model_quantity(sources: Sources, quantity: str) -> Program:
     """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
     if quantity in DERIVED:
         return sources.program(quantity)
-    if quantity == REACTIONS:
-        return sources.program(REACTIONS)
+    if quantity in (REACTIONS, POWERS):
+        return sources.program(quantity)
     if quantity in OUTPUTS:
         return sources.program(REGRESSOR).select([quantity])
     wanted, whole = quantities(quantity), sources.model.program
@@ -115,6 +115,8 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
     """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
     if quantity == REACTIONS:
         return {"joints": sources.transmitted().rows}, sources.model.parameters
+    if quantity == POWERS:
+        return {"loads": sources.by_load().rows}, sources.model.parameters
     if quantity in MOMENTA:
         return {"momenta": [momentum(name) for name in sources.model.coordinates]}, sources.model.parameters
     if quantity in SYMMETRY_RULES:
@@ -125,11 +127,20 @@ def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[
     return {"columns": {"names": found.names, "units": found.units}}, found.parameters
 
 
-def names_of_steps(style: Style, parameters: Mapping[str, Any], make: Callable[[], Program]) -> Program | None:
-    """What steps of a derivation are called, bound as it is; None where there are no steps that people read."""
+def with_numbers(program: Program, parameters: Parameters, inputs: Parameters, style: Style) -> Program:
+    """Formulas with the numbers of ``bind=``; ``defaults`` are those of inputs, too, but in code, whose arguments are
+    complete. Raises as :func:`bound`.
+    """
+    return bound(program, parameters, style.bind, inputs if style.format in (*TO_READ, JSON) else None)
+
+
+def names_of_steps(
+    style: Style, parameters: Parameters, inputs: Parameters, make: Callable[[], Program]
+) -> Program | None:
+    """What steps of a derivation are called, with the same numbers; None where there are no steps that people read."""
     if style.format not in TO_READ or style.form not in ("readable", "compact"):
         return None
-    return bound(make(), parameters, style.bind)
+    return with_numbers(make(), parameters, inputs, style)
 
 
 def text_of(
@@ -171,12 +182,11 @@ def _rendered(
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 
 
-def made_text(
-    found: Made, quantity: str, interface: Interface, parameters: Mapping[str, Any], style: Style, limit: int = LIMIT
-) -> str:
+def made_text(found: Made, quantity: str, interface: Interface, model: Model, style: Style, limit: int = LIMIT) -> str:
     """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
     integrals in text. Raises as :func:`bound`, and TooLarge."""
-    text = _rendered(bound(found.program, parameters, style.bind), style, quantity, interface, limit)
+    program = with_numbers(found.program, model.parameters, model.inputs, style)
+    text = _rendered(program, style, quantity, interface, limit)
     if style.format == JSON and found.members:
         return _joined(found.members, text)
     if style.format != "text":

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from service.settings import Limits
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Evaluator, interpreted
+from substructures.quantities.evaluation import Evaluator, Sources, interpreted
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.document import TreeSpec
@@ -19,8 +20,8 @@ from substructures.tree.plausibility import Plausibility
 @dataclass(frozen=True)
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there;
-    ``parts``: the document of the tree and its parts by instance.
+    ``plausibility``: what judges values, made when needed; so are ``reactions`` and ``powers``, where the parts are
+    there; ``parts``: the document of the tree and its parts by instance.
     """
 
     model: Model
@@ -31,4 +32,9 @@ class Source:
     engine: Evaluator = interpreted
     plausibility: Callable[[], Plausibility] | None = None
     reactions: Callable[[], ReactionModel] | None = None
+    powers: Callable[[], PowerModel] | None = None
     parts: Callable[[], tuple[TreeSpec, Mapping[str, Part]]] | None = None
+
+    def sources(self) -> Sources:
+        """What quantities are made from."""
+        return Sources(self.model, regressor=self.regressor, reactions=self.reactions, powers=self.powers)

@@ -30,7 +30,7 @@ from substructures.client.connection import step
 from substructures.export import interface_of_model
 from substructures.part.part import Part
 from substructures.printers import FORMS
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.powers import powers
 from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
@@ -123,16 +123,17 @@ def _formula(wanted: _Wanted, what: str, style: Style, chosen: Options) -> bytes
 
 
 def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> Answer:
-    sources = Sources(source.model, regressor=source.regressor, reactions=source.reactions)
+    sources = source.sources()
     models.check_quantity(source.model, what)
     sources = models.with_options(sources, what, chosen)
     members, parameters = models.described(sources, what)
-    program = models.bound(models.model_quantity(sources, what), parameters, style.bind)
+    inputs = source.model.inputs
+    program = models.with_numbers(models.model_quantity(sources, what), parameters, inputs, style)
     interface = interface_of_model(source.model, digest=source.digest)
     parts = source.parts
     named = None
     if parts is not None:
-        named = models.names_of_steps(style, parameters, lambda: glossary(*parts()))
+        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts()))
     return models.printed(program, style, what, interface, members, named)
 
 
@@ -218,9 +219,16 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
     # the others come with the result
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
     nodes = limits.program_nodes
-    transmitted = lambda: reactions(spec, parts, nodes)  # noqa: E731 -- made when it is asked for
-    made = lambda: regressor(spec, parts, nodes)  # noqa: E731 -- made when it is asked for
-    return Source(model, spec.digest, made, limits, reactions=transmitted, parts=lambda: (spec, parts))
+    # what is made when it is asked for
+    return Source(
+        model,
+        spec.digest,
+        lambda: regressor(spec, parts, nodes),
+        limits,
+        reactions=lambda: reactions(spec, parts, nodes),
+        powers=lambda: powers(spec, parts, nodes),
+        parts=lambda: (spec, parts),
+    )
 
 
 COMMANDS = {"simulate": simulate, "analyse": analyse}

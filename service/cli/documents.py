@@ -11,6 +11,7 @@ from typing import IO, Any
 
 from substructures.client import ProblemError
 from substructures.documents import places, read_json, read_yaml
+from substructures.documents.tables import with_tables
 from substructures.errors import Fault, InvalidInput
 
 #: endings of documents, in which places are found by line and column
@@ -26,7 +27,7 @@ def is_document(given: str) -> bool:
 def read_document(path: Path) -> Any:
     """A document in JSON or YAML. Raises InvalidDocument naming the file."""
     with path.open("rb") as file, named(path):
-        return read_from(path, file)
+        return with_tables(read_from(path, file), path.parent)
 
 
 def read_from(path: Path, file: IO[bytes]) -> Any:

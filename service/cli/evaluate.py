@@ -16,7 +16,7 @@ from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.trees import pairs
 from substructures.client.connection import step
-from substructures.quantities.evaluation import QUANTITIES, Sources
+from substructures.quantities.evaluation import QUANTITIES
 from substructures.quantities.evaluation import evaluate as evaluated
 
 Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
@@ -58,7 +58,7 @@ def evaluate(
 
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
     source = local_source(path)
-    sources = Sources(source.model, regressor=source.regressor, reactions=source.reactions)
+    sources = source.sources()
     given = {"q": np.zeros(source.model.dof), **request}
     quantities = given.pop("quantities")
     result = evaluated(source.model, quantities, **given, sources=sources)

@@ -17,7 +17,6 @@ from service.cli.robots import part_or_tree
 from service.settings import Limits
 from substructures.client.connection import step
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Sources
 
 
 @with_server
@@ -66,7 +65,7 @@ def _local(path: Path, request: ExportRequest) -> Package:
     if isinstance(read, Part):
         return part_package(read, path.name, read.definition.digest, request, limit)
     source = coupled_source(*read)
-    sources = Sources(source.model, regressor=source.regressor, reactions=source.reactions)
+    sources = source.sources()
     return tree_package(sources, path.stem, path.name, source.digest, request, limit, lambda: read)
 
 

@@ -28,8 +28,8 @@ def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
     sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    kept = sources.plausibility, sources.reactions, lambda: tree_parts(store, tree)
-    return Source(model, tree.digest, sources.columns, *tools, *kept)
+    kept = sources.plausibility, sources.reactions, sources.powers
+    return Source(model, tree.digest, sources.columns, *tools, *kept, lambda: tree_parts(store, tree))
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
@@ -58,7 +58,7 @@ def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, st
 
 def _printed(source: Source, quantity: str, found: Made, style: Style) -> Answer:
     interface = interface_of_model(source.model, digest=source.digest)
-    text = made_text(found, quantity, interface, source.model.parameters, style)
+    text = made_text(found, quantity, interface, source.model, style)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 

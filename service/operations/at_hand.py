@@ -20,7 +20,7 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import REACTIONS, REGRESSOR, Sources, cost, steps
+from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources, cost, steps
 from substructures.quantities.one_state import OneState, prepared
 from substructures.quantities.states import longest
 
@@ -72,7 +72,7 @@ def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, eva
     """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
-    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or REACTIONS in names:
+    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or {REACTIONS, POWERS} & {*names}:
         return
     programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
     columns = sources.columns() if REGRESSOR in programs else None

@@ -19,6 +19,7 @@ from service.analyses.printing import (
     options_of_quantity,
     quantities,
     text_of,
+    with_numbers,
     with_options,
 )
 from service.answers import Answer
@@ -41,6 +42,7 @@ __all__ = [
     "part_formulas",
     "printed",
     "quantities",
+    "with_numbers",
     "with_options",
 ]
 

@@ -1,4 +1,4 @@
-"""What evaluations of a stored tree work with: programs, regressor, reactions, and the way over its parts."""
+"""What evaluations of a stored tree work with: programs, regressor, reactions, powers, and the way over its parts."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, Sources
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.powers import PowerModel, powers
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
@@ -28,6 +29,7 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
         lambda: plausibility_of(store, tree, model),
         lambda values, names, states: _numeric(store, tree).answer(values, names, states),
         lambda: _reactions(store, tree),
+        powers=lambda: _powers(store, tree),
     )
 
 
@@ -80,6 +82,15 @@ def _reactions(store: Store, tree: Tree) -> ReactionModel:
     if found is None:
         found = reactions(*tree_parts(store, tree), store.settings.limits.program_nodes)
         store.caches.reactions.put(key, found)
+    return found
+
+
+def _powers(store: Store, tree: Tree) -> PowerModel:
+    key = tree.digest, part_programs(store, tree)
+    found = store.caches.powers.get(key)
+    if found is None:
+        found = powers(*tree_parts(store, tree), store.settings.limits.program_nodes)
+        store.caches.powers.put(key, found)
     return found
 
 

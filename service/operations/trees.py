@@ -23,6 +23,7 @@ from service.store import Store
 from service.summaries import PartContent, part_content, tree_summary
 from service.viewer import Viewer
 from substructures.documents import read_json
+from substructures.documents.tables import with_points
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.parameters import counted
 from substructures.part.part import Part, derive
@@ -100,10 +101,12 @@ def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: st
 
 
 def load(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
-    """One load more between frames of an existing tree. Raises Refused 404 or 412."""
+    """One load more between frames of an existing tree, its ``tables`` beside it. Raises Refused 404 or 412, and
+    InvalidDocument for tables.
+    """
     base, spec = _existing(store, viewer, text, if_match)
     loads = spec.get("loads", [])
-    return TreeChange({**spec, "loads": [*loads, data]}, base, is_pinned(text), f"/loads/{len(loads)}")
+    return TreeChange({**spec, "loads": [*loads, with_points(data)]}, base, is_pinned(text), f"/loads/{len(loads)}")
 
 
 def unload(store: Store, viewer: Viewer, text: str, name: str, if_match: str | None = None) -> TreeChange:

@@ -24,6 +24,7 @@ from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
+from substructures.part.parameters import described_inputs
 from substructures.tree.glossary import part_glossary
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
@@ -99,8 +100,9 @@ def _formula(
     def make() -> Answer:
         """Bind and print."""
         own = with_own_inertia(part, found) if chosen.inertia == "own" else found
-        program = models.bound(own, part.parameters, style.bind)
-        named = models.names_of_steps(style, part.parameters, lambda: part_glossary(part))
+        inputs = described_inputs(part.definition.inputs)
+        program = models.with_numbers(own, part.parameters, inputs, style)
+        named = models.names_of_steps(style, part.parameters, inputs, lambda: part_glossary(part))
         return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest), None, named)
 
     return remembered(request, tag, is_pinned(ref) and version.is_public, make)

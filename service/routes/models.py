@@ -190,9 +190,9 @@ def _quantity(
         """Form, bind and print."""
         sources = models.with_options(sources_of(store, tree, model), quantity, options)
         members, parameters = models.described(sources, quantity)
-        program = models.bound(models.model_quantity(sources, quantity), parameters, style.bind)
+        program = models.with_numbers(models.model_quantity(sources, quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
-        named = models.names_of_steps(style, parameters, lambda: glossary(*tree_parts(store, tree)))
+        named = models.names_of_steps(style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree)))
         return models.printed(program, style, quantity, interface, members, named)
 
     return remembered(request, tag, lasting, make)

@@ -48,7 +48,7 @@ class ControlProblem(DocumentPart):
     q: Annotated[Any, COORDINATES] = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
     qd: Annotated[Any, VELOCITIES] = Field(None, description="rad/s, m/s; default: at rest")
     t: Annotated[float, SECONDS] = Field(0.0, allow_inf_nan=False, description="when it starts, s")
-    inputs: Constants = Field({}, description="constant values of the other inputs; default: zero")
+    inputs: Constants = Field({}, description="constant values of the other inputs; default: their own, or zero")
     parameters: Constants = Field({}, description="instead of their defaults")
 
 
@@ -59,7 +59,9 @@ ErrorLimit = Annotated[float, Field(gt=0, allow_inf_nan=False, description=LIMIT
 class GradientRequest(ControlProblem):
     """A problem with controls."""
 
-    values: ByControl = Field({}, description="by control: one number, or one for each node; default: zero")
+    values: ByControl = Field(
+        {}, description="by control: one number, or one for each node; default: their own, or zero"
+    )
     vary: tuple[str, ...] = Field((), description="parameters by which the cost is differentiated")
     error_limit: ErrorLimit = problem.ERROR_LIMIT
 

@@ -151,11 +151,12 @@ class SpanRequest(StateRequest):
 
 
 class WithReactions(SpanRequest):
-    """``reactions``: those of all joints, or of some, by coordinates and ``instance.base``."""
+    """``reactions``: those of all joints, or of some, by coordinates and ``instance.base``. ``powers``: of all."""
 
     reactions: bool | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
         False, description="force and moment that joints transmit: of all, or of these"
     )
+    powers: bool = Field(False, description="the power of every load and joint, and whether they add up to dT/dt")
 
 
 class SimulationRequest(WithReactions):

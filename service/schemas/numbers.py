@@ -161,6 +161,7 @@ class EvaluationResult(BaseModel):
     frames: list[str] = Field([], description="with kinematics: instance.body and instance.port by row")
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
     joints: list[str] = Field([], description="with reactions: coordinates of joints, and instance.base, by row")
+    loads: list[str] = Field([], description="with powers: what each is of")
 
 
 class KernelsRequest(Shape):

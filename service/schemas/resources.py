@@ -44,6 +44,12 @@ class ParameterView(BaseModel):
     given: dict[str, Any] | None = Field(None, description="value and unit, where they were given in another unit")
 
 
+class InputView(ParameterView):
+    """A named input of loads and its default value."""
+
+    default: float | int | str | None = Field(None, description="where it is not given, in SI; 0 without one")
+
+
 class WithdrawnView(Shape):
     """An instance whose part is withdrawn."""
 
@@ -189,7 +195,7 @@ class TreeView(Shape):
     operations: dict[str, Any]
     certificate: dict[str, Any]
     warnings: list[Warned]
-    inputs: dict[str, ParameterView] = Field({}, description="of loads, whether or not a formula depends on them")
+    inputs: dict[str, InputView] = Field({}, description="of loads, whether or not a formula depends on them")
     program: Digest
     created: Time
     based_on: int | None = Field(description="the revision that was changed")

@@ -40,7 +40,9 @@ class LinearisationRequest(DocumentPart):
     qdd: Annotated[Any, ACCELERATIONS] = None
     t: Annotated[Any, SECONDS] = 0
     parameters: Columns = Field({}, description="in place of their defaults; numbers, or one for each state")
-    inputs: Columns = Field({}, description="about which is linearised, 0 by default; or one for each state")
+    inputs: Columns = Field(
+        {}, description="about which is linearised, by default their own, or 0; or one for each state"
+    )
     outputs: Annotated[dict[str, PlainNumber], EXPRESSIONS] = Field(
         {}, max_length=1000, description="y: expressions in q, q', inputs and t"
     )
@@ -56,7 +58,7 @@ class EquilibriaRequest(DocumentPart):
     seed: Annotated[int, Field(ge=0)] = 0
     t: Annotated[Real, SECONDS] = 0.0
     parameters: Values = Field({}, description="in place of their defaults")
-    inputs: Values = Field({}, description="constant; 0 by default")
+    inputs: Values = Field({}, description="constant; by default their own, or 0")
 
 
 class SteadyMotionsRequest(DocumentPart):
@@ -77,7 +79,7 @@ class SteadyMotionsRequest(DocumentPart):
     reach: Reach = Field(1.0, description="m")
     seed: Annotated[int, Field(ge=0)] = 0
     parameters: Values = Field({}, description="in place of their defaults")
-    inputs: Values = Field({}, description="constant; 0 by default")
+    inputs: Values = Field({}, description="constant; by default their own, or 0")
 
 
 class RootLocusRequest(DocumentPart):
@@ -87,4 +89,4 @@ class RootLocusRequest(DocumentPart):
     values: Annotated[tuple[Real, ...], Field(min_length=1, max_length=10_000), OF_PARAMETER]
     q: States
     parameters: Values = Field({}, description="of all others, in place of their defaults")
-    inputs: Values = Field({}, description="constant; 0 by default")
+    inputs: Values = Field({}, description="constant; by default their own, or 0")

@@ -22,6 +22,7 @@ from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.fixed_step import FixedStep
 from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.limits import with_limits
+from substructures.analysis.motion.load_powers import with_powers
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import IntegratorChoice, Start, StateVector
 from substructures.analysis.motion.progress import ProgressReport
@@ -31,6 +32,7 @@ from substructures.analysis.motion.simulation import FrictionMode, TreeProblem, 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.transmitted import with_reactions
 from substructures.errors import Fault, InvalidArgument
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel
 from substructures.tree.model import Model
 
@@ -73,6 +75,7 @@ def simulate(
     drift_limit: float = 1e-7,
     reactions: ReactionModel | None = None,
     bearings: ReactionModel | None = None,
+    powers: PowerModel | None = None,
     geodesic: bool = False,
     progress: ProgressReport | None = None,
     folder: Path | None = None,
@@ -102,7 +105,9 @@ def simulate(
 
     ``geodesic``: of a tree without any force, q''^a + Gamma^a_bc q'^b q'^c = 0.
 
-    ``reactions``: those that are wanted at the results, as further series (not with ``constraints``).
+    ``reactions``: those that are wanted at the results, as further series (not with ``constraints``). ``powers``: those
+    of all loads and joints as a further series, and the check ``power`` that they add up to dT/dt (not with
+    ``constraints``, nor of a geodesic).
 
     ``progress`` is told the finished share of the span and stops by False; ``folder``: where compiled kernels are kept.
     The series of the result: see simulate_tree, simulate_closed, simulate_rolling. What goes wrong on the way is a
@@ -112,7 +117,8 @@ def simulate(
     exact = friction if friction != "regularised" else None
     if geodesic:
         closed_by = [*model.closures, *(prescribed or {})]
-        others = {"inputs": inputs, "constraints": constraints, "prescribed": closed_by, "reactions": reactions}
+        others: dict[str, Any] = {"inputs": inputs, "constraints": constraints, "prescribed": closed_by}
+        others |= {"reactions": reactions, "powers": powers}
         _refuse("no forces", friction=exact, **others)
         model = without_forces(model)
     given: dict[str, Any] = {
@@ -128,7 +134,7 @@ def simulate(
     closed: dict[str, Any] = {"prescribed": prescribed, "fixed": fixed}
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if constraints:
-        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, **closed)
+        _refuse("velocity constraints", fixed_step=fixed_step, friction=exact, powers=powers, **closed)
         if reactions is not None:
             raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
         rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
@@ -144,7 +150,11 @@ def simulate(
             TreeProblem(**given, fixed_step=fixed_step, friction=friction, bearings=bearings), progress, folder
         )
     found = with_limits(model, parameters, motion)
-    return found if reactions is None else with_reactions(model, reactions, found, given["start"])
+    if reactions is not None:
+        found = with_reactions(model, reactions, found, given["start"])
+    if powers is not None:
+        found = with_powers(model, powers, found, given["start"], tuple(prescribed or ()), drift_limit)
+    return found
 
 
 def _refuse(kind: str, **arguments: Any) -> None:

@@ -89,7 +89,7 @@ def forces(
     """All loads of a definition; ``joints``: its own. Raises LookupError for a type of load that is not known here."""
     found = Forces(bodies, definition, numbers, joints, prefix, like)
     for a, (joint, step) in zip(joints, laws_of(definition), strict=True):
-        _joint_law(found, a, joint, step)
+        joint_law(found, a, joint, step)
     for load in definition.get("loads", ()):
         LOADS[load["type"]](found, load)
     return found
@@ -100,7 +100,7 @@ def _add(sums: dict[int, Ball], terms: Mapping[int, Any]) -> None:
         sums[a] = sums.get(a, arb(0)) + term
 
 
-def _joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
+def joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
     """Q = tau - k (q - rest) - c q',   V = k (q - rest)^2 / 2 where k and rest are no functions of the state."""
     numbers = found.numbers
     name = found.bodies.joints[a].coordinate.rpartition(".")[2]

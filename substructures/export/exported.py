@@ -18,7 +18,7 @@ from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.evaluation import REACTIONS, Sources
+from substructures.quantities.evaluation import POWERS, REACTIONS, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS as COLUMNS
 from substructures.tree.model import Model, require_stored
@@ -222,8 +222,8 @@ def _exported(
 def quantity_program(sources: Sources, quantity: str) -> Program:
     """The program of a quantity, with the outputs that belong to it alone. Raises InvalidArgument, TooLarge."""
     model = sources.model
-    if quantity == REACTIONS:
-        return sources.program(REACTIONS)
+    if quantity in (REACTIONS, POWERS):
+        return sources.program(quantity)
     if quantity in COLUMNS:
         return sources.columns().program.select([quantity])
     if quantity in DERIVED:
@@ -240,7 +240,7 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
 
 def known_quantities(model: Model) -> list[str]:
     """The quantities that a model can be exported with."""
-    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS, REACTIONS]))
+    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS, REACTIONS, POWERS]))
 
 
 def joined(programs: Sequence[Program]) -> Program:

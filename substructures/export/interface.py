@@ -49,7 +49,7 @@ _SIGNATURES: Mapping[str, tuple[str, ...]] = {
     "forces": ("t", "q", "qd", "u", "p"),
     "forward_dynamics": ("t", "q", "qd", "u", "p"),
     "inverse_dynamics": ("t", "q", "qd", "qdd", "u", "p"),
-    "power": ("t", "q", "qd", "u", "p"),
+    **dict.fromkeys(("power", "powers"), ("t", "q", "qd", "u", "p")),
     "hamiltonian": ("t", "q", "p"),
     "canonical_equations": ("t", "q", "u", "p"),
     "reactions": ("t", "q", "qd", "qdd", "u", "p"),
@@ -65,7 +65,9 @@ def signature(quantity: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Vector:
-    """What stands where in an argument: names, SI units (empty where none was given), defaults (NaN: there is none)."""
+    """What stands where in an argument: names, SI units (empty where none was given), defaults (NaN: there is none; of
+    inputs only where one has a default, 0 for the others).
+    """
 
     symbol: str
     names: tuple[str, ...]

@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.export.interface import TIME, Interface, Vector
+from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
-from substructures.quantities.states import default_number
+from substructures.quantities.states import default_number, input_defaults
 from substructures.tree.model import EFFORTS, Model
 
 _RATES = {"q": ("", "rad", "m"), "qd": ("'", "rad/s", "m/s"), "qdd": ("''", "rad/s^2", "m/s^2")}
@@ -21,7 +22,9 @@ def interface_of_model(model: Model, reference: str = "", digest: str = "") -> I
     """The vectors of a tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
     efforts = [f"tau.{name}" for name in model.coordinates]
     inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
-    vectors = _states(model.coordinates, model.joints) | _others(model.parameters, inputs, model.units)
+    vectors = _states(model.coordinates, model.joints) | _others(
+        model.parameters, inputs, model.units, input_defaults(model)
+    )
     return Interface(vectors, reference, digest or model.program.digest, model.frames)
 
 
@@ -29,9 +32,11 @@ def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Inte
     """The vectors of a part as it stands alone."""
     efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(part.coordinates, part.joints, strict=True)}
     given = part.definition.inputs
+    told = described_inputs(given)
+    defaults = {name: default_number(x["default"]) for name, x in told.items() if "default" in x}
     inputs = {name: str(given[name].unit or "") for name in sorted(given)} | efforts
     units = {name: str(given.get("unit", "")) for name, given in part.parameters.items()} | inputs
-    vectors = _states(part.coordinates, part.joints) | _others(part.parameters, list(inputs), units)
+    vectors = _states(part.coordinates, part.joints) | _others(part.parameters, list(inputs), units, defaults)
     return Interface(vectors, reference, digest or part.definition.digest, part.frames)
 
 
@@ -44,12 +49,17 @@ def _states(coordinates: Sequence[str], joints: str) -> dict[str, Vector]:
 
 
 def _others(
-    parameters: Mapping[str, Mapping[str, Any]], inputs: Sequence[str], units: Mapping[str, str]
+    parameters: Mapping[str, Mapping[str, Any]],
+    inputs: Sequence[str],
+    units: Mapping[str, str],
+    of_inputs: Mapping[str, float],
 ) -> dict[str, Vector]:
+    """``of_inputs``: the defaults of inputs that have one."""
     names = tuple(sorted(parameters))
     values = [parameters[name].get("value") for name in names]
     defaults = tuple(float("nan") if value is None else default_number(value) for value in values)
+    starts = tuple(of_inputs.get(name, 0.0) for name in inputs) if of_inputs else ()
     return {
-        "u": Vector("u", tuple(inputs), tuple(units.get(name, "") for name in inputs)),
+        "u": Vector("u", tuple(inputs), tuple(units.get(name, "") for name in inputs), starts),
         "p": Vector("p", names, tuple(units.get(name, "") for name in names), defaults),
     }

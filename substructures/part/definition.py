@@ -10,10 +10,13 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
 from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, unit_of
+from substructures.documents.tables import with_points
 from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.errors import InvalidDocument
 
 MAX_BODIES = 500
 
@@ -44,20 +47,25 @@ class Parameter(Measured):
     @model_validator(mode="before")
     @classmethod
     def _with_given_unit(cls, data: Any, info: ValidationInfo) -> Any:
-        if is_stored(info) or not isinstance(data, Mapping) or data.get("value") is None:
-            return data
-        value, text = data["value"], data.get("unit", "")
-        try:
-            unit = read_unit(text) if text else None
-            if isinstance(value, Mapping | Quantity):
-                given = value["unit"] if isinstance(value, Mapping) else value.unit
-                unit = unit or read_unit(given)
-                return {**data, "unit": text if text and unit.is_si else unit.si}
-        except (UnknownUnitError, LookupError, TypeError, AttributeError):
-            return data  # the fields say what is wrong with them
-        if unit is None or unit.is_si:
-            return data
-        return {**data, "value": {"value": value, "unit": text}, "unit": unit.si}
+        return data if is_stored(info) else _in_its_unit(data, "value")
+
+
+def _in_its_unit(data: Any, field: str) -> Any:
+    """What is declared, with the unit of its number in ``field`` put to it where that is not SI."""
+    if not isinstance(data, Mapping) or data.get(field) is None:
+        return data
+    value, text = data[field], data.get("unit", "")
+    try:
+        unit = read_unit(text) if text else None
+        if isinstance(value, Mapping | Quantity):
+            given = value["unit"] if isinstance(value, Mapping) else value.unit
+            unit = unit or read_unit(given)
+            return {**data, "unit": text if text and unit.is_si else unit.si}
+    except (UnknownUnitError, LookupError, TypeError, AttributeError):
+        return data  # the fields say what is wrong with them
+    if unit is None or unit.is_si:
+        return data
+    return {**data, field: {"value": value, "unit": text}, "unit": unit.si}
 
 
 def is_stored(info: ValidationInfo) -> bool:
@@ -220,12 +228,37 @@ Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad | PotentialLoad
 
 
 class Input(Measured):
-    """A named input of the loads; 0 when not given."""
+    """A named input of the loads. Where it is not given it has its default, 0 without one; a default is kept with its
+    unit as the value of a parameter.
+    """
 
+    default: Number | None = Field(None, description="where it is not given; a number or a constant expression")
     description: str = Field("", max_length=2000)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _with_given_unit(cls, data: Any, info: ValidationInfo) -> Any:
+        return data if is_stored(info) else _in_its_unit(data, "default")
 
-class Definition(Document):
+
+class WithTables(Document):
+    """A document with curves as CSV text, whose points it has from then on in the place of their names."""
+
+    tables: dict[Name, str] = Field(
+        {}, max_length=500, description="CSV of x and y by name, for table(q1; name); kept as their points in the laws"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_points(cls, data: Any) -> Any:
+        try:
+            return with_points(data)
+        except InvalidDocument as error:
+            told = {"message": error.faults[0].message, "below": error.faults[0].pointer}
+            raise PydanticCustomError(error.faults[0].code, "{message}", told) from None
+
+
+class Definition(WithTables):
     """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
 
     name: LibraryName

@@ -122,6 +122,9 @@ def _scope(definition: Definition, layout: Topology) -> Scope:
         scope.declare(name, "parameter", si_unit(parameter.unit))
         if parameter.value is not None:
             scope.read(parameter.value, f"/parameters/{name}/value", no_names)
+    for name, given in sorted(definition.inputs.items()):
+        if given.default is not None:
+            scope.read(given.default, f"/inputs/{name}/default", no_names)
     for joint in layout.joints:
         scope.symbols[joint.coordinate] = _coordinate(joint)
     return scope

@@ -9,7 +9,7 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.expr.unit_check import Notice, steps_of
-from substructures.part.definition import Definition, FrictionLoad, JointFriction, Parameter
+from substructures.part.definition import Definition, FrictionLoad, Input, JointFriction, Parameter
 
 
 def si_unit(unit: str) -> str:
@@ -32,6 +32,21 @@ def _described(parameter: Parameter) -> dict[str, Any]:
         return plain if value.measure.is_si else plain | {"given": value.model_dump()}
     written = si_unit(unit) if value is None else unit
     return plain if written == unit else plain | {"unit": written, "given": {"unit": unit}}
+
+
+def described_inputs(inputs: Mapping[str, Input]) -> dict[str, dict[str, Any]]:
+    """Unit of inputs in SI and description; where there is one, the ``default`` in SI, and what was ``given``."""
+    return {name: _described_input(each) for name, each in inputs.items()}
+
+
+def _described_input(given: Input) -> dict[str, Any]:
+    plain: dict[str, Any] = {"unit": si_unit(given.unit), "description": given.description}
+    if given.default is None:
+        return plain
+    plain["default"] = in_si(given.default)
+    if isinstance(given.default, Quantity) and not given.default.measure.is_si:
+        plain["given"] = given.default.model_dump()
+    return plain
 
 
 def counted(definition: dict[str, Any]) -> dict[str, Any]:

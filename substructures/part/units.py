@@ -17,6 +17,7 @@ from substructures.part.definition import (
     Definition,
     ForceLoad,
     InertiaTensor,
+    Input,
     Joint,
     JointLoad,
     Load,
@@ -78,6 +79,7 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
         moving[f"{joint.coordinate}'"] = Dimensioned(RATE[joint.s], sure=False)
     check = UnitCheck(lambda name: names.get(name, "unknown"))
     check.check(parameter_places(definition.parameters), True)
+    check.check(input_places(definition.inputs), True)
     check.check(places.bodies(), True)
     check.names = lambda name: names[name] if name in names else moving.get(name, "unknown")
     check.check(places.loads(), False)
@@ -89,6 +91,14 @@ def parameter_places(parameters: Mapping[str, Parameter]) -> Iterator[Place]:
     for name, each in parameters.items():
         found = dimension_of(each.unit)
         yield f"/parameters/{name}/value", each.value, found.dimension if isinstance(found, Dimensioned) else None
+
+
+def input_places(inputs: Mapping[str, Input]) -> Iterator[Place]:
+    """The defaults of inputs, which have the dimensions of their units."""
+    for name, each in inputs.items():
+        found = dimension_of(each.unit)
+        if each.default is not None:
+            yield f"/inputs/{name}/default", each.default, found.dimension if isinstance(found, Dimensioned) else None
 
 
 @dataclass(frozen=True)

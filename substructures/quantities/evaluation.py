@@ -43,6 +43,7 @@ from substructures.quantities.table import (
     CONDITION,
     MODEL,
     PARTS,
+    POWERS,
     QUANTITIES,
     REACTIONS,
     REGRESSOR,
@@ -56,6 +57,7 @@ from substructures.quantities.warnings import Notice, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
+    "POWERS",
     "QUANTITIES",
     "REACTIONS",
     "REGRESSOR",
@@ -104,9 +106,9 @@ def evaluate(
     """Numbers of quantities, one name of QUANTITIES or several, for one state or N.
 
     ``q`` [rad, m], ``qd`` [rad/s, m/s], ``qdd`` [rad/s^2, m/s^2]: (n,), (N, n), or by coordinate name a number or (N,);
-    velocities that are not given are zero. ``inputs`` [N m, N], ``parameters`` [SI]: by name a number or (N,), inputs
-    that are not given are zero, parameters have their defaults. ``t`` [s]: a number or (N,). ``along``: the direction
-    of derivatives. The results have the axis N first, but for one state with ``q`` (n,).
+    velocities that are not given are zero. ``inputs`` [N m, N], ``parameters`` [SI]: by name a number or (N,); those
+    that are not given have their defaults, inputs without one are zero. ``t`` [s]: a number or (N,). ``along``: the
+    direction of derivatives. The results have the axis N first, but for one state with ``q`` (n,).
 
     ``forward_dynamics`` of a model with closures are the accelerations on them, in states that meet them
     (:func:`substructures.mechanics.accelerations.closed_solve`); other quantities are those of the tree without them.
@@ -282,6 +284,7 @@ def _answered(
         states.single,
         (*warnings, *state_warnings(results, told, states.single)),
         sources.transmitted().rows if REACTIONS in found else None,
+        sources.by_load().rows if POWERS in found else None,
     )
 
 

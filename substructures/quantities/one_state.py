@@ -15,8 +15,17 @@ from substructures.errors import MissingValue
 from substructures.expr.program import Program
 from substructures.quantities.derivatives import FD
 from substructures.quantities.result import Evaluation, ParameterColumns, without_axis
-from substructures.quantities.states import default_numbers
-from substructures.quantities.table import CONDITION, PARTS, QUANTITIES, REGRESSOR, Sources, read_quantities, steps
+from substructures.quantities.states import default_numbers, input_defaults
+from substructures.quantities.table import (
+    CONDITION,
+    PARTS,
+    POWERS,
+    QUANTITIES,
+    REGRESSOR,
+    Sources,
+    read_quantities,
+    steps,
+)
 from substructures.quantities.warnings import value_warnings
 
 #: the arguments that it takes, beside the quantities
@@ -28,7 +37,7 @@ class OneState:
     """Quantities of a tree at single states: :func:`substructures.quantities.evaluation.evaluate` with all done
     beforehand that does not hang on the state.
 
-    Parameters have their defaults and inputs are zero. Whatever is unusual about a state is left to that function. Not
+    Parameters and inputs have their defaults. Whatever is unusual about a state is left to that function. Not
     for several threads at a time.
     """
 
@@ -56,6 +65,7 @@ class OneState:
             columns=None if columns is None else ParameterColumns(columns.names, columns.units),
             single=True,
             warnings=tuple(value_warnings(sources, {}, (), None, others)),
+            loads=sources.by_load().rows if POWERS in found else None,
         )
 
     def at(self, given: Mapping[str, Any]) -> Evaluation | None:
@@ -112,7 +122,7 @@ class OneState:
     def _values(self, sources: Sources) -> dict[str, Any]:
         """All symbols; those of the state as arrays that are read in place."""
         model = sources.model
-        values: dict[str, Any] = dict.fromkeys(model.input_names, 0.0)
+        values: dict[str, Any] = dict.fromkeys(model.input_names, 0.0) | input_defaults(model)
         values |= default_numbers(sources.parameters(self._names))
         for primes, name in (("", "q"), ("'", "qd"), ("''", "qdd")):
             values |= {f"{c}{primes}": self._state[name][a : a + 1] for a, c in enumerate(model.coordinates)}

@@ -42,7 +42,7 @@ class Evaluation:
     ``Omega`` (N, frames, n, 3); ``result["momentum"]`` one of ``linear`` and ``angular`` (N, 3).
 
     ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor,
-    ``joints`` the rows of reactions. ``count`` = N;
+    ``joints`` the rows of reactions, ``loads`` those of powers. ``count`` = N;
     ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states;
     ``warnings`` (pointer, code, message; state and quantity of some): parameters that no body can have, limits that
     states leave, accelerations that are doubtful, and more.
@@ -58,6 +58,7 @@ class Evaluation:
     single: bool = False
     warnings: tuple[Mapping[str, Any], ...] = ()
     joints: tuple[str, ...] | None = None
+    loads: tuple[str, ...] | None = None
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
@@ -83,6 +84,8 @@ class Evaluation:
             about["columns"] = {"names": list(self.columns.names), "units": list(self.columns.units)}
         if self.joints is not None:
             about["joints"] = list(self.joints)
+        if self.loads is not None:
+            about["loads"] = list(self.loads)
         about["warnings"] = [dict(warning) for warning in self.warnings]
         return {**about, **self.quantities, "failures": [asdict(failure) for failure in self.failures]}
 

@@ -181,7 +181,7 @@ def known_values(
         # nothing else says how many states there are
         values["t"] = np.broadcast_to(values["t"], (count,))
     inputs = model.input_names
-    values |= dict.fromkeys(inputs, 0.0)
+    values |= dict.fromkeys(inputs, 0.0) | input_defaults(model)
     values |= default_numbers(parameters) if defaults is None else defaults
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
     if given.get("parameters") is not None:
@@ -193,6 +193,17 @@ def known_values(
 def default_numbers(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
     """The default values of parameters that have one, correctly rounded, in SI."""
     return {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
+
+
+def input_defaults(model: Model) -> dict[str, float]:
+    """The defaults of inputs that have one, correctly rounded, in SI; all others are 0 where they are not given."""
+    found = {name: given.get("default") for name, given in model.inputs.items()}
+    return {name: default_number(value) for name, value in found.items() if value is not None}
+
+
+def with_input_defaults(model: Model, given: Any) -> Any:
+    """Inputs by name as they are given, with the defaults of those that are not."""
+    return {**input_defaults(model), **given} if isinstance(given, Mapping) else given
 
 
 def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:

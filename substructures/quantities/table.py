@@ -15,6 +15,7 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.quantities.canonical import PIVOTS
 from substructures.quantities.derivatives import FD, SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
+from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import FIELDS as REACTION_FIELDS
 from substructures.quantities.reactions import OUTPUTS as REACTION_OUTPUTS
 from substructures.quantities.reactions import ReactionModel
@@ -24,7 +25,7 @@ from substructures.tree.model import Model, require_stored
 from substructures.tree.model_outputs import KINEMATICS
 from substructures.tree.plausibility import Plausibility
 
-MODEL, REGRESSOR, CONDITION, REACTIONS = "model", "regressor", "condition", "reactions"
+MODEL, REGRESSOR, CONDITION, REACTIONS, POWERS = "model", "regressor", "condition", "reactions", "powers"
 #: outputs that a large model does not have as formulas, in numbers from the parts of the tree
 PARTS = "parts"
 #: about what an element of them takes
@@ -81,6 +82,7 @@ QUANTITIES: dict[str, Quantity] = {
     **_outputs(REGRESSOR, "regressor", requires=("qdd",)),
     **_outputs(REGRESSOR, "inertial_parameters"),
     "reactions": Quantity(REACTIONS, REACTION_OUTPUTS, REACTION_FIELDS),
+    **_outputs(POWERS, "powers"),
 }
 #: axes of n of what has no result in any state, where that is not one
 AXES = {"hamiltonian": 0, "inverse_metric": 2, "christoffel_second_kind": 3}
@@ -95,7 +97,7 @@ class Sources:
     ``regressor`` and ``inertial_parameters``, which need the parts of the tree; ``plausibility``: of values, from the
     definitions of these; ``numbers``: outputs of the model that it does not have as formulas, for (values, names,
     number of states); ``reactions``: for the quantity of this name, which needs the parts, too; ``joints``: the rows of
-    it that are wanted (default: all).
+    it that are wanted (default: all); ``powers``: as ``reactions``.
     """
 
     model: Model
@@ -105,6 +107,7 @@ class Sources:
     numbers: Callable[[Mapping[str, Any], list[str], int], dict[str, Array]] | None = None
     reactions: Callable[[], ReactionModel] | None = None
     joints: tuple[str, ...] | None = None
+    powers: Callable[[], PowerModel] | None = None
 
     @property
     def judge(self) -> Plausibility | None:
@@ -122,6 +125,8 @@ class Sources:
             return self.model.program
         if source == REACTIONS:
             return self.transmitted().program
+        if source == POWERS:
+            return self.by_load().program
         return self.columns().program if source == REGRESSOR else self.derive(self.model, source)
 
     def columns(self) -> RegressorModel:
@@ -135,6 +140,12 @@ class Sources:
         if self.reactions is None:
             raise InvalidArgument.at("/quantities", "needs-parts", "reactions need the parts of the tree")
         return self.reactions().of(self.joints)
+
+    def by_load(self) -> PowerModel:
+        """The powers of loads and joints. Raises InvalidArgument."""
+        if self.powers is None:
+            raise InvalidArgument.at("/quantities", "needs-parts", "powers need the parts of the tree")
+        return self.powers()
 
     def parameters(self, names: Sequence[str]) -> Mapping[str, Mapping[str, Any]]:
         """The parameters that quantities may depend on."""
@@ -188,6 +199,8 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     several = {"kinematics": frames * (12 + 6 * n), "christoffel": n**3, "metric": n * n, "coriolis": n * n}
     several |= {"regressor": n * columns, "inertial_parameters": columns, "momentum": 6, "condition": 1}
     several |= {"reactions": 12 * (n + frames), "canonical_equations": 2 * n}
+    # gravity, two rows for each coordinate, and loads, of which a tree may have a thousand beside those of its parts
+    several |= {"powers": 2 * n + 2000}
     several |= {"inverse_metric": n * n, "christoffel_second_kind": n**3}
     return sum(several.get(name, n) for name in quantities)
 

@@ -70,7 +70,7 @@ def _spring(
     assembly: Assembly, here: PlacedPart, instance: str, spring: Program, rates: Sequence[Expr]
 ) -> Sequence[Acting]:
     graph = assembly.scope.graph
-    found = replay(spring, graph, _bindings(assembly, here, instance, spring))
+    found = replay(spring, graph, part_symbols(assembly, here, instance, spring))
     value = {name: graph.lift(each.entries.get((), 0)) for name, each in found.items()}
     A, B = (
         _point(here, int(value[f"{end}.carrier"].value), (value[f"{end}0"], value[f"{end}1"], value[f"{end}2"]))
@@ -80,7 +80,7 @@ def _spring(
     return spring_forces(pair, pair.length2(), (value["k"], value["c"], value["l"]), rates)[0].acting
 
 
-def _bindings(assembly: Assembly, here: PlacedPart, instance: str, known: Program) -> dict[str, Expr]:
+def part_symbols(assembly: Assembly, here: PlacedPart, instance: str, known: Program) -> dict[str, Expr]:
     """What the symbols of formulas of a part are in the tree, also of those that its stored ones do without."""
     graph, result = assembly.scope.graph, dict[str, Expr]()
     for symbol in known.symbols:

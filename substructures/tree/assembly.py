@@ -14,7 +14,7 @@ from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, mult
 from substructures.part.definition import Placement
 from substructures.part.frames import axis_rotation
 from substructures.part.outputs import over_formulas
-from substructures.part.parameters import described, si_unit
+from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
@@ -80,12 +80,11 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
     friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i).items()}
     loaded = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction_load(i).items()}
+    inputs = _inputs(spec, parts, scope)
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(
-        scope, instances, tuple(mounted), gravity, left, cuts, _inputs(spec, parts), limits, friction, loaded, reading
-    )
+    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading)
 
 
 def _name_faults(spec: TreeSpec, scope: Scope) -> None:
@@ -158,15 +157,15 @@ def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, d
     return {"parameters": free, "inputs": _inputs(spec, parts)}
 
 
-def _inputs(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, object]]:
-    """All inputs of loads: of the tree, and those that the definitions declare."""
-    own: dict[str, dict[str, object]] = {
-        name: {"unit": si_unit(x.unit), "description": x.description} for name, x in spec.inputs.items()
-    }
-    return own | {
-        tree_name(instance.name, name): {"unit": si_unit(each.unit), "description": each.description}
+def _inputs(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope | None = None) -> dict[str, dict[str, object]]:
+    """All inputs of loads: of the tree, and those that the definitions declare; ``scope``: notes faults of defaults."""
+    for name, given in sorted(spec.inputs.items()):
+        if scope is not None and given.default is not None:
+            scope.read(given.default, f"/inputs/{name}/default", no_names)
+    return described_inputs(spec.inputs) | {
+        tree_name(instance.name, name): each
         for instance in spec.instances
-        for name, each in parts[instance.name].definition.inputs.items()
+        for name, each in described_inputs(parts[instance.name].definition.inputs).items()
     }
 
 

@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from substructures.documents import Document, DocumentPart, read_model
+from substructures.documents import DocumentPart, read_model
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
 from substructures.documents.schema import PATTERNS
-from substructures.part.definition import Definition, Input, Parameter, Placement
+from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
 from substructures.tree.load_document import AT, TreeLoad
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
@@ -82,7 +82,7 @@ class Closure(DocumentPart):
         return self
 
 
-class TreeSpec(Document):
+class TreeSpec(WithTables):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree, and
     ``loads`` act between its frames, with ``inputs`` of their own.
     """
@@ -92,7 +92,7 @@ class TreeSpec(Document):
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
-    inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree; 0 when not given")
+    inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree")
     loads: tuple[TreeLoad, ...] = Field((), max_length=1000)
 
     def __repr__(self) -> str:

@@ -62,10 +62,17 @@ class LoadFormulas:
 
 def load_formulas(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> LoadFormulas:
     """All loads of a tree together; ``placed``: its parts over formulas. Raises InvalidDocument."""
+    found = loads_apart(assembly, placed, rates)
+    energy = assembly.scope.graph.sum(each.potential for each in found)
+    return LoadFormulas(added(each.forces for each in found), energy)
+
+
+def loads_apart(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> list[LoadFormulas]:
+    """Every load of a tree alone, in their order. Raises InvalidDocument."""
     names = LoadNames(assembly, placed, rates)
     found = [_READERS[type(load)](names, load, f"/loads/{i}") for i, load in enumerate(assembly.reading.spec.loads)]
     assembly.scope.finish()
-    return LoadFormulas(added(each.forces for each in found), names.graph.sum(each.potential for each in found))
+    return found
 
 
 def _read(names: LoadNames, value: object, pointer: str) -> Expr:

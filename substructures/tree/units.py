@@ -25,6 +25,7 @@ from substructures.part.units import (
     RATE,
     SPRING,
     TORQUE,
+    input_places,
     parameter_places,
     placement_places,
     vector,
@@ -65,6 +66,7 @@ def check_tree_units(
     known = {name: dimension_of(unit) for name, unit in units.items()}
     check = UnitCheck(lambda name: known.get(name, "unknown"))
     check.check(parameter_places(spec.parameters), True)
+    check.check(input_places(spec.inputs), True)
     check.check(_places(spec), True)
     dimensions = {name: x.dimension for name, x in known.items() if isinstance(x, Dimensioned)}
     check.check(_bindings(spec, dimensions), True)

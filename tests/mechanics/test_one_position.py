@@ -26,6 +26,7 @@ from substructures.quantities.evaluation import (
     interpreted,
     numbers_per_state,
 )
+from substructures.quantities.powers import powers
 from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 
@@ -42,7 +43,8 @@ def random_sources(seed: int = 77) -> Sources:
     definition = random_definition(np.random.default_rng(seed), Kind(3, joints=("revolute", "prismatic"), massive=True))
     spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
     model, transmitted = couple(spec, parts), cache(lambda: reactions(spec, parts))
-    return Sources(model, regressor=lambda: regressor(spec, parts), reactions=transmitted)
+    by_load = cache(lambda: powers(spec, parts))
+    return Sources(model, regressor=lambda: regressor(spec, parts), reactions=transmitted, powers=by_load)
 
 
 def random_model() -> Model:

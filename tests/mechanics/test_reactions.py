@@ -164,6 +164,18 @@ def test_along_a_motion_with_a_closure() -> None:
     assert weight[0, 1] > 0
 
 
+def test_a_motion_that_does_not_begin_has_none() -> None:
+    """The loop cannot be closed with the piston far away."""
+    closure = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
+    one = {"name": "x", "substructure": "slider-crank"}
+    spec = TreeSpec.read({"name": "l", "gravity": DOWN, "instances": [one], "closures": [closure]})
+    transmitted = reactions(spec, {"x": derive(Definition.read(catalogue.load("slider-crank")))})
+    far = {"x.crank": "0.3", "x.piston": "9"}
+    motion = simulate(slider_crank((0, -9.81, 0)), [0, 0, 0], (0, 1), prescribed=far, reactions=transmitted)
+    assert motion.status == "failed"
+    assert "reaction_force" not in motion.series
+
+
 def test_chosen_joints_alone() -> None:
     given = {"q": [[0.1, 0.2, 0.3]] * 2, "qd": [[1.0, 0, 2]] * 2}
     whole, some = answered(hung(3), **given), answered(hung(3), ("a2.q", "a0.base"), **given)

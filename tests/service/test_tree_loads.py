@@ -41,6 +41,31 @@ def numbers(client: TestClient, ref: str, **more: Any) -> list[float]:
     return found
 
 
+def test_tables_are_their_points(client: TestClient) -> None:
+    curve = {"bump": "x,y\n0,0\n0.5,2\n1,0"}
+    given = {"name": "j", "type": "joint", "coordinate": "a.q", "force": "table(a.q; bump)"}
+    points = {**given, "force": "table(a.q; 0: 0, 0.5: 2, 1: 0)"}
+    made = client.post("/v1/trees", json={**TREE, "loads": [SPRING, TORQUE, given], "tables": curve})
+    assert made.status_code == 201, made.text
+    assert made.json()["loads"][2] == points
+    same = client.post("/v1/trees", json={**TREE, "loads": [SPRING, TORQUE, points]})
+    assert (same.status_code, same.json()["digest"]) == (200, made.json()["digest"])
+    assert client.delete("/v1/trees/pair/loads/j").status_code == 201
+    again = client.post("/v1/trees/pair/loads", json={**given, "tables": curve})
+    assert (again.status_code, again.json()["loads"][2]) == (201, points)
+    wrong = client.post("/v1/trees/pair/loads", json={**given, "name": "k", "tables": {"bump": "0,0\n0,1"}})
+    assert [(e["pointer"], e["code"]) for e in wrong.json()["errors"]] == [("/tables/bump", "bad-table")]
+    loads = [{"type": "joint", "coordinate": "q", "force": "table(q; bump)"}]
+    part = {**PART, "loads": loads, "tables": curve}
+    stored = client.post("/v1/substructures", json=part)
+    assert stored.status_code == 201, stored.text
+    shown = client.get("/v1/substructures/bar/definition").json()
+    assert "tables" not in shown
+    assert shown["loads"][0]["force"] == "table(q; 0: 0, 0.5: 2, 1: 0)"
+    missing = client.post("/v1/substructures", json={**part, "tables": {"other": "0,0\n1,1"}})
+    assert [(e["pointer"], e["code"]) for e in missing.json()["errors"]] == [("/loads/0/force", "unknown-table")]
+
+
 def test_loads_are_stored_shown_and_changed(client: TestClient) -> None:
     made = client.post("/v1/trees", json=TREE)
     assert made.status_code == 201, made.text

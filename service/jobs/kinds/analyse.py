@@ -83,7 +83,7 @@ def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     request = item["request"]
-    needed = bool(request.get("reactions")) or request.get("friction") == "loaded"
+    needed = any(map(request.get, ("reactions", "powers"))) or request.get("friction") == "loaded"
     has_parts = ANALYSES[item["analysis"]].needs_parts or needed
     return pinned(item, library, item["limits"]["program_nodes"], has_parts)
 

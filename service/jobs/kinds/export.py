@@ -15,7 +15,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from service.analyses.binding import DEFAULTS, bindings, bound, unit_faults
+from service.analyses.binding import DEFAULTS, bindings, unit_faults
 from service.analyses.exporting import (
     ALL_TARGETS,
     DEFAULT_OPTIONS,
@@ -44,6 +44,7 @@ from service.analyses.printing import (
     options_of_quantity,
     quantities,
     text_of,
+    with_numbers,
     with_options,
 )
 from service.analyses.source import Source
@@ -64,7 +65,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
 from substructures.printers.render import FORMS
-from substructures.quantities.evaluation import REACTIONS, Sources
+from substructures.quantities.evaluation import POWERS, REACTIONS
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
 from substructures.tree.glossary import glossary
@@ -139,10 +140,10 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
     """An unknown quantity, and options that it cannot have."""
     quantity, options = item["quantity"], item["options"]
     outputs = [name for name in summary["operations"] if name != "total"]
-    others = (*DERIVED, *OUTPUTS, REACTIONS, *QUANTITIES, *WITH_DOCUMENT)
+    others = (*DERIVED, *OUTPUTS, REACTIONS, POWERS, *QUANTITIES, *WITH_DOCUMENT)
     if quantity not in others and all(name not in outputs for name in quantities(quantity)):
         names = dict.fromkeys(
-            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
+            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
         )
         message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
         yield Fault("/quantity", "unknown-quantity", message)
@@ -237,9 +238,9 @@ def _part_package(item: ItemDocument, blobs: Blobs) -> Package:
 
 def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     source = source_of(item, blobs, {"program_nodes": item["nodes"]})
-    sources, request = Sources(source.model, regressor=source.regressor, reactions=source.reactions), read_item(item)
+    request = read_item(item)
     return tree_package(
-        sources,
+        source.sources(),
         item["called"],
         item["tree"],
         source.digest,
@@ -261,17 +262,13 @@ def _place(pointer: str) -> str:
 
 
 def _stored(source: Source, item: ItemDocument, style: Style) -> str:
-    quantity, model, sources = (
-        item["quantity"],
-        source.model,
-        Sources(source.model, regressor=source.regressor, reactions=source.reactions),
-    )
+    quantity, model, sources = item["quantity"], source.model, source.sources()
     check_quantity(model, quantity)
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
-    program = bound(model_quantity(sources, quantity), parameters, style.bind)
+    program = with_numbers(model_quantity(sources, quantity), parameters, model.inputs, style)
     parts = source.parts
-    named = None if parts is None else names_of_steps(style, parameters, lambda: glossary(*parts()))
+    named = None if parts is None else names_of_steps(style, parameters, model.inputs, lambda: glossary(*parts()))
     return text_of(program, style, quantity, _interface(source), members, item["nodes"], glossary=named)
 
 
@@ -289,7 +286,7 @@ def _followed(source: Source, item: ItemDocument, style: Style) -> str:
             found = follow(source, item["request"])
     else:
         found = made(source, name, options)
-    return made_text(found, name, _interface(source), source.model.parameters, style, item["nodes"])
+    return made_text(found, name, _interface(source), source.model, style, item["nodes"])
 
 
 def _interface(source: Source) -> Interface:

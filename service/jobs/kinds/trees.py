@@ -15,6 +15,7 @@ from service.settings import Limits
 from substructures.documents import read_json
 from substructures.part.definition import Definition
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.powers import PowerModel, powers
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import Instance, TreeSpec
@@ -25,6 +26,7 @@ CAPACITY = 2_000_000  # operations
 TREES = 200  # with what judges their values
 
 _plausibilities: Cache[Plausibility] = Cache(TREES, lambda _: 1)
+_powers: Cache[PowerModel] = Cache(CAPACITY, lambda found: len(found.program))
 _reactions: Cache[ReactionModel] = Cache(CAPACITY, lambda found: len(found.program))
 _regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
 
@@ -32,8 +34,8 @@ _regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.pro
 def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
     """The item with its tree pinned, and the digests of the blobs that it needs: program and definitions.
 
-    ``has_parts``: also the parts, from which regressor and reactions are derived with at most ``nodes`` operations.
-    Raises InvalidDocument.
+    ``has_parts``: also the parts, from which regressor, reactions and powers are derived with at most ``nodes``
+    operations. Raises InvalidDocument.
     """
     tree = known_tree(item, library)
     spec = read_json(tree.spec.encode())
@@ -67,7 +69,19 @@ def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
     regressor = (lambda: regressor_of(item, blobs)) if "parts" in item else None
     plausibility = (lambda: plausibility_of(item, blobs)) if "spec" in item else None
     transmitted = (lambda: reactions_of(item, blobs)) if "parts" in item else None
-    return Sources(model_of(item, blobs), regressor=regressor, plausibility=plausibility, reactions=transmitted)
+    by_load = (lambda: powers_of(item, blobs)) if "parts" in item else None
+    model = model_of(item, blobs)
+    return Sources(model, regressor=regressor, plausibility=plausibility, reactions=transmitted, powers=by_load)
+
+
+def powers_of(item: ItemDocument, blobs: Blobs) -> PowerModel:
+    """The powers of loads and joints of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
+    found = _powers.get(_key(item))
+    if found is None:
+        parts = item["parts"]
+        found = powers(*tree_parts(parts, blobs), parts["nodes"])
+        _powers.put(_key(item), found)
+    return found
 
 
 def reactions_of(item: ItemDocument, blobs: Blobs) -> ReactionModel:
@@ -107,5 +121,6 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
         Limits(**limits),
         plausibility=judge,
         reactions=sources.reactions,
+        powers=sources.powers,
         parts=(lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None,
     )

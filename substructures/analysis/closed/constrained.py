@@ -76,7 +76,7 @@ class Constrained:
 
         Raises InvalidInput (``/q``, ``/inputs/name``, ``/prescribed/name``, ...) and MissingValue.
         """
-        self.model, self.n = model, model.dof
+        self.model, self.n, start = model, model.dof, start.with_defaults(model)
         needs = [*NEEDS, *(CLOSED if model.closures else ())]
         self.conditions = read_conditions(model, start, span, needs, events, series)
         self.prescribed = Prescribed(model, prescribed or {}, span)

@@ -24,7 +24,7 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
     ZeroDivisionError where a derivative is infinite.
     """
     graph = Graph()
-    # inputs that are not given are 0
+    # inputs that are not given, and have no default, are 0
     absent = {s.name: graph.zero for s in model.program.symbols if s.kind == "input" and s.name not in inputs}
     found = replay(model.program, graph, absent, [*outputs, "forces", "potential_energy"])
     potential = graph.zero + found["potential_energy"].entries.get((), 0)

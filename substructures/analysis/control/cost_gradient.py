@@ -26,6 +26,7 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.quantities.states import input_defaults
 from substructures.tree.model import Model
 
 FAILED = (
@@ -124,7 +125,8 @@ def cost_gradient(
     )
     require_solvable(model, problem)
     require_known("vary", "parameter", vary, model.parameters)
-    return _gradient(model, problem, values or {}, tuple(vary), positive(error_limit, "error_limit"))
+    own = {name: x for name, x in input_defaults(model).items() if name in problem.controls}
+    return _gradient(model, problem, {**own, **(values or {})}, tuple(vary), positive(error_limit, "error_limit"))
 
 
 def _gradient(

@@ -64,7 +64,7 @@ class ControlProblem:
     ``controls``: names of inputs. A control is constant in each of the ``intervals`` of the ``horizon`` [s] (``hold``:
     constant) or linear between its ends (linear); ``steps``: Runge-Kutta steps in each of them. The motion starts at
     ``q`` [rad, m] with ``qd`` [rad/s, m/s] (default: at rest) at the time ``t`` [s]; ``inputs``: constant values of the
-    other inputs [N m, N] (default 0); ``parameters`` instead of their defaults. Raises InvalidArgument.
+    other inputs [N m, N] (default: their own, or 0); ``parameters`` instead of their defaults. Raises InvalidArgument.
     """
 
     controls: Sequence[str]

@@ -34,7 +34,7 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import MissingValue
 from substructures.mechanics.accelerations import cholesky_solve
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.states import read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
 #: c_i = a_(i, i-1) and b_i of the scheme
@@ -247,7 +247,7 @@ class Shooting:
 
 def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
-    inputs = problem.inputs or {}
+    inputs = with_input_defaults(model, problem.inputs or {})
     given = {"q": [0.0] * model.dof, "parameters": problem.parameters}
     known = symbol_values(model, given, read_states(model, given, None), ())
     values = {name: float(known[name]) for name in model.parameters if name in known}

@@ -29,6 +29,7 @@ from substructures.expr.program import Entries, Formulas, Program, array, progra
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
+from substructures.quantities.states import input_defaults
 from substructures.tree.model import Model
 
 IntegralKind = Literal["energy", "cyclic", "symmetry", "linear_momentum", "angular_momentum"]
@@ -70,15 +71,16 @@ class FirstIntegrals:
         return {"integrals": [vars(i) for i in self.integrals], "cyclic": list(self.cyclic)}
 
 
-def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str] = ()) -> FirstIntegrals:
+def first_integrals(model: Model, inputs: Iterable[str] | None = None, zero: Iterable[str] = ()) -> FirstIntegrals:
     """Everything constant that follows from symmetry, with the energy (also where it is not constant).
 
-    ``inputs``: inputs that may have any value; all others are 0. ``zero``: parameters that are 0.
+    ``inputs``: inputs that may have any value (default: those whose own default is not 0); all others are 0.
+    ``zero``: parameters that are 0.
     What the reactions of closures could change, whatever they are, is not constant.
     Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     known = model.input_names
-    inputs, zero = list(inputs), list(zero)
+    inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
     faults = [
         Fault(
             f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(some)}"
@@ -90,6 +92,11 @@ def first_integrals(model: Model, inputs: Iterable[str] = (), zero: Iterable[str
     if faults:
         raise InvalidArgument(faults)
     return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
+
+
+def acting_inputs(model: Model) -> list[str]:
+    """The inputs that act where none is given: those with a default that is not 0."""
+    return [name for name, value in input_defaults(model).items() if value]
 
 
 @lru_cache(maxsize=32)

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.analysis.equations.elimination import MetricElimination
-from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
+from substructures.analysis.equations.first_integrals import FirstIntegrals, acting_inputs, first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.certificate.integrals import reduced
 from substructures.errors import InvalidArgument
@@ -47,7 +47,8 @@ class Reduced:
 
 
 def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
-    """The model without the given cyclic coordinates (default: all), inputs at 0, as formulas.
+    """The model without the given cyclic coordinates (default: all), as formulas; inputs are 0, but for those with
+    another default, which stay symbols.
 
         h q''_r + Gamma^h q'_r q'_r + B q'_r = f        q'_c = K q'_r + g_cc^-1 p,  p constant
 
@@ -58,7 +59,8 @@ def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
     found: FirstIntegrals = first_integrals(model)
     names = list(found.cyclic if coordinates is None else dict.fromkeys(coordinates))
     cyclic = require_cyclic(model, found, names)
-    inputs = [s.name for s in model.program.symbols if s.kind == "input"]
+    acting = acting_inputs(model)
+    inputs = [s.name for s in model.program.symbols if s.kind == "input" and s.name not in acting]
     return _Reduction(ModelFormulas(model, inputs), cyclic).reduced()
 
 

@@ -16,6 +16,7 @@ from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
+from substructures.certificate.powers import OUTPUT as POWERS
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks
@@ -27,7 +28,8 @@ from substructures.tree.model import Model
 #: names of series and arrays that trajectories have by themselves
 RESERVED = frozenset(
     ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
-) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction", *REACTIONS}
+) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction"}
+RESERVED |= {POWERS, *REACTIONS}
 
 
 @dataclass(frozen=True)

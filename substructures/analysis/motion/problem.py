@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from substructures.analysis.arguments import NumberOrExpression, Numbers, in_range, one_of, positive, whole
@@ -11,6 +11,7 @@ from substructures.analysis.motion.events import Event
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.steppers import METHODS, Stepper, scipy_stepper
+from substructures.quantities.states import with_input_defaults
 from substructures.tree.model import Model
 
 TAYLOR = "Taylor"
@@ -21,13 +22,17 @@ StateVector = Numbers | Mapping[str, Any]
 @dataclass(frozen=True)
 class Start:
     """A state and what acts there: ``q`` [rad, m], ``qd`` [rad/s, m/s] (0 by default), ``parameters`` in place of their
-    defaults, ``inputs`` [N m, N] by name (0 by default).
+    defaults, ``inputs`` [N m, N] by name (their defaults, or 0, where they are not given).
     """
 
     q: StateVector | None
     qd: StateVector | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     inputs: Mapping[str, Signal] = field(default_factory=dict)
+
+    def with_defaults(self, model: Model) -> Start:
+        """The same with the inputs that are not given at their defaults."""
+        return replace(self, inputs=with_input_defaults(model, self.inputs))
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,7 @@ class MotionProblem:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "drift_limit", positive(self.drift_limit, "drift_limit"))
+        object.__setattr__(self, "start", self.start.with_defaults(self.model))
 
     @property
     def span(self) -> tuple[float, float]:

@@ -36,7 +36,7 @@ class Trajectory:
     to there. ``steps``: accepted steps of the integrator. ``figures``: numbers about the computation (evaluations of
     the right-hand side, seconds, real-time factor). ``cancelled``: stopped by whoever watched its progress.
     ``reached``: lowest and highest values of the coordinates on the way, (n,) each, between steps too; ``limits``:
-    those of the joints; ``warnings``: what was left of them. ``joints``: the rows of reactions.
+    those of the joints; ``warnings``: what was left of them. ``joints``: the rows of reactions, ``loads``: of powers.
     """
 
     coordinates: tuple[str, ...]
@@ -55,6 +55,7 @@ class Trajectory:
     limits: Mapping[str, list[float]] = field(default_factory=dict)
     warnings: tuple[Mapping[str, str], ...] = ()
     joints: tuple[str, ...] = ()
+    loads: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         when = f"t = {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else "at no time"
@@ -95,4 +96,5 @@ class Trajectory:
             "limits": dict(self.limits),
             "warnings": [dict(warning) for warning in self.warnings],
             **({"joints": list(self.joints)} if self.joints else {}),
+            **({"loads": list(self.loads)} if self.loads else {}),
         }

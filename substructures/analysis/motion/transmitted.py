@@ -26,11 +26,13 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     ``start``: what the motion began with. Accelerations and multipliers are those of the motion: of closures the series
     ``qdd`` and ``multipliers``, else q'' = g^-1 (Q - Gamma q' q').
     """
+    if has_not_begun(model, motion):
+        return motion
     span = float(motion.t[0]), float(motion.t[-1])
     conditions = read_conditions(model, start, span, ())
-    values: dict[str, Any] = {**conditions.values, **_states(model, motion)}
+    values: dict[str, Any] = {**conditions.values, **state_values(model, motion)}
     values |= conditions.inputs_at(motion.t, np.concatenate([motion.q, motion.qd], axis=1))
-    seconds = _accelerations(model, motion, values)
+    seconds = accelerations(model, motion, values)
     values |= {f"{name}''": seconds[:, a] for a, name in enumerate(model.coordinates)}
     rows = [f"lambda.{closure.name}.{row}" for closure in model.closures for row in closure.rows]
     values |= {name: motion.series["multipliers"][:, k] for k, name in enumerate(rows)}
@@ -38,12 +40,18 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     return replace(motion, series={**motion.series, **found}, joints=transmitted.rows)
 
 
-def _states(model: Model, motion: Trajectory) -> dict[str, Array]:
+def has_not_begun(model: Model, motion: Trajectory) -> bool:
+    """Whether a motion with closures has no accelerations, since they could not be closed at the start."""
+    return bool(model.closures) and motion.status == "failed" and "qdd" not in motion.series
+
+
+def state_values(model: Model, motion: Trajectory) -> dict[str, Array]:
+    """Time, coordinates and velocities (K,) by their symbols."""
     found = {"t": motion.t} | {name: motion.q[:, a] for a, name in enumerate(model.coordinates)}
     return found | {f"{name}'": motion.qd[:, a] for a, name in enumerate(model.coordinates)}
 
 
-def _accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any]) -> Array:
+def accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any]) -> Array:
     """q'' (K, n) of the motion."""
     if "qdd" in motion.series:
         return motion.series["qdd"]

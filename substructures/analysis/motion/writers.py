@@ -9,6 +9,7 @@ import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
+from substructures.certificate.powers import OUTPUT as POWERS
 
 
 def to_npz(trajectory: Trajectory) -> bytes:
@@ -21,7 +22,7 @@ def to_npz(trajectory: Trajectory) -> bytes:
 
 def to_csv(trajectory: Trajectory) -> str:
     """One row for every time: t, coordinates, velocities (q'), series (components numbered from 1, those of reactions
-    named by joint and axis); 17 digits.
+    named by joint and axis, powers ``power.<row>``); 17 digits.
     """
     columns: list[tuple[str, Array]] = [("t", trajectory.t)]
     columns += [(name, trajectory.q[:, a]) for a, name in enumerate(trajectory.coordinates)]
@@ -31,6 +32,8 @@ def to_csv(trajectory: Trajectory) -> str:
         labels = [str(k + 1) for k in range(flat.shape[1])]
         if values.ndim == 3 and values.shape[1] == len(trajectory.joints):
             labels = [f"{joint}.{axis}" for joint in trajectory.joints for axis in "xyz"]
+        if name == POWERS and trajectory.loads:
+            name, labels = "power", list(trajectory.loads)
         columns += [(f"{name}.{label}" if many else name, x) for label, x in zip(labels, flat.T, strict=True)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -17,6 +17,7 @@ from substructures.analysis.stability.linearisation_result import ClosedLinearis
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check
 from substructures.array import Array
+from substructures.quantities.states import with_input_defaults
 from substructures.tree.model import Model
 
 #: singular values of K below this share of the largest leave a direction undetermined
@@ -78,13 +79,13 @@ def equilibria(
 
     Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
     distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
-    ``inputs`` [N m, N] (0 by default) stay as they are. Starts of closed loops are first moved onto the closures; an
-    equilibrium in a singular position has a linearisation that is ``failed``. That none is found is a result with
-    advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative) and
-    MissingValue. Source: notation.md, section 7.
+    ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first moved onto the
+    closures; an equilibrium in a singular position has a linearisation that is ``failed``. That none is found is a
+    result with advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without
+    derivative) and MissingValue. Source: notation.md, section 7.
     """
     require_moving(model)
-    conditions = RestConditions(t, parameters or {}, inputs or {})
+    conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))
     within = SearchRange(starts, count, reach, seed)
     search = ClosedSearch(model, within, conditions) if model.closures else RestSearch(model, within, conditions)
     places = search.starts()

@@ -19,7 +19,7 @@ from substructures.analysis.stability.vibrations import first_order, input_matri
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import cholesky_solve
-from substructures.quantities.states import States, read_states, symbol_values
+from substructures.quantities.states import States, read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces")
@@ -42,17 +42,19 @@ def linearise(
         M dq'' + D dq' + K dq = F du        dx' = A dx + B du,  dy = C dx + Dy du,  x = (q, q')
 
     ``q``, ``qd``, ``qdd`` (n,) or (N, n), or by coordinate [rad, m, s]; ``qd`` is 0 by default, ``qdd`` that of the
-    motion. ``t`` [s], ``parameters`` (in place of their defaults) and ``inputs`` [N m, N] (0 by default): one number,
-    or (N,). ``outputs``: y by name, expressions in q, q', inputs, parameters and t; ``of_inputs``: the columns of B and
-    D (default all). A model with closures is linearised about the closed state nearest to one given state, without
-    ``qdd``, in independent coordinates, which gives a ClosedLinearisation.
+    motion. ``t`` [s], ``parameters`` (in place of their defaults) and ``inputs`` [N m, N] (their defaults, or 0): one
+    number, or (N,). ``outputs``: y by name, expressions in q, q', inputs, parameters and t; ``of_inputs``: the columns
+    of B and D (default all). A model with closures is linearised about the closed state nearest to one given state,
+    without ``qdd``, in independent coordinates, which gives a ClosedLinearisation.
 
     Numerical failures (a singular metric, loops that cannot be closed) are results with status ``failed`` and advice.
     Raises InvalidInput (``/q``, ``/outputs/y``, ``/of_inputs/i``, ...; ``not-smooth`` for forces without derivative)
     and MissingValue. Source: P. C. Mueller and W. O. Schiehlen, Linear Vibrations, 1985; notation.md, section 7.
     """
     require_moving(model)
-    point = OperatingPoint(model, q, qd, qdd, t, parameters or {}, inputs or {}, outputs or {}, of_inputs)
+    point = OperatingPoint(
+        model, q, qd, qdd, t, parameters or {}, with_input_defaults(model, inputs or {}), outputs or {}, of_inputs
+    )
     return linearise_closed(point) if model.closures else _linearise_tree(point)
 
 

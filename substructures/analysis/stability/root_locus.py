@@ -57,9 +57,9 @@ def root_locus(
     """Eigenvalues of x' = A x at an equilibrium, in branches that change least from value to value of a parameter.
 
     ``parameter`` takes the ``values`` (N,) one after the other; ``q`` (n,) [rad, m]: where the first equilibrium is
-    near to. ``parameters``: all others, in place of their defaults; ``inputs``: constant [N m, N], 0 by default. An
-    equilibrium that is lost ends the locus with advice. Raises InvalidInput (``/parameter``, ``/values``, ``/q``, ...)
-    and MissingValue. Source: W. R. Evans, Graphical analysis of control systems, Trans. AIEE 67, 1948.
+    near to. ``parameters``: all others, in place of their defaults; ``inputs``: constant [N m, N], their defaults,
+    or 0. An equilibrium that is lost ends the locus with advice. Raises InvalidInput (``/parameter``, ``/values``,
+    ``/q``, ...) and MissingValue. Source: W. R. Evans, Graphical analysis of control systems, Trans. AIEE 67, 1948.
     """
     at = reals(values, "/values")
     if not 0 < len(at) <= MAX_VALUES:

@@ -35,6 +35,7 @@ from substructures.analysis.stability.vibrations import Mode, Stability, modes, 
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument
+from substructures.quantities.states import with_input_defaults
 from substructures.tree.model import Model
 
 Held = Literal["momenta", "rates"]
@@ -127,7 +128,7 @@ def steady_motions(
     """
     require_moving(model)
     one_of(held, "held", ("momenta", "rates"))
-    conditions = RestConditions(0.0, parameters or {}, inputs or {})
+    conditions = RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
     given, field = _given(rates, momenta, held)
     moving = _moving(model, conditions, given, field, held)
     wanted = np.array([given.get(model.coordinates[s], 0.0) for s in moving])

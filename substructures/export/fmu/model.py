@@ -43,7 +43,9 @@ def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) 
     lines += ["const unsigned FMU_SIZES[] = {", *_wrapped(map(str, sizes)), "};", ""]
     lines += ["void fmu_start(double *q, double *qd, double *u, double *p)", "{"]
     lines += ["    memset(q, 0, FMU_NQ * sizeof *q);", "    memset(qd, 0, FMU_NQ * sizeof *qd);"]
-    lines += ["    if (FMU_NU > 0) memset(u, 0, FMU_NU * sizeof *u);", f"    {core.name}_defaults(p);", "}", ""]
+    lines += ["    if (FMU_NU > 0) memset(u, 0, FMU_NU * sizeof *u);"]
+    lines += [f"    u[{i}] = {x!r};" for i, x in enumerate(layout.interface.vectors["u"].defaults) if x]
+    lines += [f"    {core.name}_defaults(p);", "}", ""]
     lines += _function(f"fmu_dynamics({_OF_STATE}, double *qdd)", "t q qd u p qdd", _calls(core, [dynamics], "qdd"))
     lines += _function(
         f"fmu_outputs({_OF_ALL}, double *y)", "t q qd qdd u p y", _calls(core, list(layout.outputs), "y")

@@ -116,7 +116,8 @@ class Layout:
                 Variable(f"der({n})", begins[symbol] + i, "local", x, of=begins[of] + i)
                 for i, (n, x) in _named(names, units)
             ]
-        found += [Variable(n, begins["u"] + i, "input", x, start=0.0) for i, (n, x) in _named(u.names, u.units)]
+        starts = u.defaults or (0.0,) * len(u)
+        found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(u.names, u.units)]
         for i, (name, unit) in _named(p.names, p.units):
             if not isfinite(p.defaults[i]):
                 raise MissingValue(f"'{name}' has no value: give one, or a default in its definition")

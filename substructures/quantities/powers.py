@@ -1,0 +1,129 @@
+"""The power of every load and joint, as formulas: P = Q_a q'^a [W] of the generalised forces Q_a of each alone.
+
+Rows, in this order: ``gravity``; ``joint arm.q1`` of the spring, damper, friction and stops of each joint;
+``tau.arm.q1`` of each actuator; the loads of parts by type and place in the definition, ``spring arm.loads/0``; the
+loads of the tree by type and name, ``bushing mount``. Closures do no work. The rows add up to Q_a q'^a, which is dT/dt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.certificate.compare import compare
+from substructures.certificate.powers import OUTPUT, power_outputs
+from substructures.certificate.states import states_needed
+from substructures.certificate.tree_outputs import tree_symbols
+from substructures.errors import TooLarge, VerificationFailed
+from substructures.expr.graph import Expr
+from substructures.expr.program import Program, array, program
+from substructures.expr.replay import replay
+from substructures.part.certificate import defaults_of
+from substructures.part.certificate import plain as plain_document
+from substructures.part.load_forces import load_forces, wrench_counts
+from substructures.part.outputs import over_formulas
+from substructures.part.part import MAX_NODES, Part
+from substructures.tree.applied_wrenches import part_symbols
+from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.coupling import couple_parts, wrench_forces
+from substructures.tree.document import TreeSpec
+from substructures.tree.loads import loads_apart
+from substructures.tree.model_outputs import rate_symbols
+from substructures.tree.mounted_part import PlacedPart
+
+#: (row, Q_a by index in the tree)
+Row = tuple[str, Mapping[int, Any]]
+
+
+@dataclass(frozen=True)
+class PowerModel:
+    """Powers of a tree. ``program``: the output ``powers`` (rows,) [W], functions of t, q, q', inputs and parameters;
+    ``rows``: what each is of.
+    """
+
+    program: Program
+    rows: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+
+
+def powers(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> PowerModel:
+    """The powers of a tree of stored parts (by instance name).
+
+    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
+    VerificationFailed unless every row is what the documents say.
+    """
+    assembly = assemble(spec, parts)
+    rates = rate_symbols(assembly)[0]
+    try:
+        found = list(_rows(assembly, rates))
+    except ZeroDivisionError:
+        raise division_by_zero(spec, assembly) from None
+    graph, rows = assembly.scope.graph, tuple(name for name, _ in found)
+    # P = Q_a q'^a
+    watts = [graph.sum(graph.lift(Q) * rates[a] for a, Q in forces.items()) for _, forces in found]
+    result = program(graph, {OUTPUT: array((len(rows),), lambda k: watts[k])}, assembly.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge("the powers (in operations)", len(result), max_nodes)
+    _certify(spec, parts, result, rows)
+    return PowerModel(result, rows, assembly.parameters)
+
+
+def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, rows: Sequence[str]) -> None:
+    tree = plain_document(spec)
+    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
+    defaults = defaults_of(tree)
+    for name, definition in definitions.items():
+        defaults |= defaults_of(definition, f"{name}.")
+    try:
+        compare(
+            result,
+            tree_symbols(tree, definitions),
+            lambda values: power_outputs(tree, definitions, rows, values),
+            defaults,
+            states_needed(result.operations, [tree, *definitions.values()]),
+        )
+    except VerificationFailed as error:
+        raise VerificationFailed(f"powers: {error}") from None
+
+
+def _rows(assembly: Assembly, rates: Sequence[Expr]) -> Iterator[Row]:
+    graph = assembly.scope.graph
+    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel=False)
+    yield "gravity", dict(enumerate(coupled.gravity))
+    of_parts = [
+        (instance.name, here, _of_definition(assembly, instance.name, here))
+        for instance, here in zip(assembly.instances, coupled.placed, strict=True)
+    ]
+    for name, here, own in of_parts:
+        for c, coordinate in enumerate(here.part.coordinates):
+            yield f"joint {name}.{coordinate}", {here.first + c: own["joint"].get((c,), 0)}
+    for name, here, _ in of_parts:
+        for c, joint in enumerate(here.part.topology.joints):
+            effort = f"tau.{name}.{joint.coordinate}"
+            yield effort, {here.first + c: assembly.scope.declare(effort, "input", "N" if joint.s else "N m")}
+    for name, here, own in of_parts:
+        yield from _loads(name, here, own["load"])
+    if assembly.reading.spec.loads:
+        apart = loads_apart(assembly, coupled.placed, rates)
+        for load, found in zip(assembly.reading.spec.loads, apart, strict=True):
+            yield f"{load.type} {load.name}", found.forces
+
+
+def _of_definition(assembly: Assembly, instance: str, here: PlacedPart) -> dict[str, Mapping[tuple[int, ...], Expr]]:
+    """Q_a of the joints and loads of a part by index, in the symbols of the tree."""
+    known = load_forces(here.part.definition)
+    found = replay(known, assembly.scope.graph, part_symbols(assembly, here, instance, known))
+    return {name: formulas.entries for name, formulas in found.items()}
+
+
+def _loads(name: str, here: PlacedPart, own: Mapping[tuple[int, ...], Expr]) -> Iterator[Row]:
+    """Of the loads of a part: what acts between its bodies, and what acts on them, with the host, too."""
+    definition, wrenches = here.part.definition, here.applied_wrenches()
+    counts = wrench_counts(definition, here.part.topology.carrier)
+    for i, (load, count) in enumerate(zip(definition.loads, counts, strict=True)):
+        forces: dict[int, Any] = {here.first + a: Q for (k, a), Q in own.items() if k == i}
+        for _ in range(count):
+            for a, Q in wrench_forces(here, *next(wrenches)).items():
+                forces[a] = forces[a] + Q if a in forces else Q
+        yield f"{load.type} {name}.loads/{i}", forces
