@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from substructures.documents import Document, DocumentPart
 from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, unit_of
@@ -205,7 +205,78 @@ class PotentialLoad(DocumentPart):
     potential: Number = Field(description="J")
 
 
-Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad | PotentialLoad, Field(discriminator="type")]
+class FrictionLoad(JointFriction):
+    """Dry friction of a coordinate, as the field ``friction`` of its joint; a coordinate has one."""
+
+    type: Literal["friction"]
+    coordinate: Name
+
+
+class _Between(DocumentPart):
+    """``from`` and ``to``: bodies (``base`` among them) or ports."""
+
+    from_: Name = Field("base", alias="from", description="body or port")
+    to: Name = Field(description="body or port")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+
+class BushingLoad(_Between):
+    """Springs and dampers along and about the three axes of the frame ``from``, between the origins of both frames.
+
+    d: from the origin of ``from`` to that of ``to``, forces -k_i d_i - c_i d_i' on ``to`` along the axes of ``from``.
+    The angular springs have the potential sum_j h_j (1 - e_j . m_j) of the axes e_j of ``from`` and m_j of ``to``, with
+    h_j = (k_1 + k_2 + k_3)/2 - k_j: moments -k_i theta_i for small angles.
+    """
+
+    type: Literal["bushing"]
+    stiffness: NumberVector = Field((0, 0, 0), description="N/m; along the three axes")
+    damping: NumberVector = Field((0, 0, 0), description="N s/m; along the three axes")
+    angular_stiffness: NumberVector = Field((0, 0, 0), description="N m/rad; about the three axes")
+    angular_damping: NumberVector = Field((0, 0, 0), description="N m s/rad; about the three axes")
+
+
+class ForceBetween(_Between):
+    """A force on the frame ``to`` at a point; the opposite force acts on ``from`` at the same place."""
+
+    type: Literal["force"]
+    at: NumberVector = Field((0, 0, 0), description="m; the point in the frame 'to'")
+    vector: NumberVector = Field(description="N")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+class TorqueBetween(_Between):
+    """A free moment on the frame ``to``; the opposite one acts on ``from``."""
+
+    type: Literal["torque"]
+    vector: NumberVector = Field(description="N m")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+def _one_or_two(data: Any) -> str:
+    """Whether a force or torque acts on one body, or between two frames."""
+    named = data if isinstance(data, Mapping) else type(data).model_fields
+    return "between" if {"from", "from_", "to"} & set(named) else "on"
+
+
+#: a force or torque on a body, or between two frames
+_Force = Annotated[
+    Annotated[ForceLoad, Tag("on")] | Annotated[ForceBetween, Tag("between")], Discriminator(_one_or_two)
+]
+_Torque = Annotated[
+    Annotated[TorqueLoad, Tag("on")] | Annotated[TorqueBetween, Tag("between")], Discriminator(_one_or_two)
+]
+
+
+def _without_mapping(schema: dict[str, Any]) -> None:
+    """OpenAPI has no discriminator that maps a word to two schemas."""
+    schema.pop("discriminator", None)
+
+
+Load = Annotated[
+    _Force | _Torque | SpringLoad | BushingLoad | JointLoad | PotentialLoad | FrictionLoad,
+    Field(discriminator="type", json_schema_extra=_without_mapping),
+]
 
 
 class Input(Measured):
