@@ -30,6 +30,6 @@ def load_of_part(load: TreeLoad, names: PartNames) -> dict[str, Any]:
             # from outside of the part
             frame = "body" if load.axes == "to" else "world"
             return {"type": load.type, "body": names.frame(load.to), "frame": frame, **read}
-    words = {end: names.frame(plain[end]) for end in ("from", "to") if end in plain}
-    words |= {"axes": plain["axes"]} if "axes" in plain else {}
+    words: dict[str, Any] = {field: x for field, x in plain.items() if field == "axes"}
+    words |= {field: names.frame(x) for field, x in plain.items() if field in ("from", "to")}
     return {"type": load.type, **words, **read}

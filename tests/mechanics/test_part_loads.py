@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from random_trees import Kind, Plain, random_definition, random_states, vector
 
-from substructures import Definition, Model, Part, TreeSpec, couple, derive
+from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, couple, derive
 from substructures.analysis.simulate import simulate
+from substructures.pictures.tree import picture
 from substructures.quantities.evaluation import Sources, evaluate
 from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.reactions import reactions
@@ -243,3 +244,41 @@ def test_friction_is_the_same_wherever_it_is_given() -> None:
     for forces, q in found[1:]:
         assert np.array_equal(forces, found[0][0])
         assert np.allclose(q, found[0][1], rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "place", "said"),
+    [
+        ({"coordinate": "a.y"}, "unknown-coordinate", "/loads/0/coordinate", "there are a.x"),
+        ({"coulomb": -1}, "bad-friction", "/loads/0/coulomb", "not negative"),
+        ({"velocity": 0}, "bad-friction", "/loads/0/velocity", "positive"),
+        ({"coulomb": "2*a.x"}, "unknown-name", "/loads/0/coulomb", "a.x"),
+        ({"velocity": {"value": 1, "unit": "rad/s"}}, "unit-mismatch", "/loads/0/velocity", "rad/s"),
+    ],
+)
+def test_friction_of_a_tree_that_is_wrong(change: Plain, code: str, place: str, said: str) -> None:
+    spec, parts = block("tree")
+    plain = spec.model_dump(exclude_defaults=True, by_alias=True)
+    wrong = TreeSpec.read({**plain, "loads": [{**plain["loads"][0], **change}]})
+    with pytest.raises(InvalidDocument) as raised:
+        couple(wrong, parts)
+    assert [(f.code, f.pointer, said in f.message) for f in raised.value.faults] == [(code, place, True)]
+
+
+@pytest.mark.parametrize("where", ["joint", "part", "tree"])
+def test_a_coordinate_has_one_friction(where: str) -> None:
+    spec, parts = block(where)
+    plain = spec.model_dump(exclude_defaults=True, by_alias=True)
+    more = {"name": "g", "type": "friction", "coordinate": "a.x", "coulomb": 1, "velocity": 1}
+    with pytest.raises(InvalidDocument) as raised:
+        couple(TreeSpec.read({**plain, "loads": [*plain.get("loads", ()), more]}), parts)
+    (fault,) = raised.value.faults
+    assert (fault.code, fault.pointer) == ("several-frictions", f"/loads/{int(where == 'tree')}/coordinate")
+
+
+def test_springs_and_bushings_of_a_part_are_drawn() -> None:
+    bushing = {"type": "bushing", "from": "x.b1", "to": "x.tip", "stiffness": [1, 1, 1]}
+    spec, parts = tree_of(definition_of(0, [bushing]))
+    without, bare = tree_of(definition_of(0, []))
+    drawn, empty = picture(spec, parts, couple(spec, parts)), picture(without, bare, couple(without, bare))
+    assert drawn.count("<polyline") == empty.count("<polyline") + 1
