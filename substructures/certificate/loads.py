@@ -10,6 +10,15 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from substructures.certificate.between import (
+    Between,
+    MeasuredNames,
+    Slopes,
+    bushing,
+    force_changes,
+    in_world,
+    torque_changes,
+)
 from substructures.certificate.bodies import (
     NONE,
     Bodies,
@@ -23,6 +32,7 @@ from substructures.certificate.linear import vector as triple
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import Steps, difference, names_of, negative, product, slope
 from substructures.expr.direct import steps_of
+from substructures.expr.syntax import measured
 
 
 class Forces:
@@ -48,8 +58,11 @@ class Forces:
         prefix: str = "",
         like: Forces | None = None,
     ) -> None:
-        self.bodies, self.numbers, self.joints, self.prefix = bodies, numbers, joints, prefix
-        self.definition, self.somewhere = definition, like.numbers.names if like else numbers.names
+        self.bodies, self.joints, self.prefix = bodies, joints, prefix
+        #: frames of the definition and measures of them, with which laws are read; ``constants``: numbers without them
+        self.constants, self.between = numbers, _OwnFrames(self, numbers)
+        self.numbers = self.between.numbers
+        self.definition, self.somewhere = definition, like.constants.names if like else numbers.names
         self.applied: dict[int, Ball] = {}
         self.wrenches: dict[int, Ball] = {}
         self.potential = self.dead = arb(0)
@@ -81,6 +94,40 @@ class Forces:
         x = frame.p + frame.A * self.numbers.vector(end.get("at", NONE))
         path = self.bodies.path(frame.carrier)
         return frame, x, {a: self.bodies.joints[a].v + cross(self.bodies.joints[a].w, x) for a in path}
+
+
+class _OwnFrames(Between):
+    """Between two bodies or ports of one definition: a host moves both like one body."""
+
+    def __init__(self, forces: Forces, numbers: Numbers) -> None:
+        self.forces, self.bodies = forces, forces.bodies
+        self.numbers = Numbers(MeasuredNames(self, numbers.names))
+
+    def frame(self, at: str) -> Frame:
+        """A body or port."""
+        return self.bodies.frames[f"{self.forces.prefix}{at}"]
+
+    def ends(self, load: Plain) -> tuple[Frame, Frame]:
+        """Both bodies or ports."""
+        return self.frame(load.get("from", "base")), self.frame(load["to"])
+
+    def rate(self, changes: Slopes) -> Ball:
+        """By the joints of the definition."""
+        return sum((x * self.forces.rate(a) for a, x in changes.items() if a in self.forces.joints), arb(0))
+
+    def add(self, law: Ball, changes: Slopes) -> None:
+        """To what is applied."""
+        _add(self.forces.applied, {a: law * x for a, x in changes.items() if a in self.forces.joints})
+
+    def keep(self, energy: Ball, law: Ball, changes: Slopes) -> None:
+        """To the potential."""
+        self.forces.potential += energy
+        _add(self.forces.slopes, {a: law * x for a, x in changes.items() if a in self.forces.joints})
+
+    def is_steady(self, *given: Any) -> bool:
+        """Whether numbers name no measures, coordinates and velocities."""
+        names = {name for x in given for name in names_of(steps_of(x))}
+        return not any(measured(name) or name.removesuffix("'") in self.forces.coordinates for name in names)
 
 
 def forces(
@@ -119,14 +166,22 @@ def joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
 
 
 def _friction(found: Forces, a: int, law: Plain | None) -> None:
-    """-(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0)."""
-    if law is None:
-        return
-    F, speed = found.numbers.read(law["coulomb"]), found.rate(a)
+    """Of a joint."""
+    if law is not None:
+        _add(found.applied, {a: -friction_force(found.numbers, law, found.rate(a))})
+
+
+def friction_force(numbers: Numbers, law: Plain, rate: Ball) -> Ball:
+    """(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0)."""
+    F = numbers.read(law["coulomb"])
     if law.get("stribeck") is not None:
-        ratio = speed / found.numbers.read(law["stribeck"])
-        F += (found.numbers.read(law.get("static", law["coulomb"])) - F) * (-ratio * ratio).exp()
-    _add(found.applied, {a: -F * (speed / found.numbers.read(law["velocity"])).tanh()})
+        ratio, static = rate / numbers.read(law["stribeck"]), law.get("static")
+        F += (numbers.read(law["coulomb"] if static is None else static) - F) * (-ratio * ratio).exp()
+    return F * (rate / numbers.read(law["velocity"])).tanh()
+
+
+def _friction_load(found: Forces, load: Plain) -> None:
+    _friction(found, found.index[found.prefix + load["coordinate"]], load)
 
 
 def _stops(found: Forces, a: int, q: Ball, stop: Plain | None, limits: Sequence[Any] | None) -> None:
@@ -146,7 +201,13 @@ def _stops(found: Forces, a: int, q: Ball, stop: Plain | None, limits: Sequence[
 def _joint_load(found: Forces, load: Plain) -> None:
     a = found.index[found.prefix + load["coordinate"]]
     _add(found.applied, {a: found.numbers.read(load["force"])})
-    found.given.setdefault(a, []).append(steps_of(load["force"]))
+    if not _measures(load["force"]):
+        found.given.setdefault(a, []).append(steps_of(load["force"]))
+
+
+def _measures(*given: Any) -> list[str]:
+    """The measures of frames that numbers name; what depends on them is a force without potential."""
+    return sorted({name for x in given for name in names_of(steps_of(x)) if measured(name)})
 
 
 def _potential(found: Forces, load: Plain) -> None:
@@ -157,10 +218,33 @@ def _potential(found: Forces, load: Plain) -> None:
         Q = -slope(load["potential"], found.numbers.names, name)
         _add(found.applied, {a: Q})
         _add(found.slopes, {a: Q})
+    for name in _measures(load["potential"]):
+        # -dV/ds ds/dq^a
+        law, changes = -slope(load["potential"], found.numbers.names, name), found.between.measure(name)[1]
+        found.between.add(law, changes)
+        found.between.keep(arb(0), law, changes)
+
+
+def _pair(found: Forces, load: Plain) -> None:
+    """What acts on two bodies of the definition; with a vector in the axes of the world it is kept for both."""
+    frames, is_torque = found.between, load["type"] == "torque"
+    A, B = frames.ends(load)
+    x, F = B.p + B.A * found.constants.vector(load.get("at", NONE)), in_world(frames, load)
+    changes = torque_changes(frames, load, F) if is_torque else force_changes(frames, load, F, x)
+    if load.get("axes", "to") != "world":
+        frames.add(arb(1), changes)
+        return
+    _add(found.wrenches, changes)
+    for frame, vector in ((B, F), (A, -F)):
+        back, origin = found.bodies.carrier(frame.carrier)
+        found.places.append((zeros(3, 1) if is_torque else back.transpose() * (x - origin), vector))
 
 
 def _force(found: Forces, load: Plain) -> None:
     """Q_a = F . u_a."""
+    if "to" in load:
+        _pair(found, load)
+        return
     frame, x, u = found.point(load)
     given = found.numbers.vector(load["vector"])
     F = given if load.get("frame") == "world" else frame.A * given
@@ -180,6 +264,9 @@ def _force(found: Forces, load: Plain) -> None:
 
 def _torque(found: Forces, load: Plain) -> None:
     """Q_a = M . w_a."""
+    if "to" in load:
+        _pair(found, load)
+        return
     frame = found.bodies.frames[found.prefix + load["body"]]
     given = found.numbers.vector(load["vector"])
     M = given if load.get("frame") == "world" else frame.A * given
@@ -241,6 +328,8 @@ def _spring(found: Forces, load: Plain) -> None:
     tension = k * (length - l0) + c * speed
     _add(found.applied, {a: -tension * w for a, w in reach.items()})
     pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
+    if _measures(load.get("stiffness", 0), load.get("length", 0)):
+        return
     if found.depends(load.get("stiffness", 0), load.get("length", 0)):
         if _is_gradient(found, load, (k, length - l0), reach):
             found.bent.append(pulls)
@@ -272,5 +361,7 @@ LOADS: dict[str, Callable[[Forces, Plain], None]] = {
     "force": _force,
     "torque": _torque,
     "spring": _spring,
+    "bushing": lambda found, load: bushing(found.between, load),
     "potential": _potential,
+    "friction": _friction_load,
 }

@@ -1,29 +1,36 @@
-"""Forces and energies of the loads of a tree at one state: each is the power of its law on changing points and axes.
+"""Forces and energies of the loads of a tree at one state (:mod:`.between`).
 
-A point x of a body moves with v_a + w_a x x for q'^a = 1, and an axis e with w_a x e, all in the axes of the world;
-lengths, components and angles change as these say. A new type of load is a function in :data:`LOADS`.
+A new type of load is a function in :data:`LOADS`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
+from substructures.certificate.between import (
+    HALF,
+    Between,
+    MeasuredNames,
+    Slopes,
+    bushing,
+    difference,
+    force_changes,
+    in_world,
+    torque_changes,
+)
 from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame
-from substructures.certificate.linear import Ball, Matrix, column, cross, dot, identity, zeros
+from substructures.certificate.linear import Ball, dot, identity, zeros
+from substructures.certificate.loads import friction_force
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import names_of, slope
 from substructures.expr.direct import steps_of
 from substructures.expr.syntax import measured
 
-HALF = fmpq(1, 2)
-Slopes = dict[int, Ball]
-_STILL = zeros(3, 1)
 
-
-class TreeForces:
+class TreeForces(Between):
     """``applied``: Q_a of all loads; ``potential``: V of those that have one, ``slopes`` its -dV/dq^a.
 
     ``numbers``: of the tree; ``constants``: the names of all parameters.
@@ -32,7 +39,7 @@ class TreeForces:
     def __init__(self, tree: Plain, bodies: Bodies, numbers: Numbers, constants: frozenset[str]) -> None:
         self.bodies, self.parameters = bodies, numbers
         self.coordinates = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
-        self.numbers = Numbers(_Names(self, numbers.names))
+        self.numbers = Numbers(MeasuredNames(self, numbers.names))
         self.constants = constants
         self.applied: Slopes = {}
         self.slopes: Slopes = {}
@@ -47,18 +54,6 @@ class TreeForces:
     def ends(self, load: Plain) -> tuple[Frame, Frame]:
         """The frames between which a load acts."""
         return self.frame(load.get("from", "world")), self.frame(load["to"])
-
-    def turns(self, frame: Frame) -> dict[int, Matrix]:
-        """w_a of all joints that carry a frame."""
-        return {a: self.bodies.joints[a].w for a in self.bodies.path(frame.carrier)}
-
-    def moves(self, frame: Frame, x: Matrix) -> dict[int, Matrix]:
-        """The velocities of a point that is fixed to a frame."""
-        return {a: self.bodies.joints[a].v + cross(w, x) for a, w in self.turns(frame).items()}
-
-    def product(self, A: Mapping[int, Matrix], x: Matrix, B: Mapping[int, Matrix], y: Matrix) -> Slopes:
-        """The changes of x . y, of which x changes by ``A`` and y by ``B``."""
-        return {a: dot(A.get(a, _STILL), y) + dot(x, B.get(a, _STILL)) for a in {**A, **B}}
 
     def rate(self, changes: Slopes) -> Ball:
         """What changes so changes in time."""
@@ -84,50 +79,6 @@ class TreeForces:
             for name in names_of(steps_of(x))
         )
 
-    def measure(self, name: str) -> tuple[Ball, Slopes]:
-        """A measure and its changes, by its name without the mark of a rate."""
-        kind, start, end = measured(name) or ("", "", "")
-        A, B = self.frame(start), self.frame(end)
-        if kind == "distance":
-            d, changes = B.p - A.p, _difference(self.moves(B, B.p), self.moves(A, A.p))
-            length = dot(d, d).sqrt()
-            return length, {a: dot(d, u) / length for a, u in changes.items()}
-        # tan(angle) = y / x of the first axis of B
-        axis, turn, other = column(B.A, 0), self.turns(B), self.turns(A)
-        x, y = (dot(axis, column(A.A, i)) for i in range(2))
-        along = {a: cross(w, axis) for a, w in turn.items()}
-        dx, dy = (
-            self.product(along, axis, {a: cross(w, column(A.A, i)) for a, w in other.items()}, column(A.A, i))
-            for i in range(2)
-        )
-        return arb.atan2(y, x), {a: (x * dy[a] - y * dx[a]) / (x * x + y * y) for a in dx}
-
-
-class _Names(Mapping[str, Ball]):
-    """The names of a tree, measures of frames among them."""
-
-    def __init__(self, forces: TreeForces, names: Mapping[str, Ball]) -> None:
-        self.forces, self.names = forces, names
-
-    def __getitem__(self, name: str) -> Ball:
-        if not measured(name):
-            return self.names[name]
-        value, changes = self.forces.measure(name.replace("'", ""))
-        return self.forces.rate(changes) if "'" in name else value
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.names)
-
-    def __len__(self) -> int:
-        return len(self.names)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.names or (isinstance(name, str) and measured(name) is not None)
-
-
-def _difference(x: Mapping[int, Matrix], y: Mapping[int, Matrix]) -> dict[int, Matrix]:
-    return {a: x.get(a, _STILL) - y.get(a, _STILL) for a in {**x, **y}}
-
 
 def _spring(found: TreeForces, load: Plain) -> None:
     """Q_a = -(k (l - l0) + c l') dl/dq^a,   V = k (l - l0)^2 / 2."""
@@ -135,48 +86,17 @@ def _spring(found: TreeForces, load: Plain) -> None:
     x, y = (F.p + F.A * found.parameters.vector(load.get(f, NONE)) for F, f in ((A, "from_at"), (B, "to_at")))
     k, c, l0 = (found.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
     length = dot(y - x, y - x).sqrt()
-    changes = {a: dot(y - x, u) / length for a, u in _difference(found.moves(B, y), found.moves(A, x)).items()}
+    changes = {a: dot(y - x, u) / length for a, u in difference(found.moves(B, y), found.moves(A, x)).items()}
     found.add(-k * (length - l0) - c * found.rate(changes), changes)
     if found.is_steady(load.get("stiffness", 0), load.get("length", 0)):
         found.keep(k * (length - l0) * (length - l0) * HALF, -k * (length - l0), changes)
 
 
-def _bushing(found: TreeForces, load: Plain) -> None:
-    """V = k_i d_i^2 / 2 + h_j (1 - a_j . b_j), a_j and b_j the axes, h_j = (k_1 + k_2 + k_3)/2 - k_j; dampers
-    -c_i d_i', and -c_i w_i of the angular velocity w_i of B seen from A about a_i.
-    """
-    A, B = found.ends(load)
-    names = ("stiffness", "damping", "angular_stiffness", "angular_damping")
-    k, c, ka, ca = (found.numbers.vector(load.get(name, NONE)).entries() for name in names)
-    d, d_a = B.p - A.p, _difference(found.moves(B, B.p), found.moves(A, A.p))
-    turned = _difference(found.turns(B), found.turns(A))
-    for i in range(3):
-        axis, other = column(A.A, i), column(B.A, i)
-        axis_a, other_a = ({a: cross(w, x) for a, w in found.turns(F).items()} for F, x in ((A, axis), (B, other)))
-        along, parallel = found.product(d_a, d, axis_a, axis), found.product(axis_a, axis, other_a, other)
-        about = {a: dot(w, axis) for a, w in turned.items()}
-        d_i, h = dot(d, axis), (ka[0] + ka[1] + ka[2]) * HALF - ka[i]
-        found.add(-k[i] * d_i - c[i] * found.rate(along), along)
-        found.add(h, parallel)
-        found.add(-ca[i] * found.rate(about), about)
-        if found.is_steady(*load.get("stiffness", NONE)):
-            found.keep(k[i] * d_i * d_i * HALF, -k[i] * d_i, along)
-        if found.is_steady(*load.get("angular_stiffness", NONE)):
-            found.keep(h * (1 - dot(axis, other)), h, parallel)
-
-
-def _in_world(found: TreeForces, load: Plain) -> Matrix:
-    given, axes = found.numbers.vector(load["vector"]), load.get("axes", "to")
-    if axes == "world":
-        return given
-    return found.ends(load)[axes == "to"].A * given
-
-
 def _force(found: TreeForces, load: Plain) -> None:
     """Q_a = F . (u_Ba - u_Aa) of what is of both bodies at the place of the force; V = -F . x."""
-    A, B = found.ends(load)
-    x, F = B.p + B.A * found.parameters.vector(load.get("at", NONE)), _in_world(found, load)
-    changes = {a: dot(F, u) for a, u in _difference(found.moves(B, x), found.moves(A, x)).items()}
+    _, B = found.ends(load)
+    x, F = B.p + B.A * found.parameters.vector(load.get("at", NONE)), in_world(found, load)
+    changes = force_changes(found, load, F, x)
     found.add(arb(1), changes)
     names = frozenset().union(*(names_of(steps_of(F_i)) for F_i in load["vector"]))
     is_dead = load.get("from", "world") == "world" and load.get("axes", "to") != "to"
@@ -186,13 +106,17 @@ def _force(found: TreeForces, load: Plain) -> None:
 
 def _torque(found: TreeForces, load: Plain) -> None:
     """Q_a = M . (w_Ba - w_Aa)."""
-    A, B = found.ends(load)
-    M = _in_world(found, load)
-    found.add(arb(1), {a: dot(M, w) for a, w in _difference(found.turns(B), found.turns(A)).items()})
+    found.add(arb(1), torque_changes(found, load, in_world(found, load)))
 
 
 def _joint_load(found: TreeForces, load: Plain) -> None:
     found.add(found.numbers.read(load["force"]), {found.coordinates[load["coordinate"]]: arb(1)})
+
+
+def _friction(found: TreeForces, load: Plain) -> None:
+    a = found.coordinates[load["coordinate"]]
+    rate = found.parameters.names[f"{load['coordinate']}'"]
+    found.add(-friction_force(found.parameters, load, rate), {a: arb(1)})
 
 
 def _potential(found: TreeForces, load: Plain) -> None:
@@ -209,9 +133,10 @@ def _potential(found: TreeForces, load: Plain) -> None:
 #: what the loads of each type add to the forces
 LOADS: dict[str, Callable[[TreeForces, Plain], None]] = {
     "spring": _spring,
-    "bushing": _bushing,
+    "bushing": bushing,
     "force": _force,
     "torque": _torque,
     "joint": _joint_load,
+    "friction": _friction,
     "potential": _potential,
 }

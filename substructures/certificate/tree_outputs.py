@@ -74,7 +74,7 @@ def tree_outputs(
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
     _limits(result, bodies, definitions, loads)
-    _friction(result, bodies, definitions, loads)
+    _friction(result, bodies, tree, numbers, definitions, loads)
     _friction_load(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
@@ -230,18 +230,28 @@ def _limits(
 def _friction(
     result: Outputs,
     bodies: Bodies,
+    tree: Plain,
+    numbers: Numbers,
     definitions: Mapping[str, Plain],
     loads: list[tuple[str, Numbers, range]],
 ) -> None:
     """F_c, F_s, v_s (0: none) and v_0 of coordinates that have friction, of trees in which one has some."""
-    n = len(bodies.joints)
+    n, index = len(bodies.joints), {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
+    laws = [(index[x["coordinate"]], x, numbers) for x in _frictions(tree)]
     for name, inside, joints in loads:
-        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
-            law = of_step(joint.get("friction"), step)
-            for i, field in enumerate(("coulomb", "static", "stribeck", "velocity") if law is not None else ()):
-                given = law.get(field)
-                given = law["coulomb"] if given is None and field == "static" else given
-                result.array("friction", (n, 4))[a, i] = arb(0) if given is None else inside.read(given)
+        laws += [(index[f"{name}.{x['coordinate']}"], x, inside) for x in _frictions(definitions[name])]
+        given = zip(joints, laws_of(definitions[name]), strict=True)
+        of_joints = [(a, of_step(joint.get("friction"), step), inside) for a, (joint, step) in given]
+        laws += [each for each in of_joints if each[1] is not None]
+    for a, law, inside in laws:
+        row = {"stribeck": 0, **{field: x for field, x in law.items() if x is not None}}
+        for i, field in enumerate(("coulomb", "static", "stribeck", "velocity")):
+            result.array("friction", (n, 4))[a, i] = inside.read(row.get(field, row["coulomb"]))
+
+
+def _frictions(document: Plain) -> Iterable[Plain]:
+    """The loads of a definition or tree that are friction."""
+    return (load for load in document.get("loads", ()) if load["type"] == "friction")
 
 
 def _friction_load(

@@ -136,7 +136,8 @@ def message_of(error: Mapping[str, Any], model: type[BaseModel] | None = None) -
     if kind == "missing":
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
     if kind == "extra_forbidden":
-        return f"unknown field '{str(name)[:80]}'" + meant(str(name), () if model is None else _field_names(model))
+        fields = () if model is None else _field_names(model)
+        return f"unknown field '{str(name)[:80]}'" + ("" if name in fields else meant(str(name), fields))
     if "below" in error.get("ctx", ()):
         return str(error["msg"])
     if kind == "model_type" and model is not None:

@@ -217,7 +217,7 @@ class _Reader:
         if dynamics is None:
             return {}
         if value(_number(dynamics, "friction")):
-            message = "dry friction is no force with a formula here: add a load of the type 'joint' for it"
+            message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
             self.report.warning(dynamics.place, message)
         names = {"damping": "damping", "rest": "spring_reference", "stiffness": "spring_stiffness"}
         return {ours: _number(dynamics, theirs) for ours, theirs in names.items()}

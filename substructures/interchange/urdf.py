@@ -144,7 +144,7 @@ def _motion(joint: _Joint, report: Report) -> Motion:
     if dynamics is not None:
         damping = dynamics.number("damping", ZERO)
         if not is_zero(dynamics.number("friction", ZERO)):
-            message = "dry friction is no force with a formula here: add a load of the type 'joint' for it"
+            message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
             report.warning(dynamics.place, message)
     return Motion(joint.name, kind, place, _axis(node), damping=damping, limits=_limits(joint, report))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
@@ -93,7 +93,7 @@ class LimitStop(DocumentPart):
     damping: Number = Field(0, description="N m s/rad^2 or N s/m^2; of a rate of 1, for 1 rad or 1 m beyond the limit")
 
 
-class FrictionLoad(DocumentPart):
+class BearingFriction(DocumentPart):
     """What the force R that a joint transmits adds to F_c: of a revolute joint mu (r |R beside the axis| +
     r_a |R along it|), of a prismatic one mu |R beside its axis|. In simulations with ``friction: loaded`` alone.
     """
@@ -103,7 +103,7 @@ class FrictionLoad(DocumentPart):
     axial_radius: Number | None = Field(None, description="r_a of its thrust bearing; m")
 
 
-class JointFriction(DocumentPart):
+class FrictionLaw(DocumentPart):
     """Dry friction of a coordinate, against its rate v: (F_c + (F_s - F_c) exp(-(v/v_s)^2)) tanh(v/v_0).
 
     Without ``stribeck`` it is F_c tanh(v/v_0), and ``static`` is that of rest alone, in simulations that stick exactly.
@@ -113,7 +113,12 @@ class JointFriction(DocumentPart):
     static: Number | None = Field(None, description="F_s, at rest, default as coulomb; N m or N")
     stribeck: Number | None = Field(None, description="v_s, over which it falls from static to coulomb; rad/s or m/s")
     velocity: Number = Field(description="v_0, over which the direction changes; rad/s or m/s")
-    load: FrictionLoad | None = Field(None, description="what the reactions of the joint add")
+
+
+class JointFriction(FrictionLaw):
+    """Dry friction as a field of a joint."""
+
+    load: BearingFriction | None = Field(None, description="what the reactions of the joint add")
 
 
 class Joint(DocumentPart):
@@ -224,7 +229,78 @@ class PotentialLoad(DocumentPart):
     potential: Number = Field(description="J")
 
 
-Load = Annotated[ForceLoad | TorqueLoad | SpringLoad | JointLoad | PotentialLoad, Field(discriminator="type")]
+class FrictionLoad(FrictionLaw):
+    """Dry friction of a coordinate, as the field ``friction`` of its joint; a coordinate has one."""
+
+    type: Literal["friction"]
+    coordinate: Name
+
+
+class _Between(DocumentPart):
+    """``from`` and ``to``: bodies (``base`` among them) or ports."""
+
+    from_: Name = Field("base", alias="from", description="body or port")
+    to: Name = Field(description="body or port")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+
+class BushingLoad(_Between):
+    """Springs and dampers along and about the three axes of the frame ``from``, between the origins of both frames.
+
+    d: from the origin of ``from`` to that of ``to``, forces -k_i d_i - c_i d_i' on ``to`` along the axes of ``from``.
+    The angular springs have the potential sum_j h_j (1 - e_j . m_j) of the axes e_j of ``from`` and m_j of ``to``, with
+    h_j = (k_1 + k_2 + k_3)/2 - k_j: moments -k_i theta_i for small angles.
+    """
+
+    type: Literal["bushing"]
+    stiffness: NumberVector = Field((0, 0, 0), description="N/m; along the three axes")
+    damping: NumberVector = Field((0, 0, 0), description="N s/m; along the three axes")
+    angular_stiffness: NumberVector = Field((0, 0, 0), description="N m/rad; about the three axes")
+    angular_damping: NumberVector = Field((0, 0, 0), description="N m s/rad; about the three axes")
+
+
+class ForceBetween(_Between):
+    """A force on the frame ``to`` at a point; the opposite force acts on ``from`` at the same place."""
+
+    type: Literal["force"]
+    at: NumberVector = Field((0, 0, 0), description="m; the point in the frame 'to'")
+    vector: NumberVector = Field(description="N")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+class TorqueBetween(_Between):
+    """A free moment on the frame ``to``; the opposite one acts on ``from``."""
+
+    type: Literal["torque"]
+    vector: NumberVector = Field(description="N m")
+    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
+
+
+def _one_or_two(data: Any) -> str:
+    """Whether a force or torque acts on one body, or between two frames."""
+    named = data if isinstance(data, Mapping) else type(data).model_fields
+    return "between" if {"from", "from_", "to"} & set(named) else "on"
+
+
+#: a force or torque on a body, or between two frames
+_Force = Annotated[
+    Annotated[ForceLoad, Tag("on")] | Annotated[ForceBetween, Tag("between")], Discriminator(_one_or_two)
+]
+_Torque = Annotated[
+    Annotated[TorqueLoad, Tag("on")] | Annotated[TorqueBetween, Tag("between")], Discriminator(_one_or_two)
+]
+
+
+def _without_mapping(schema: dict[str, Any]) -> None:
+    """OpenAPI has no discriminator that maps a word to two schemas."""
+    schema.pop("discriminator", None)
+
+
+Load = Annotated[
+    _Force | _Torque | SpringLoad | BushingLoad | JointLoad | PotentialLoad | FrictionLoad,
+    Field(discriminator="type", json_schema_extra=_without_mapping),
+]
 
 
 class Input(Measured):

@@ -50,22 +50,15 @@ from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
     Link,
-    Pose,
     base_functions,
     columns_beyond,
-    fixed_columns,
-    fixed_link,
     links,
 )
 from substructures.mechanics.linear3 import (
-    IDENTITY,
     SYMMETRIC_INDEX,
-    ZERO,
     Matrix,
     Planar,
-    Rotation,
     Scalar,
-    Turn,
     Vector,
     add,
     apply,
@@ -75,19 +68,12 @@ from substructures.mechanics.linear3 import (
     subtract,
     transpose,
 )
-from substructures.part.frames import Frame
+from substructures.part.applied_forces import applied_forces
 from substructures.part.inertia_symbols import inertia_symbols
-from substructures.part.loads import Loads, PointKinematics, applied_forces
+from substructures.part.kinematics import Kinematics, frame_link, kinematics
+from substructures.part.loads import Loads
 from substructures.part.mechanism import Mechanism
-
-
-@dataclass(frozen=True)
-class Kinematics:
-    """Recursion results: links; columns and poses in the interface frame, by carrier."""
-
-    links: tuple[Link, ...]
-    columns: dict[int, Columns]
-    poses: dict[int, Pose]
+from substructures.part.wrenches import wrench_point
 
 
 @dataclass(frozen=True)
@@ -100,14 +86,6 @@ class Coupled:
     columns: dict[int, Columns]
     carried: Mapping[int, Inertia]
     equations: Mapping[str, Formulas]
-
-
-def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinematics:
-    """R_c and r_c beside the base functions."""
-    poses = {INTERFACE: Pose(IDENTITY, ZERO)}
-    for c, link in enumerate(chain):
-        poses[c] = poses[link.parent].beyond(link)
-    return Kinematics(chain, columns, poses)
 
 
 def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled | None = None) -> dict[str, Formulas]:
@@ -134,12 +112,13 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     outputs["armature"] = array((len(m.laws),), lambda c: m.laws[c].armature)
     outputs |= _interface_outputs(k, momenta, large)
     # what acts between bodies of the part does no work when the interface alone moves: complete without a host
-    forces, potential = applied_forces(m, loads, lambda carrier, at: point_kinematics(k, carrier, at))
+    forces, potential = applied_forces(m, loads, k)
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
     outputs["potential"] = array((), lambda: potential)
     outputs |= _frame_outputs(m, k)
-    outputs["load.at"] = array((len(loads.wrenches), 3), lambda i, x: loads.wrenches[i].at[x])
-    outputs["load.vector"] = array((len(loads.wrenches), 3), lambda i, x: loads.wrenches[i].vector[x])
+    places = [wrench_point(k, wrench) for wrench in loads.wrenches]
+    outputs["load.at"] = array((len(places), 3), lambda i, x: places[i][x])
+    outputs["load.vector"] = array((len(places), 3), lambda i, x: loads.wrenches[i].vector[x])
     return outputs
 
 
@@ -248,23 +227,6 @@ def own_dynamics(
     return metric if large else metric | {"christoffel": Formulas((n, n, n), gamma, "christoffel")}
 
 
-def _frame_link(k: Kinematics, frame: Frame) -> Link:
-    """A frame as a link without degree of freedom, from O of its carrier."""
-    return fixed_link(k.links, frame.carrier, Rotation((Turn(frame.E),)), frame.position)
-
-
-def point_kinematics(k: Kinematics, carrier: int, at: Vector) -> PointKinematics:
-    """Position and own partial velocities of a point (carrier's body frame) in the interface frame."""
-    z = _frame_link(k, Frame(carrier, IDENTITY, at)).Z
-    back = transpose(k.poses[carrier].R)
-    # u_a = R^T (U_ka + s_a [a = k] e3 + Omega_ka x z)
-    u = {
-        a: apply(back, add(twist.U, cross(twist.Omega, z)))
-        for a, twist in fixed_columns(k.links, k.columns, carrier).items()
-    }
-    return PointKinematics(add(k.poses[carrier].r, apply(back, z)), u)
-
-
 def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     frames = [*m.bodies.values(), *m.ports.values()]
     n = len(m.joints)
@@ -276,7 +238,7 @@ def _frame_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     Omega: dict[tuple[int, int], Vector] = {}
     R, r = [], []
     for i, frame in enumerate(m.ports.values()):
-        link = _frame_link(k, frame)
+        link = frame_link(k, frame)
         # R = E R_k,   r = r_k + R_k^T z
         pose = k.poses[frame.carrier]
         R.append(multiply(frame.E, pose.R))

@@ -9,16 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 
 from substructures.expr.graph import Expr
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
 from substructures.mechanics.kinematics import base_functions, links
-from substructures.part.definition import Definition
-from substructures.part.formulas import Kinematics, kinematics, point_kinematics
-from substructures.part.loads import applied_forces, read_loads, wrench_places
+from substructures.part.applied_forces import applied_forces
+from substructures.part.definition import Definition, FrictionLoad, Load
+from substructures.part.kinematics import Kinematics, kinematics
+from substructures.part.loads import read_loads
 from substructures.part.mechanism import JointLaw, Mechanism, mechanism
+from substructures.part.wrenches import wrench_places
 
 
 def load_forces(definition: Definition) -> Program:
@@ -30,8 +31,20 @@ def load_forces(definition: Definition) -> Program:
     k = kinematics(chain, base_functions(chain))
     zero = m.graph.zero
     still = tuple(JointLaw(zero, zero, zero, law.armature, (0, 0)) for law in m.laws)
-    joints = _forces(_with_loads(m, ()), k)
-    loads = [_forces(replace(_with_loads(m, (load,)), laws=still), k) for load in definition.loads]
+    # friction that is a load is in the laws of the joints
+    rubbed = {load.coordinate for load in definition.loads if isinstance(load, FrictionLoad)}
+    names = m.topology.coordinates
+    own = [replace(law, friction=None) if name in rubbed else law for name, law in zip(names, m.laws, strict=True)]
+    joints = _forces(replace(_with_loads(m, ()), laws=tuple(own)), k)
+
+    def laws(load: Load) -> tuple[JointLaw, ...]:
+        """Those with a load alone."""
+        if not isinstance(load, FrictionLoad):
+            return still
+        of = names.index(load.coordinate)
+        return (*still[:of], replace(still[of], friction=m.laws[of].friction), *still[of + 1 :])
+
+    loads = [_forces(replace(_with_loads(m, (load,)), laws=laws(load)), k) for load in definition.loads]
     n = len(m.joints)
     outputs = {
         "joint": array((n,), lambda a: joints[a]),
@@ -52,7 +65,7 @@ def _with_loads(m: Mechanism, loads: tuple[object, ...]) -> Mechanism:
 
 
 def _forces(m: Mechanism, k: Kinematics) -> list[Expr]:
-    return applied_forces(m, read_loads(m), partial(point_kinematics, k))[0]
+    return applied_forces(m, read_loads(m), k)[0]
 
 
 def _without_actuators(m: Mechanism, found: Program) -> Program:

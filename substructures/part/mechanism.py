@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.documents.fields import in_si
+from substructures.errors import meant
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.laws import tanh
 from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.composite_form import Inertia, binet
@@ -23,11 +25,18 @@ from substructures.mechanics.linear3 import (
     scale,
     transpose,
 )
-from substructures.part.definition import Body, Definition, FrictionLoad
+from substructures.part.definition import (
+    BearingFriction,
+    Body,
+    Definition,
+    FrictionLaw,
+    FrictionLoad,
+    JointFriction,
+)
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
 from substructures.part.parameters import si_unit
-from substructures.part.scope import Scope, no_names
+from substructures.part.scope import Lookup, Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
@@ -51,6 +60,20 @@ class Friction:
     static: Expr
     stribeck: Expr | None
     velocity: Expr
+
+    def force(self, rate: Expr) -> Expr:
+        """(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0), which changes its direction over some v_0.
+
+        The first factor: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994.
+        """
+        size = self.coulomb
+        if self.stribeck is not None:
+            size = size + (self.static - self.coulomb) * rate.graph.function("exp", -((rate / self.stribeck) ** 2))
+        return size * tanh(rate / self.velocity)
+
+    def row(self) -> tuple[Expr, Expr, Expr, Expr]:
+        """F_c, F_s, v_s (0 where there is none) and v_0."""
+        return self.coulomb, self.static, self.stribeck or self.coulomb.graph.zero, self.velocity
 
 
 @dataclass(frozen=True)
@@ -101,6 +124,10 @@ def mechanism(definition: Definition) -> Mechanism:
         pointer = f"/ports/{i}"
         E = scope.rpy(port.rotation.rpy, f"{pointer}/rotation/rpy").matrix()
         ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
+    for i, load in enumerate(definition.loads):
+        if isinstance(load, FrictionLoad) and load.coordinate not in layout.coordinates:
+            message = f"unknown coordinate '{load.coordinate}'{meant(load.coordinate, layout.coordinates)}"
+            scope.fault(f"/loads/{i}/coordinate", "unknown-coordinate", message)
     scope.finish()
     return Mechanism(
         definition,
@@ -132,6 +159,33 @@ def _scope(definition: Definition, layout: Topology) -> Scope:
 
 def _coordinate(joint: JointEntry) -> Symbol:
     return Symbol(joint.coordinate, "coordinate", UNITS[joint.s])
+
+
+def friction_of(definition: Definition, entry: JointEntry) -> FrictionLaw | None:
+    """The friction of a coordinate as it is given, by its joint or by a load."""
+    given = definition.bodies[entry.body].joint.friction
+    if isinstance(given, tuple):
+        given = given[entry.step]
+    loads = (x for x in definition.loads if isinstance(x, FrictionLoad) and x.coordinate == entry.coordinate)
+    return given or next(loads, None)
+
+
+def read_friction(scope: Scope, given: FrictionLaw, place: str, lookup: Lookup | None = None) -> Friction | None:
+    """The numbers of dry friction; None after a fault."""
+    read = {
+        name: scope.read(value, f"{place}/{name}", lookup)
+        for name in ("coulomb", "static", "stribeck", "velocity")
+        if (value := getattr(given, name)) is not None
+    }
+    for name, x in read.items():
+        is_speed = name in ("stribeck", "velocity")
+        if x.is_number and (x.negative or (is_speed and x.is_zero)) and not scope.faults:
+            what = "positive" if is_speed else "not negative"
+            scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is {what}")
+            return None
+    if scope.faults:
+        return None
+    return Friction(read["coulomb"], read.get("static", read["coulomb"]), read.get("stribeck"), read["velocity"])
 
 
 class _Builder:
@@ -271,26 +325,17 @@ class _Builder:
     def _friction(self, entry: JointEntry, body: Body, pointer: str) -> Friction | None:
         """The dry friction of a coordinate, if it has some."""
         given, place = self._of_step(entry, body.joint.friction, f"{pointer}/friction", "friction", None)
-        if given is None:
-            return None
-        read = {
-            name: self.scope.read(value, f"{place}/{name}")
-            for name in ("coulomb", "static", "stribeck", "velocity")
-            if (value := getattr(given, name)) is not None
-        }
-        for name, x in read.items():
-            is_speed = name in ("stribeck", "velocity")
-            if x.is_number and (x.negative or (is_speed and x.is_zero)) and not self.scope.faults:
-                what = "positive" if is_speed else "not negative"
-                self.scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is {what}")
-                return None
-        if given.load is not None:
-            self._friction_load(entry, given.load, f"{place}/load")
-        if self.scope.faults:
-            return None
-        return Friction(read["coulomb"], read.get("static", read["coulomb"]), read.get("stribeck"), read["velocity"])
+        for i, load in enumerate(self.definition.loads):
+            if isinstance(load, FrictionLoad) and load.coordinate == entry.coordinate:
+                if given is not None:
+                    message = f"'{entry.coordinate}' has friction already, at {place}: a coordinate has one law of it"
+                    self.scope.fault(f"/loads/{i}/coordinate", "several-frictions", message)
+                given, place = load, f"/loads/{i}"
+        if isinstance(given, JointFriction) and given.load is not None:
+            self._bearing(entry, given.load, f"{place}/load")
+        return None if given is None else read_friction(self.scope, given, place)
 
-    def _friction_load(self, entry: JointEntry, given: FrictionLoad, place: str) -> None:
+    def _bearing(self, entry: JointEntry, given: BearingFriction, place: str) -> None:
         """Check what reactions add to friction: simulations take it, formulas do without."""
         needed = ("radius",) if not entry.s else ()
         for name in ("coefficient", "radius", "axial_radius"):

@@ -9,7 +9,7 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.expr.unit_check import Notice, steps_of
-from substructures.part.definition import Definition, FrictionLoad, Input, JointFriction, Parameter
+from substructures.part.definition import BearingFriction, Definition, FrictionLaw, FrictionLoad, Input, Parameter
 
 
 def si_unit(unit: str) -> str:
@@ -91,13 +91,14 @@ def without_effect(definition: Definition, used: Collection[str]) -> list[Notice
 
 def names_in_limits(definition: Definition) -> set[str]:
     """The parameters that limits and friction of joints depend on."""
-    given = [(body.joint.limits, body.joint.friction) for body in definition.bodies]
+    given: list[Any] = [(body.joint.limits, body.joint.friction) for body in definition.bodies]
+    given.append(tuple(load for load in definition.loads if isinstance(load, FrictionLoad)))
     return {str(step.value) for x in _flat(given) if isinstance(x, str) for step in steps_of(x) if step.op == "name"}
 
 
 def _flat(given: Any) -> Iterator[Any]:
     for x in given or ():
-        if isinstance(x, JointFriction | FrictionLoad):
-            yield from _flat(each for _, each in x)
+        if isinstance(x, FrictionLaw | BearingFriction):
+            yield from _flat(tuple(each for _, each in x))
         else:
             yield from _flat(x) if isinstance(x, tuple) else (in_si(x),)

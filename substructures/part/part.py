@@ -17,11 +17,12 @@ from substructures.part.certificate import certify_part, require_no_less, told_a
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
-from substructures.part.loads import dead_loads, read_loads, steady_loads, wrench_places
+from substructures.part.loads import read_loads
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
 from substructures.part.topology import BASE, Entries, Topology, entries_of, expected_operations, topology
 from substructures.part.units import check_units
+from substructures.part.wrenches import dead_loads, steady_loads, wrench_places
 
 #: outputs that are bookkeeping for coupling rather than formulas to read
 INTERNAL = frozenset(("E.tilt", "E.turn", "E.full", "frame.E", "frame.position", "load.at", "load.vector"))

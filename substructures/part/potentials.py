@@ -18,8 +18,7 @@ from substructures.expr.integrate import LIMIT, filtered, from_zero, needed, pot
 from substructures.expr.walk import transfer
 from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
-
-LEFT_OUT = "the potential energy is without it, and energy balances count its work"
+from substructures.part.pair_laws import LEFT_OUT
 
 
 def gradient_forces(m: Mechanism, energy: Expr) -> list[Expr]:

@@ -12,7 +12,7 @@ from substructures.errors import Fault, InvalidDocument, TooLarge
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse, parse_terms
-from substructures.expr.syntax import MAX_DIGITS, ExpressionError, decimal_number
+from substructures.expr.syntax import MAX_DIGITS, ExpressionError, decimal_number, measured
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.linear3 import Planar, Rotation
 
@@ -70,7 +70,8 @@ class Scope:
             return self.graph.number(value)
         except ExpressionError as error:
             code = "unknown-name" if error.name is not None else "bad-expression"
-            self.fault(pointer, code, str(error) + unit_advice(str(value)))
+            advice = "; measures of frames stand in loads" if measured(error.name or "") else unit_advice(str(value))
+            self.fault(pointer, code, str(error) + advice)
         except (ValueError, ArithmeticError) as error:
             self.fault(pointer, "bad-number", str(error))
         except TooLarge as error:

@@ -10,12 +10,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.documents import DocumentPart
 from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.dimensions import Dimensioned, Inferred
+from substructures.expr.syntax import measured
 from substructures.expr.unit_check import Place, UnitCheck, dimension_of
 from substructures.part.definition import (
     Definition,
-    ForceLoad,
+    FrictionLaw,
+    FrictionLoad,
     InertiaTensor,
     Input,
     Joint,
@@ -23,9 +26,7 @@ from substructures.part.definition import (
     Load,
     Parameter,
     Placement,
-    PotentialLoad,
     SpringLoad,
-    TorqueLoad,
 )
 from substructures.part.topology import Topology
 
@@ -67,6 +68,21 @@ STOP: dict[str, tuple[Dimension, Dimension]] = {
 ENERGY = _dimension("J")
 ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH, "tau": LENGTH}
 SPRING = {"stiffness": _dimension("N/m"), "damping": _dimension("N s/m"), "length": LENGTH}
+#: dimensions of the numbers of a load by its type; those of a joint load and of friction depend on the coordinate
+LOADS: dict[str, dict[str, Dimension]] = {
+    "spring": SPRING,
+    "bushing": {
+        "stiffness": SPRING["stiffness"],
+        "damping": SPRING["damping"],
+        "angular_stiffness": _dimension("N m/rad"),
+        "angular_damping": _dimension("N m s/rad"),
+    },
+    "force": {"at": LENGTH, "vector": FORCE},
+    "torque": {"vector": TORQUE},
+    "joint": {},
+    "friction": {},
+    "potential": {"potential": ENERGY},
+}
 
 
 def check_units(definition: Definition, topology: Topology) -> UnitCheck:
@@ -81,7 +97,7 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     check.check(parameter_places(definition.parameters), True)
     check.check(input_places(definition.inputs), True)
     check.check(places.bodies(), True)
-    check.names = lambda name: names[name] if name in names else moving.get(name, "unknown")
+    check.names = lambda name: names[name] if name in names else moving.get(name) or dimension_of_measure(name)
     check.check(places.loads(), False)
     return check
 
@@ -126,7 +142,7 @@ class _Places:
             yield from vector(f"/ports/{i}/rotation/rpy", port.rotation.rpy, ANGLE)
 
     def loads(self) -> Iterator[Place]:
-        """Forces, torques, springs, joint loads and potentials."""
+        """Forces, torques, springs, bushings, joint loads, friction and potentials."""
         kinds = {entry.coordinate: entry.s for entry in self.topology.joints}
         for i, load in enumerate(self.definition.loads):
             yield from _load(f"/loads/{i}", load, kinds)
@@ -193,17 +209,37 @@ def _by_coordinate(
 
 
 def _load(pointer: str, load: Load, kinds: Mapping[str, int]) -> Iterator[Place]:
-    if isinstance(load, ForceLoad):
-        yield from vector(f"{pointer}/at", load.at, LENGTH)
-        yield from vector(f"{pointer}/vector", load.vector, FORCE)
-    elif isinstance(load, TorqueLoad):
-        yield from vector(f"{pointer}/vector", load.vector, TORQUE)
-    elif isinstance(load, SpringLoad):
+    if isinstance(load, SpringLoad):
         for key, end in (("from", load.from_), ("to", load.to)):
             yield from vector(f"{pointer}/{key}/at", end.at, LENGTH)
-        for name, dimension in SPRING.items():
-            yield f"{pointer}/{name}", getattr(load, name), dimension
-    elif isinstance(load, PotentialLoad):
-        yield f"{pointer}/potential", load.potential, ENERGY
     elif isinstance(load, JointLoad) and load.coordinate in kinds:
         yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
+    elif isinstance(load, FrictionLoad) and load.coordinate in kinds:
+        yield from friction_places(pointer, load, kinds[load.coordinate])
+    yield from fields_of(pointer, load, LOADS[load.type])
+
+
+def fields_of(pointer: str, load: DocumentPart, fields: Mapping[str, Dimension]) -> Iterator[Place]:
+    """The numbers and vectors of a load that have one dimension each."""
+    for name, dimension in fields.items():
+        value = getattr(load, name, None)
+        if isinstance(value, tuple):
+            yield from vector(f"{pointer}/{name}", value, dimension)
+        elif value is not None:
+            yield f"{pointer}/{name}", value, dimension
+
+
+def friction_places(pointer: str, load: FrictionLaw, kind: int) -> Iterator[Place]:
+    """The numbers of friction on a revolute (0) or prismatic (1) coordinate."""
+    for name, dimensions in FRICTION.items():
+        if getattr(load, name) is not None:
+            yield f"{pointer}/{name}", getattr(load, name), dimensions[kind]
+
+
+def dimension_of_measure(name: str) -> Inferred:
+    """Of a measure of two frames, or of its rate."""
+    found = measured(name)
+    if found is None:
+        return "unknown"
+    dimensions = RATE if found[0].endswith("'") else COORDINATE
+    return Dimensioned(dimensions[found[0].startswith("distance")], sure=False)

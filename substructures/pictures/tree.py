@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.documents.fields import in_si
+from substructures.part.definition import BushingLoad, SpringLoad
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.quantities.evaluation import evaluate
@@ -89,6 +90,8 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> S
     position = {name: np.nan_to_num(kinematics["position"][i]) for name, i in index.items()}
     rotation = {name: np.nan_to_num(kinematics["rotation"][i]) for name, i in index.items()}
     springs = [(load.from_, load.to) for load in spec.loads if isinstance(load, (TreeSpring, Bushing))]
+    for instance in spec.instances:
+        springs += _springs_within(parts[instance.name], instance.name)
     if any("world" in ends for ends in springs):
         position["world"] = np.zeros(3)
     scene = Scene(position, rotation, [], [], [], springs)
@@ -107,6 +110,15 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> S
             column = kinematics["U" if joint.s else "Omega"][index[frame], a]
             scene.joints.append((frame, bool(joint.s), rotation[frame] @ np.nan_to_num(column), colour))
     return scene
+
+
+def _springs_within(part: Part, instance: str) -> Iterator[tuple[str, str]]:
+    """The frames between which springs and bushings of a part are."""
+    for load in part.definition.loads:
+        if isinstance(load, SpringLoad):
+            yield f"{instance}.{load.from_.body}", f"{instance}.{load.to.body}"
+        elif isinstance(load, BushingLoad):
+            yield f"{instance}.{load.from_}", f"{instance}.{load.to}"
 
 
 def projection(scene: Scene) -> Any:

@@ -23,10 +23,11 @@ from substructures.part.certificate import defaults_of
 from substructures.part.certificate import plain as plain_document
 from substructures.part.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
+from substructures.part.pairs import wrench_forces
 from substructures.part.part import MAX_NODES, Part
 from substructures.tree.applied_wrenches import part_symbols
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.coupling import couple_parts, wrench_forces
+from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.loads import loads_apart
 from substructures.tree.model_outputs import rate_symbols

@@ -1,6 +1,6 @@
-"""What acts on the bodies of a tree, as wrenches: forces and torques of parts, springs of parts, loads of the tree and
-the forces of closures. What acts on coordinates alone (joint laws, actuators, joint loads, potentials in coordinates)
-is in the joints, and not among them.
+"""What acts on the bodies of a tree, as wrenches: forces and torques of parts, what acts between frames of parts, loads
+of the tree and the forces of closures. What acts on coordinates alone (joint laws, actuators, joint loads, friction,
+potentials in coordinates) is in the joints, and not among them.
 """
 
 from __future__ import annotations
@@ -9,19 +9,16 @@ from collections.abc import Iterator, Sequence
 
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
-from substructures.expr.program import Formulas, Program, program
-from substructures.expr.replay import replay
-from substructures.mechanics.kinematics import fixed_link
-from substructures.mechanics.linear3 import ZERO, Rotation, Vector, scale
+from substructures.expr.program import Program
+from substructures.mechanics.linear3 import ZERO, Vector, scale
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.definition import SpringLoad
-from substructures.part.loads import Spring, read_loads
-from substructures.part.mechanism import Mechanism, mechanism
+from substructures.part.pairs import Acting, Pair, Place, axes_in_world
 from substructures.tree.assembly import Assembly, tree_name
 from substructures.tree.closures import PLACE, ClosureEnd, Cut, closure_formulas
-from substructures.tree.loads import load_formulas, spring_forces
+from substructures.tree.loads import load_formulas
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import Acting, Pair, Place, axes_in_world, place
+from substructures.tree.part_loads import loads_of_parts
+from substructures.tree.places import place
 
 
 def applied_wrenches(
@@ -35,7 +32,7 @@ def applied_wrenches(
         yield from ((i, carrier, wrench) for carrier, wrench in here.applied_wrenches())
     index = {id(here): i for i, here in enumerate(placed)}
     for each in (
-        *_springs(assembly, placed, rates),
+        *loads_of_parts(assembly, placed, rates),
         *_loads(assembly, placed, rates),
         *_closures(assembly, placed, rates),
     ):
@@ -45,39 +42,6 @@ def applied_wrenches(
 def _loads(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Sequence[Acting]:
     """The loads of the tree."""
     return load_formulas(assembly, placed, rates).forces.acting if assembly.reading.spec.loads else ()
-
-
-def _springs(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Iterator[Acting]:
-    """The springs of the parts, which store the generalised forces alone: read again from their definitions."""
-    for instance, here in zip(assembly.instances, placed, strict=True):
-        if not any(isinstance(load, SpringLoad) for load in here.part.definition.loads):
-            continue
-        m = mechanism(here.part.definition)
-        for spring in read_loads(m).springs:
-            yield from _spring(assembly, here, instance.name, _formulas(m, spring), rates)
-
-
-def _formulas(m: Mechanism, spring: Spring) -> Program:
-    """Ends (carriers, points in their body frames) and law of a spring as a program."""
-    named = {"k": spring.stiffness, "c": spring.damping, "l": spring.length}
-    for end, (carrier, at) in zip("AB", spring.ends, strict=True):
-        named |= {f"{end}{i}": m.graph.lift(x) for i, x in enumerate(at)}
-        named[f"{end}.carrier"] = m.graph.number(carrier)
-    return program(m.graph, {name: Formulas((), {(): x}) for name, x in named.items()}, m.scope.symbols)
-
-
-def _spring(
-    assembly: Assembly, here: PlacedPart, instance: str, spring: Program, rates: Sequence[Expr]
-) -> Sequence[Acting]:
-    graph = assembly.scope.graph
-    found = replay(spring, graph, part_symbols(assembly, here, instance, spring))
-    value = {name: graph.lift(each.entries.get((), 0)) for name, each in found.items()}
-    A, B = (
-        _point(here, int(value[f"{end}.carrier"].value), (value[f"{end}0"], value[f"{end}1"], value[f"{end}2"]))
-        for end in "AB"
-    )
-    pair = Pair(graph, A, B)
-    return spring_forces(pair, pair.length2(), (value["k"], value["c"], value["l"]), rates)[0].acting
 
 
 def part_symbols(assembly: Assembly, here: PlacedPart, instance: str, known: Program) -> dict[str, Expr]:
@@ -92,11 +56,6 @@ def part_symbols(assembly: Assembly, here: PlacedPart, instance: str, known: Pro
             bound = graph.symbol(name) if parameter is None else parameter
         result[symbol.name] = graph.lift(bound)
     return result
-
-
-def _point(here: PlacedPart, carrier: int, at: Vector) -> Place:
-    """A point that is given in the body frame of a carrier."""
-    return Place(here, carrier, at, here.pose(carrier).beyond(fixed_link(here.links, carrier, Rotation(), at)))
 
 
 def _closures(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Iterator[Acting]:

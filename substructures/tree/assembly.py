@@ -13,12 +13,14 @@ from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
 from substructures.part.definition import Placement
 from substructures.part.frames import axis_rotation
+from substructures.part.mechanism import friction_of, read_friction
 from substructures.part.outputs import over_formulas
 from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.load_document import TreeFriction
 from substructures.tree.mounted_part import WORLD, MountedPart
 
 
@@ -80,6 +82,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
     friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i).items()}
     loaded = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction_load(i).items()}
+    friction |= reading.friction_loads(mounted, [spec.instances[i].name for i in order], friction)
     inputs = _inputs(spec, parts, scope)
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
@@ -287,8 +290,7 @@ class Reading:
         """F_c, F_s, v_s (0 where there is none) and v_0 of the coordinates of an instance that have dry friction."""
         instance, found = self.spec.instances[i], {}
         for c, entry in enumerate(self.parts[instance.name].topology.joints):
-            given = self.parts[instance.name].definition.bodies[entry.body].joint.friction
-            law = given[entry.step] if isinstance(given, tuple) else given
+            law = friction_of(self.parts[instance.name].definition, entry)
             if law is not None:
                 static = law.coulomb if law.static is None else law.static
                 F, S, v, w = (
@@ -310,6 +312,25 @@ class Reading:
                     for x in (law.load.coefficient, 1 if entry.s else law.load.radius, law.load.axial_radius or 0)
                 )
                 found[c] = mu * r, mu * along
+        return found
+
+    def friction_loads(
+        self, mounted: Sequence[MountedPart], instances: Sequence[str], known: Mapping[int, object]
+    ) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
+        """The same of the loads of the tree; ``known``: coordinates whose joints have friction."""
+        pairs = zip(instances, mounted, strict=True)
+        names = [f"{instance}.{coordinate}" for instance, m in pairs for coordinate in m.part.coordinates]
+        found: dict[int, tuple[Expr, Expr, Expr, Expr]] = {}
+        for i, load in enumerate(self.spec.loads):
+            if not isinstance(load, TreeFriction) or load.coordinate not in names:
+                continue
+            a = names.index(load.coordinate)
+            if a in known or a in found:
+                message = f"'{load.coordinate}' has friction already: a coordinate has one law of it"
+                self.scope.fault(f"/loads/{i}/coordinate", "several-frictions", message)
+            law = read_friction(self.scope, load, f"/loads/{i}", self.parameter)
+            if law is not None:
+                found[a] = law.row()
         return found
 
     def cut(self, i: int) -> Cut:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from substructures.mechanics.composite_form import Inertia, joint_momentum, pairing
+from substructures.mechanics.composite_form import Inertia, joint_momentum
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -23,9 +23,9 @@ from substructures.mechanics.kinematics import (
     path,
     transport,
 )
-from substructures.mechanics.linear3 import Scalar, Vector, add, apply, cross, dot, transpose
-from substructures.mechanics.newton_euler import Wrench
+from substructures.mechanics.linear3 import Scalar, Vector, add, apply, dot, transpose
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
+from substructures.part.pairs import wrench_forces
 from substructures.part.part import Part
 from substructures.tree.grouping import Admitted, Inertias, as_they_are, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, inertial_entries, planned
@@ -204,14 +204,6 @@ def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:
     for carrier, wrench in here.applied_wrenches():
         for a, q in wrench_forces(here, carrier, wrench).items():
             Q[a] = Q[a] + q
-
-
-def wrench_forces(here: PlacedPart, carrier: int, wrench: Wrench) -> dict[int, Scalar]:
-    """Q_a of a wrench about the origin of a carrier, by index in the tree."""
-    # Q_a = f . (U_ka + s_a [a = k] e3) + (n + tau e3 x f) . Omega_ka
-    moment = add(wrench.n, cross((0, 0, carrier_link(here.links, carrier).tau), wrench.f))
-    columns = fixed_columns(here.links, here.columns, carrier, here.first)
-    return {a: pairing(twist, wrench.f, moment) for a, twist in columns.items()}
 
 
 def _dead_potential(here: PlacedPart) -> Scalar:

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field, RootModel
 
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Number, NumberVector
+from substructures.part.definition import FrictionLaw
 
 NONE: NumberVector = (0, 0, 0)
 COORDINATE = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -78,6 +79,14 @@ class TreeJointLoad(_OfTree):
     force: Number = Field(description="N m or N")
 
 
+class TreeFriction(FrictionLaw):
+    """Dry friction of a coordinate of an instance, as the field ``friction`` of its joint; a coordinate has one."""
+
+    name: Name
+    type: Literal["friction"]
+    coordinate: Annotated[str, Field(pattern=COORDINATE)] = Field(description="instance.coordinate")
+
+
 class TreePotential(_OfTree):
     """Forces by their potential V in coordinates, measures of frames, parameters, inputs and t: Q_a = -dV/dq^a."""
 
@@ -86,7 +95,8 @@ class TreePotential(_OfTree):
 
 
 TreeLoad = Annotated[
-    TreeSpring | Bushing | TreeForce | TreeTorque | TreeJointLoad | TreePotential, Field(discriminator="type")
+    TreeSpring | Bushing | TreeForce | TreeTorque | TreeJointLoad | TreePotential | TreeFriction,
+    Field(discriminator="type"),
 ]
 
 

@@ -21,9 +21,9 @@ from substructures.mechanics.kinematics import (
 )
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Scalar, Vector, add, apply, multiply, transpose
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.loads import wrench_about_origin
 from substructures.part.outputs import PartOutputs
 from substructures.part.part import Part
+from substructures.part.wrenches import wrench_about_origin
 
 #: the host of what is not mounted on a part
 WORLD = -1

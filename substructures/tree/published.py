@@ -16,12 +16,13 @@ from substructures.errors import Fault, InvalidDocument, listed, meant
 from substructures.part.definition import Definition
 from substructures.part.parameters import counted
 from substructures.part.part import Part
+from substructures.part.topology import BASE
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.published_loads import load_of_part
 from substructures.tree.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
-WORDS = frozenset(("name", "parent", "type", "coordinate", "about", "body", "frame"))
+WORDS = frozenset(("name", "parent", "type", "coordinate", "about", "body", "frame", "axes"))
 NOWHERE: tuple[dict[str, Any], ...] = ({}, {"position": [0, 0, 0]})
 
 
@@ -55,25 +56,25 @@ class Published:
 def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) -> Published:
     """The definition of a tree as a part; ``parts``: by name of the instance.
 
-    Raises InvalidDocument for closures, loads that no part can have, names of ports, frames and parameters that are
-    not there, and parameters without a value.
+    Raises InvalidDocument for closures, names of ports, frames and parameters that are not there, and parameters
+    without a value.
     """
     _require_tree(spec)
     names = part_names(spec, parts, wanted.free, wanted.defaults)
     document: dict[str, Any] = {**wanted.about, "bodies": [], "loads": []}
     for instance in _hosts_first(spec):
-        document["bodies"] += _seat(instance, names, parts)
+        document["bodies"] += _seat(instance, names)
         own = _plain(parts[instance.name])
         # parents first, so that the coordinates have the order that they have in the tree
         order = parts[instance.name].topology.order
         document["bodies"] += [_body(names, instance.name, own["bodies"][k], k) for k in order]
         document["loads"] += [
-            _moved(names, instance.name, load, f"/instances/{instance.name}/loads/{k}")
+            _moved(names, instance.name, _with_ends(load), f"/instances/{instance.name}/loads/{k}")
             for k, load in enumerate(own.get("loads", ()))
         ]
     document["ports"] = list(_ports(parts, names, wanted.ports))
     for load in spec.loads:
-        document["loads"] += load_of_part(load, names, parts)
+        document["loads"].append(load_of_part(load, names))
     document["bodies"] += names.frames
     document["parameters"], document["inputs"] = names.parameters(document), names.inputs
     definition = Definition.read({name: x for name, x in document.items() if x or name == "bodies"})
@@ -105,11 +106,11 @@ def _plain(part: Part) -> dict[str, Any]:
     return plain
 
 
-def _seat(instance: Instance, names: PartNames, parts: Mapping[str, Part]) -> list[dict[str, Any]]:
+def _seat(instance: Instance, names: PartNames) -> list[dict[str, Any]]:
     """The massless bodies on which an instance hangs: its port of the host, its placement there, as far as they turn
     or shift anything. Notes which body its interface is.
     """
-    seat = names.frame(instance.at, parts)
+    seat = names.frame(instance.at)
     placement = instance.placement.model_dump(exclude_defaults=True)
     if placement in NOWHERE or not placement:
         names.bases[instance.name] = seat
@@ -130,6 +131,11 @@ def _body(names: PartNames, instance: str, body: Mapping[str, Any], k: int) -> d
     return moved | {"joint": joint}
 
 
+def _with_ends(load: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A load with the frame that it acts on opposite, also where that is the interface, which is left out."""
+    return {"from": BASE, **load} if "to" in load else load
+
+
 def _moved(names: PartNames, instance: str, given: Any, pointer: str) -> Any:
     """A body or load with its names and expressions as those of the part."""
     if isinstance(given, Mapping) and set(given) != {"value", "unit"}:
@@ -138,7 +144,9 @@ def _moved(names: PartNames, instance: str, given: Any, pointer: str) -> Any:
             if key == "body":
                 found[key] = names.body(instance, value)
             elif key == "coordinate" and isinstance(value, str):
-                found[key] = names.symbol(instance, value) if given.get("type") == "joint" else value
+                found[key] = names.symbol(instance, value) if given.get("type") in ("joint", "friction") else value
+            elif key in ("from", "to") and isinstance(value, str):
+                found[key] = names.own(instance, value)
             else:
                 found[key] = value if key in WORDS else _moved(names, instance, value, f"{pointer}/{key}")
         return found

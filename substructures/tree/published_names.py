@@ -25,7 +25,8 @@ class PartNames:
 
     ``symbols``: of parameters, inputs and coordinates; ``bodies``, ``ports``: by ``instance.name``; ``bases``: by
     instance the body that its interface is; ``bound``: by parameter what it stands for; ``given``: documents of free
-    parameters by name in the tree; ``frames``: massless bodies that are still to be put into the definition.
+    parameters by name in the tree; ``parts``: by instance; ``frames``: massless bodies that are still to be put into
+    the definition.
     """
 
     symbols: dict[str, str]
@@ -35,6 +36,7 @@ class PartNames:
     inputs: dict[str, dict[str, Any]]
     joints: dict[str, dict[int, list[str]]]
     taken: Names
+    parts: Mapping[str, Part]
     ports: dict[str, str] = field(default_factory=dict)
     bases: dict[str, str] = field(default_factory=dict)
     frames: list[dict[str, Any]] = field(default_factory=list)
@@ -71,9 +73,13 @@ class PartNames:
             return {key: self.expressions(instance, x, f"{pointer}/{key}") for key, x in given.items()}
         if isinstance(given, list | tuple):
             return [self.expressions(instance, x, f"{pointer}/{i}") for i, x in enumerate(given)]
-        return renamed(given, lambda name: self.symbol(instance, name), pointer)
+        return renamed(given, lambda name: self.symbol(instance, name), pointer, lambda at: self.own(instance, at))
 
-    def frame(self, at: str, parts: Mapping[str, Part]) -> str:
+    def own(self, instance: str, at: str) -> str:
+        """The body that a frame of an instance is; of the tree itself without an instance."""
+        return self.frame(f"{instance}.{at}" if instance else at)
+
+    def frame(self, at: str) -> str:
         """The body that a place of the tree is: of the world the interface, of a port a massless one."""
         if at == "world":
             return BASE
@@ -81,7 +87,7 @@ class PartNames:
         if name == BASE or f"{instance}.{name}" in self.bodies:
             return self.body(instance, name)
         if at not in self.seats:
-            plain = read_json(parts[instance].definition.canonical())
+            plain = read_json(self.parts[instance].definition.canonical())
             port = next(each for each in plain["ports"] if each["name"] == name)
             placement = {"position": port.get("position", [0, 0, 0]), **port.get("rotation", {})}
             placed = self.expressions(instance, placement, f"/instances/{instance}/ports/{name}")
@@ -144,7 +150,7 @@ def part_names(
     _require_values(left, free)
     shown = {called[name]: x for name, x in inputs.items()}
     return PartNames(
-        {name: x for name, x in called.items() if name not in bound}, frames, bound, left, shown, joints, bodies
+        {name: x for name, x in called.items() if name not in bound}, frames, bound, left, shown, joints, bodies, parts
     )
 
 

@@ -37,33 +37,31 @@ class Names:
 
 def names_of(text: str) -> Iterator[str]:
     """The names in an expression, without the marks of rates; of what cannot be read none."""
-    return (token for is_name, token in _pieces(text) if is_name)
+    return (token for kind, token in _pieces(text) if kind == "name")
 
 
-def renamed(value: Value, lookup: Callable[[str], Value], pointer: str) -> Value:
+def renamed(value: Value, lookup: Callable[[str], Value], pointer: str, frame: Callable[[str], str] = str) -> Value:
     """A number or expression with other names, or with what names stand for, in it.
 
-    ``lookup``: of a name, without the mark of a rate. Raises InvalidDocument for what no part can have: measures of two
-    frames, and expressions that become too long.
+    ``lookup``: of a name, without the mark of a rate; ``frame``: of a frame in a measure. Raises InvalidDocument for
+    expressions that become too long.
 
     >>> renamed("2*l + q'", {"l": "arm_l", "q": "arm_q"}.__getitem__, "")
     "2*arm_l + arm_q'"
     >>> renamed("l", {"l": 3}.__getitem__, ""), renamed("l^2", {"l": "a + b"}.__getitem__, "")
     (3, '(a + b)^2')
+    >>> renamed("k*distance'(a.tip, a.base)", str, "", lambda at: at.replace(".", "_"))
+    "k*distance'(a_tip, a_base)"
     """
     if isinstance(value, Quantity):
         return value.model_dump()
     if isinstance(value, Mapping) or not isinstance(value, str):
         return value
     pieces = list(_pieces(value))
-    if len(pieces) == 1 and pieces[0][0]:
+    if len(pieces) == 1 and pieces[0][0] == "name":
         return lookup(pieces[0][1])
-    text = "".join(_put_in(lookup(piece)) if is_name else piece for is_name, piece in pieces)
-    if any(not is_name and piece.removesuffix("'") in MEASURES for is_name, piece in pieces):
-        message = (
-            f"'{value[:80]}' measures frames of the tree, which no part can: leave this load to the trees of the part"
-        )
-        raise InvalidDocument.at(pointer, "no-load-of-part", message)
+    put_in: dict[str, Callable[[str], str]] = {"name": lambda name: _put_in(lookup(name)), "frame": frame, "": str}
+    text = "".join(put_in[kind](piece) for kind, piece in pieces)
     if len(text) > MAX_LENGTH:
         message = f"with what its names are bound to, '{value[:80]}' has more than {MAX_LENGTH:,} characters"
         raise InvalidDocument.at(pointer, "too-long", message)
@@ -84,25 +82,31 @@ def number_text(value: Value) -> str:
     return value if isinstance(value, str) else format(value, "f") if hasattr(value, "as_tuple") else str(value)
 
 
-def _pieces(text: str) -> Iterator[tuple[bool, str]]:
-    """An expression in pieces: (whether it is a name of a value, the piece)."""
+def _pieces(text: str) -> Iterator[tuple[str, str]]:
+    """An expression in pieces: (``name`` of a value, ``frame`` of a measure or nothing, the piece)."""
     found, end = tokens(text), 0
+    frames: set[int] = set()
     for k, (kind, token, column) in enumerate(found[:-1]):
         start = column - 1
         yield from _space(text[end:start])
         end = start + len(token)
         following = found[k + 1][1]
-        if kind == "name" and not _has_meaning(token, following, found[k - 1][1] if k else ""):
+        if kind == "name" and token.removesuffix("'") in MEASURES and following == "(":
+            # ( A , B )
+            frames |= {k + 2, k + 4}
+        if k in frames:
+            yield "frame", token
+        elif kind == "name" and not _has_meaning(token, following, found[k - 1][1] if k else ""):
             name = token.rstrip("'")
-            yield True, name
+            yield "name", name
             yield from _space(token[len(name) :])
         else:
-            yield False, token
+            yield "", token
     yield from _space(text[end:])
 
 
-def _space(text: str) -> Iterable[tuple[bool, str]]:
-    return [(False, text)] if text else []
+def _space(text: str) -> Iterable[tuple[str, str]]:
+    return [("", text)] if text else []
 
 
 def _has_meaning(word: str, following: str, before: str) -> bool:

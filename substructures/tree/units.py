@@ -7,9 +7,8 @@ from decimal import Decimal
 from typing import Any
 
 from substructures.documents.units import Dimension, read_unit
-from substructures.expr.dimensions import Dimensioned, Open
+from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.program import Program
-from substructures.expr.syntax import measured
 from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
 from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
@@ -19,35 +18,23 @@ from substructures.part.units import (
     ACCELERATION,
     COORDINATE,
     EFFORT,
-    ENERGY,
-    FORCE,
     LENGTH,
+    LOADS,
     RATE,
-    SPRING,
-    TORQUE,
+    dimension_of_measure,
+    fields_of,
+    friction_places,
     input_places,
     parameter_places,
     placement_places,
     vector,
 )
 from substructures.tree.document import TreeSpec
-from substructures.tree.load_document import TreeJointLoad
+from substructures.tree.load_document import TreeFriction, TreeJointLoad
 
 TIME = read_unit("s").dimension
-#: dimensions of the numbers of a load by its type; that of a joint load depends on the coordinate
-LOADS: dict[str, dict[str, Dimension]] = {
-    "spring": {"from_at": LENGTH, "to_at": LENGTH, **SPRING},
-    "bushing": {
-        "stiffness": SPRING["stiffness"],
-        "damping": SPRING["damping"],
-        "angular_stiffness": read_unit("N m/rad").dimension,
-        "angular_damping": read_unit("N m s/rad").dimension,
-    },
-    "force": {"at": LENGTH, "vector": FORCE},
-    "torque": {"vector": TORQUE},
-    "joint": {},
-    "potential": {"potential": ENERGY},
-}
+#: points of springs of trees
+POINTS = {"from_at": LENGTH, "to_at": LENGTH}
 #: parameters of a definition by name, with their SI units
 DescribedParameters = Mapping[str, Mapping[str, Any]]
 
@@ -73,7 +60,7 @@ def check_tree_units(
     if spec.loads:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)
-        check.names = lambda name: known[name] if name in known else moving.get(name) or _measure(name)
+        check.names = lambda name: known[name] if name in known else moving.get(name) or dimension_of_measure(name)
         check.check(_loads(spec, kinds), False)
     return check
 
@@ -87,9 +74,7 @@ def _kinds(definitions: Mapping[str, Definition]) -> dict[str, int]:
     }
 
 
-def _moving(
-    spec: TreeSpec, definitions: Mapping[str, Definition], kinds: Mapping[str, int]
-) -> dict[str, Dimensioned | Open]:
+def _moving(spec: TreeSpec, definitions: Mapping[str, Definition], kinds: Mapping[str, int]) -> dict[str, Inferred]:
     """The dimensions of inputs, coordinates, velocities and the time."""
     inputs = {name: each.unit for name, each in spec.inputs.items()}
     inputs |= {f"{i}.{name}": each.unit for i, d in definitions.items() for name, each in d.inputs.items()}
@@ -101,28 +86,15 @@ def _moving(
     return result
 
 
-def _measure(name: str) -> Dimensioned | Open:
-    """Of a measure of two frames."""
-    found = measured(name)
-    if found is None:
-        return "unknown"
-    dimensions = RATE if found[0].endswith("'") else COORDINATE
-    return Dimensioned(dimensions[found[0].startswith("distance")], sure=False)
-
-
 def _loads(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
     """The numbers of loads."""
     for i, load in enumerate(spec.loads):
         pointer = f"/loads/{i}"
-        for name, dimension in LOADS[load.type].items():
-            value = getattr(load, name)
-            yield from (
-                vector(f"{pointer}/{name}", value, dimension)
-                if isinstance(value, tuple)
-                else ((f"{pointer}/{name}", value, dimension),)
-            )
+        yield from fields_of(pointer, load, {**POINTS, **LOADS[load.type]})
         if isinstance(load, TreeJointLoad) and load.coordinate in kinds:
             yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
+        if isinstance(load, TreeFriction) and load.coordinate in kinds:
+            yield from friction_places(pointer, load, kinds[load.coordinate])
 
 
 def _places(spec: TreeSpec) -> Iterator[Place]:

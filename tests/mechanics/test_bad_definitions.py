@@ -16,6 +16,9 @@ B: Path = ("bodies", 1)
 J: Path = ("bodies", 0, "joint")
 COINCIDENT = {"type": "spring", "from": {"body": "b1"}, "to": {"body": "b1"}, "stiffness": 1}
 DEEP = "(" * 70 + "1" + ")" * 70
+BUSHING = {"type": "bushing", "from": "b1", "to": "tip"}
+PUSH = {"type": "force", "from": "b1", "to": "tip", "vector": [0, 0, 1]}
+RUB = {"type": "friction", "coordinate": "s", "coulomb": 1, "velocity": 0.1}
 
 #: (what, path of the fault, value put there, code, culprit named in the message)
 DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
@@ -92,11 +95,68 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("spring to unknown body", ("loads", 2, "to", "body"), "b9", "unknown-body", "b9"),
     ("joint load on unknown coordinate", ("loads", 3, "coordinate"), "q9", "unknown-coordinate", "q9"),
     ("load by an unknown input", ("loads", 0, "vector", 2), "u9", "unknown-name", "u9"),
+    (
+        "bushing from an unknown frame",
+        ("loads", 4),
+        {**BUSHING, "from": "b9"},
+        "unknown-frame",
+        "base, b1, b2, b3, tip",
+    ),
+    ("bushing to a misspelt frame", ("loads", 4), {**BUSHING, "to": "tipp"}, "unknown-frame", "did you mean 'tip'"),
+    (
+        "bushing with a wrong unit",
+        ("loads", 4),
+        {**BUSHING, "stiffness": [0, {"value": 1, "unit": "N"}, 0]},
+        "unit-mismatch",
+        "found 1 N",
+    ),
+    (
+        "bushing with a length for an angle",
+        ("loads", 4),
+        {**BUSHING, "angular_stiffness": [0, "u", 0]},
+        "unit-mismatch",
+        "u",
+    ),
+    ("force to an unknown frame", ("loads", 4), {**PUSH, "to": "b9"}, "unknown-frame", "b9"),
+    ("force on a body and between two", ("loads", 4), {**PUSH, "body": "b1"}, "extra-forbidden", "body"),
+    ("force in axes of neither", ("loads", 4), {**PUSH, "axes": "body"}, "literal-error", "body"),
+    ("force without a vector", ("loads", 4), {"type": "force", "to": "tip"}, "missing", "vector"),
+    ("torque from nowhere", ("loads", 4), {"type": "torque", "from": "b1", "vector": [0, 0, 1]}, "missing", "to"),
+    ("law by an unknown frame", ("loads", 3, "force"), "distance(b1, b9)", "unknown-frame", "b9"),
+    ("distance of one point", ("loads", 3, "force"), "distance(b1, b1)", "coincident-ends", "distance(b1, b1)"),
+    ("angle without a common axis", ("loads", 3, "force"), "angle(base, b2)", "no-common-axis", "angle(base, b2)"),
+    (
+        "rate of a distance in a potential",
+        ("loads", 3),
+        {"type": "potential", "potential": "distance'(b1, tip)^2*u"},
+        "velocity-in-potential",
+        "distance'(b1, tip)",
+    ),
+    ("measure in a joint", (*J, "stiffness"), "distance(b1, tip)", "unknown-name", "stand in loads"),
+    ("friction on an unknown coordinate", ("loads", 4), {**RUB, "coordinate": "ss"}, "unknown-coordinate", "mean 's'"),
+    ("friction that is negative", ("loads", 4), {**RUB, "coulomb": -1}, "bad-friction", "coulomb"),
+    (
+        "friction with a wrong unit",
+        ("loads", 4),
+        {**RUB, "velocity": {"value": 1, "unit": "rad/s"}},
+        "unit-mismatch",
+        "rad",
+    ),
+    ("friction by a coordinate", ("loads", 4), {**RUB, "coulomb": "s"}, "unknown-name", "'s'"),
     ("unknown load type", ("loads", 1, "type"), "magnet", "union-tag-invalid", "magnet"),
     ("missing vector", ("loads", 1, "vector"), ..., "missing", ""),
     ("missing parent", (*B, "parent"), ..., "missing", ""),
     ("limits of the wrong kind", (*J, "limits"), ["low", 1], "unknown-name", "low"),
 ]
+
+
+def test_one_friction_on_a_coordinate() -> None:
+    rubbed = {"coulomb": 1, "velocity": 0.1}
+    for more in ((("loads", 4), RUB), (("bodies", 2, "joint", "friction"), rubbed)):
+        with pytest.raises(InvalidDocument) as raised:
+            derive(Definition.read(changed(GOOD, more, (("loads", 4 + ("loads" in more[0])), RUB))))
+        (fault,) = raised.value.faults
+        assert (fault.code, "'s' has friction already" in fault.message) == ("several-frictions", True)
 
 
 @pytest.mark.parametrize(

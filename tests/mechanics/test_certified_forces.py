@@ -51,6 +51,25 @@ LAWS: dict[str, Plain] = {
              "stiffness": "k*(1 + t)", "damping": "1 + y^2", "length": "0.3 + u"},
         ],
     },
+    "between frames": {
+        "loads": [
+            {"type": "bushing", "from": "a", "to": "b", "stiffness": ["k", 2, 3], "damping": [0.1, "l", 0.2],
+             "angular_stiffness": [1, "k", 2], "angular_damping": ["l", 0.2, 0.3]},
+            {"type": "bushing", "to": "b", "stiffness": ["1 + x^2", 2, "k"], "angular_stiffness": [1, "l", 3]},
+            {"type": "force", "from": "base", "to": "b", "at": [0.2, "l", 0.1], "vector": ["u", 1, "x'"]},
+            {"type": "torque", "from": "a", "to": "b", "vector": ["u", 1, "distance(base, a)"], "axes": "from"},
+        ],
+    },
+    "measures and friction": {
+        "loads": [
+            {"type": "joint", "coordinate": "x", "force": "-k*distance'(base, b) - x^3"},
+            {"type": "joint", "coordinate": "y", "force": "-k*sin(y)"},
+            {"type": "potential", "potential": "k*(distance(base, a) - l)^2*cos(y) + u*x^2"},
+            {"type": "spring", "from": {"body": "base", "at": [0, 0, 1]}, "to": {"body": "b", "at": [0, "l", 0]},
+             "stiffness": "1 + distance(base, b)", "damping": "0.1*distance(base, b)", "length": 0.4},
+            {"type": "friction", "coordinate": "y", "coulomb": "k", "static": 2, "stribeck": "l", "velocity": 0.4},
+        ],
+    },
     "dead force": {
         "loads": [
             {"type": "force", "body": "b", "at": [0.2, "l", 0.1], "vector": ["k", -2, "3*l"], "frame": "world"},
@@ -101,6 +120,20 @@ def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
     used = set(part.program.reachable(["applied", "potential"]))
     for kind, place, wrong in nudged_numbers(part.program):
         if int(place.removeprefix("operation ")) in used and has_effect(part.program, wrong):
+            assert found_in_part(part, wrong) is not None, (kind, place)
+
+
+def test_damage_of_forces_in_the_axes_of_the_world_is_found() -> None:
+    """They are stored as what acts on either body, at a place that depends on the coordinates."""
+    pair = {"from": "a", "to": "b", "axes": "world"}
+    loads = [
+        {"type": "force", "at": [0.2, "l", 0.1], "vector": ["k", 1, "2*x"], **pair},
+        {"type": "torque", "vector": ["k", 1, "2*x"], **pair},
+    ]
+    part = part_with({"loads": loads})
+    assert all(error is not None and error <= TOLERANCE for error in errors_of(part.certificate).values())
+    for kind, place, wrong in damages(part.program, np.random.default_rng(5), elements=3):
+        if place.startswith("load."):
             assert found_in_part(part, wrong) is not None, (kind, place)
 
 

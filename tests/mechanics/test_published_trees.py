@@ -213,13 +213,6 @@ def test_names_that_are_taken_or_too_long() -> None:
             "has-closures",
             "'loop'",
         ),
-        ({"loads": [{"name": "bush", "type": "bushing", "to": "a.tip"}]}, {}, "no-load-of-part", "'bush' (bushing)"),
-        (
-            {"loads": [{"name": "v", "type": "potential", "potential": "distance(a.tip, a.foot)"}]},
-            {},
-            "no-load-of-part",
-            "measures frames",
-        ),
         ({}, {"ports": {"end": "a.tipp"}}, "unknown-port", "did you mean 'a.tip'"),
         ({}, {"free": ("a.ll",)}, "unknown-parameter", "no parameter 'a.ll'"),
         ({}, {"free": ("b.l",)}, "bound", "'b.l' is bound to 'a.l'"),

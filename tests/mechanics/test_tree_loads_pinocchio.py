@@ -1,15 +1,18 @@
-"""Loads of trees of every type against an independent engine, with the forces put in by hand."""
+"""Loads of trees and of parts of every type against an independent engine, with the forces put in by hand."""
 
 # ruff: noqa: N806 -- symbols of the notation
 
 from __future__ import annotations
 
+import re
+from typing import Any
+
 import numpy as np
 import pytest
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
-from random_trees import random_states  # noqa: E402 -- the engine is optional
-from tree_loads import ByHand, random_tree, two_definitions  # noqa: E402
+from random_trees import Plain, random_states  # noqa: E402 -- the engine is optional
+from tree_loads import ByHand, one_definition, random_tree, two_definitions  # noqa: E402
 
 from substructures import Definition, TreeSpec, couple, derive  # noqa: E402
 from substructures.quantities.evaluation import evaluate  # noqa: E402
@@ -53,3 +56,40 @@ def compare_tree(seed: int) -> float:
 def test_hundred_random_trees(block: int) -> None:
     for seed in range(20 * block, 20 * block + 20):
         assert compare_tree(seed) < TOLERANCE, f"seed {seed}"
+
+
+def own_definition(tree: Plain) -> Plain:
+    """The tree as one definition with its loads between its own frames: names a_b1, a_q1, ..."""
+
+    def named(value: Any) -> Any:
+        if isinstance(value, list):
+            return [named(x) for x in value]
+        return re.sub(r"\b([ab])\.(\w+)", r"\1_\2", value) if isinstance(value, str) else value
+
+    loads = [{key: named(value) for key, value in load.items() if key != "name"} for load in tree["loads"]]
+    symbols = {"parameters": tree["parameters"], "inputs": tree["inputs"]}
+    return {**one_definition(tree), **symbols, "loads": loads}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_loads_within_a_part(seed: int) -> None:
+    """The same loads between bodies of one definition; a spring there has no ports."""
+    rng = np.random.default_rng(seed)
+    definitions = two_definitions(rng)
+    tree = random_tree(rng, definitions)
+    inner = [load for load in tree["loads"] if load["type"] != "spring" and load.get("from") != "world"]
+    some = tree["loads"] = [load for load in inner if not re.search(r"\(world", str(load))]
+    part = derive(Definition.read(own_definition(tree)))
+    spec = TreeSpec.read(
+        {"name": "t", "gravity": tree["gravity"], "instances": [{"name": "x", "substructure": "whole"}]}
+    )
+    model = couple(spec, {"x": part})
+    names, states = {"k": 1.7, "u": 0.6, "t": 0.8}, random_states(rng, 2, model.dof)
+    answer = evaluate(model, QUANTITIES, **states, inputs={"x.u": 0.6}, t=0.8)
+    coordinates = [c.removeprefix("x.").replace("_", ".", 1) for c in model.coordinates]
+    for i in range(2):
+        hand = ByHand(tree, coordinates, states["q"][i], states["qd"][i], names)
+        Q = np.sum([hand.force(load) for load in some], axis=0)
+        weight = -pin.computeGeneralizedGravity(hand.engine.model, hand.data, hand.q)[hand.order]
+        scale = max(float(np.abs(weight + Q).max()), 1e-2)
+        assert np.abs(answer["forces"][i] - weight - Q).max() < TOLERANCE * scale

@@ -202,7 +202,7 @@ class _Reader:
         return Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, damping)
 
     def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
-        """Springs, rotors, end stops and loads."""
+        """Springs, rotors, end stops, friction and loads."""
         for k, (entry, law) in enumerate(zip(self.m.topology.joints, self.m.laws, strict=True)):
             name = f"'{self.prefix}{entry.coordinate}'"
             if not law.stiffness.is_zero:
@@ -213,7 +213,11 @@ class _Reader:
                 yield f"the damping of {name}, which depends on the state"
             if law.stops is not None:
                 yield f"the end stops of {name}"
+            if law.friction is not None:
+                yield f"the dry friction of {name}"
         for number, load in enumerate(self.m.definition.loads):
+            if load.type == "friction":
+                continue
             yield f"load {number} of '{self.prefix[:-1] or self.m.definition.name}' ({load.type})"
 
 

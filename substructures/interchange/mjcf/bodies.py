@@ -149,7 +149,7 @@ class Bodies:
         if kind == "spherical" and value(self._law(node, "armature")):
             raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
         if value(node.number("frictionloss", ZERO)):
-            message = "dry friction is no force with a formula here: add a load of the type 'joint' for it"
+            message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
             self.report.warning(node.place, message)
 
     def _law(self, node: Node, name: str) -> Number:

@@ -1,0 +1,100 @@
+"""Forces and torques that act on the host, too: one row of the outputs ``load.at`` and ``load.vector`` for each body.
+
+A force or torque on a body is one row. One between two frames with a vector in the axes of the world is two, on ``to``
+and opposite on ``from``: how the interface stands in the world is known to the tree alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from substructures.mechanics.kinematics import carrier_link
+from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, sub
+from substructures.mechanics.newton_euler import Wrench
+from substructures.part.definition import Definition, ForceBetween, ForceLoad, TorqueBetween, TorqueLoad
+from substructures.part.kinematics import Kinematics, point_kinematics
+from substructures.part.load_names import names_in
+
+
+@dataclass(frozen=True)
+class AppliedWrench:
+    """A force at a point, or a moment: ``at`` [m] in the carrier's body frame, vector in its axes or in the world's.
+
+    ``point_of``: the carrier in whose body frame ``at`` is given, if it is another one.
+    """
+
+    carrier: int
+    moment: bool
+    world: bool
+    at: Vector
+    vector: Vector
+    point_of: int | None = None
+
+
+@dataclass(frozen=True)
+class WrenchRow:
+    """``frame``: a body or port; ``alone``: whether nothing acts against it within the part."""
+
+    load: ForceLoad | TorqueLoad | ForceBetween | TorqueBetween
+    frame: str
+    world: bool
+    alone: bool
+
+    @property
+    def moment(self) -> bool:
+        """Whether it is a torque."""
+        return self.load.type == "torque"
+
+
+def wrench_rows(definition: Definition) -> Iterator[WrenchRow]:
+    """All rows, in the order of the loads."""
+    for load in definition.loads:
+        if isinstance(load, ForceLoad | TorqueLoad):
+            yield WrenchRow(load, load.body, load.frame == "world", True)
+        elif isinstance(load, ForceBetween | TorqueBetween) and load.axes == "world":
+            yield WrenchRow(load, load.to, True, False)
+            yield WrenchRow(load, load.from_, True, False)
+
+
+def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[tuple[int, bool, bool], ...]:
+    """(carrier, moment, world) of every row: what coupling has to know beside the formulas; ``carrier``: of bodies."""
+    frames = {**carrier, **{port.name: carrier[port.body] for port in definition.ports}}
+    return tuple((frames[row.frame], row.moment, row.world) for row in wrench_rows(definition))
+
+
+def dead_loads(definition: Definition) -> tuple[bool, ...]:
+    """Of every row, whether it is a force that is constant in the world: V = -F . x."""
+    return tuple(
+        row.alone
+        and row.world
+        and not row.moment
+        and all(names_in(x) <= definition.parameters.keys() for x in row.load.vector)
+        for row in wrench_rows(definition)
+    )
+
+
+def steady_loads(definition: Definition, coordinates: Iterable[str]) -> tuple[bool, ...]:
+    """Of every row, whether its vector depends on coordinates and parameters alone, but for those with a potential in
+    closed form (:func:`dead_loads`) and for pairs, which are not tried.
+    """
+    known = definition.parameters.keys() | set(coordinates)
+    return tuple(
+        row.alone and not is_dead and all(names_in(x) <= known for x in row.load.vector)
+        for row, is_dead in zip(wrench_rows(definition), dead_loads(definition), strict=True)
+    )
+
+
+def wrench_point(k: Kinematics, wrench: AppliedWrench) -> Vector:
+    """``at`` in the body frame of the carrier."""
+    if wrench.point_of is None:
+        return wrench.at
+    # R_k (x - r_k) - tau e3
+    pose, tau = k.pose(wrench.carrier), carrier_link(k.links, wrench.carrier).tau
+    return sub(apply(pose.R, sub(point_kinematics(k, wrench.point_of, wrench.at).position, pose.r)), (0, 0, tau))
+
+
+def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> Wrench:
+    """The wrench of a force at a point, or of a moment, about the carrier's body frame origin."""
+    # n = x x f of a force at x
+    return Wrench(ZERO, vector) if moment else Wrench(vector, cross(at, vector))
