@@ -17,7 +17,8 @@ from substructures.tree.plausibility import Plausibility
 @dataclass(frozen=True)
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there.
+    ``plausibility``: what judges values, made when needed; so are ``reactions``, where the parts are there,
+    and ``grouped``: the model with base parameters.
     """
 
     model: Model
@@ -28,3 +29,4 @@ class Source:
     engine: Evaluator = interpreted
     plausibility: Callable[[], Plausibility] | None = None
     reactions: Callable[[], ReactionModel] | None = None
+    grouped: Callable[[], Model] | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -15,7 +16,7 @@ from service.analyses.source import Source
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.operations import trees
-from service.operations.sources import sources_of
+from service.operations.sources import grouped_model, sources_of
 from service.queries.trees import Tree
 from service.store import Store
 from service.viewer import Viewer
@@ -27,7 +28,8 @@ def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
     sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility, sources.reactions)
+    grouped = partial(grouped_model, store, tree)
+    return Source(model, tree.digest, sources.columns, *tools, sources.plausibility, sources.reactions, grouped)
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:

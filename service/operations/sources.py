@@ -14,7 +14,7 @@ from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model
+from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
 
 
@@ -65,6 +65,11 @@ def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         with store.database.read() as connection:
             return spec, parts_of(store, connection, ANYBODY, spec)  # the tree was found for whoever asks
+
+
+def grouped_model(store: Store, tree: Tree) -> Model:
+    """The model of a stored tree with base parameters. Raises TooLarge."""
+    return couple(*tree_parts(store, tree), store.settings.limits.program_nodes, group=True)
 
 
 def _reactions(store: Store, tree: Tree) -> ReactionModel:

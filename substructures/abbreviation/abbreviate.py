@@ -29,7 +29,7 @@ from substructures.quantities.formulas import DERIVED, kept
 from substructures.tree.model import Model
 
 #: told how much is done, may raise
-Report = Callable[[float], None]
+Report = Callable[[float], object]
 #: errors that are proven, in units of those at states, before anything is known; and by how much these may differ
 FIRST_FACTOR, MOST_FACTOR = 1.3, 8.0
 #: how often more is left out after a proof

@@ -48,7 +48,7 @@ class Bound:
 class Prover:
     """Proofs over the same ranges of angles. ``report`` is told from time to time, and may raise."""
 
-    def __init__(self, ranges: Sequence[Interval], report: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, ranges: Sequence[Interval], report: Callable[[], object] = lambda: None) -> None:
         self._low = np.array([_down(x.low) for x in ranges], dtype=np.float64)
         self._high = np.array([_up(x.high) for x in ranges], dtype=np.float64)
         self._waves: dict[tuple[int, int], dict[float, complex]] = {}

@@ -36,7 +36,7 @@ class Selection:
     full: Program
     box: Box
     allowed: dict[Index, float]
-    report: Callable[[], None] = lambda: None
+    report: Callable[[], object] = lambda: None
     programs: list[Program] = field(default_factory=list)
 
     def __post_init__(self) -> None:

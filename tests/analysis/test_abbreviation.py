@@ -180,12 +180,12 @@ def puma560() -> Model:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("fast", [(1, 1), (3, 10)])
-def test_inverse_dynamics_of_the_puma_560(fast: tuple[int, int]) -> None:
+@pytest.mark.parametrize("most", [(1, 1, 245), (3, 10, 275)])
+def test_inverse_dynamics_of_the_puma_560(most: tuple[int, int, int]) -> None:
     """Armstrong, Khatib and Burdick (1986): 305 operations at a criterion of 1 %."""
-    v, a = fast
+    v, a, operations = most
     found = abbreviate(puma560(), "inverse_dynamics", 0.01, {"velocities": (-v, v), "accelerations": (-a, a)})
-    assert found.operations < 260 < 305
+    assert found.operations <= operations < 305
     assert found.bound <= 0.01
     assert excess(found, count=200_000) <= 1
 

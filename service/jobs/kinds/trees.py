@@ -18,6 +18,7 @@ from substructures.quantities.evaluation import Sources
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
 
 CAPACITY = 2_000_000  # operations
@@ -102,4 +103,11 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
         Limits(**limits),
         plausibility=judge,
         reactions=sources.reactions,
+        grouped=(lambda: _grouped(item, blobs)) if "parts" in item else None,
     )
+
+
+def _grouped(item: ItemDocument, blobs: Blobs) -> Model:
+    """The model of the tree of an item with parts, with base parameters. Raises TooLarge."""
+    parts = item["parts"]
+    return couple(*tree_parts(parts, blobs), parts["nodes"], group=True)
