@@ -21,7 +21,7 @@ from substructures.abbreviation.ranges import Box, Interval, Ranges, fixed_value
 from substructures.abbreviation.samples import attained
 from substructures.abbreviation.selection import Selection
 from substructures.abbreviation.sums import AngleSums, Differences, Index
-from substructures.errors import InvalidArgument, among
+from substructures.errors import InvalidArgument, TooLarge, among
 from substructures.expr.bind import bind
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
@@ -34,6 +34,8 @@ Report = Callable[[float], object]
 FIRST_FACTOR, MOST_FACTOR = 1.3, 8.0
 #: how often more is left out after a proof
 ROUNDS = 4
+#: operations of formulas, beyond which proofs would take hours
+MOST_OPERATIONS = 3000
 #: products of variables of an element that are listed
 LISTED = 12
 
@@ -126,6 +128,8 @@ def abbreviate(
     ranges = dict(ranges or {})
     fixed = fixed_values(model, whole, ranges, parameters)
     full = hoisted(bind(whole, fixed))
+    if len(full) > MOST_OPERATIONS:
+        raise TooLarge("the formulas to be abbreviated (in operations)", len(full), MOST_OPERATIONS)
     box = read_box(model, full, ranges, fixed)
     report(0.0)
     if not simplify or not full.operations:
