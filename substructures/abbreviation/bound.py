@@ -62,7 +62,7 @@ class Prover:
         alone = [self._alone(sums.product(m)) for m in range(len(sums.starts))]
         flat = np.array(alone)
         together = (float(flat.sum()) + sums.rest) * (1 + 2**-40)
-        if together <= enough or len(alone) == 1:
+        if together <= enough or len(alone) == 1 or not any(map(any, sums.multiples)):
             return Bound(together, 0.0)
         found = self._searched(_Element(sums, flat, self._wave), enough, EFFORT)
         return Bound(min(found.proven, together), found.seen)

@@ -22,6 +22,8 @@ from substructures.expr.program import Program
 POWER = 4
 #: changes that are tried in a round, and the part of the operations that may go in one round
 TRIED, SHARE = 40, 0.01
+#: an error of formulas that are equal, in units of the largest value of the element
+ROUNDING = 1e-11
 #: an error of no account, in units of what is allowed
 NOTHING = 1e-9
 
@@ -30,7 +32,8 @@ NOTHING = 1e-9
 class Selection:
     """Programs with more and more left out, the first one the full one.
 
-    ``allowed``: the largest error of every element at the states; elements without are not changed.
+    ``allowed``: the largest error of every element at the states; elements without are not changed. ``limits``: these,
+    in the order of the elements.
     """
 
     full: Program
@@ -43,6 +46,10 @@ class Selection:
         self._probe = probe(self.full, self.box)
         self._elements = list(next(iter(self.full.outputs.values())).index)
         self._exact = self._values(self.full)
+        # what rounding does is no error, also where none is allowed
+        rounding = ROUNDING * self._probe.sizes(self._exact).max(axis=1, initial=0.0)
+        found = np.array([self.allowed.get(i, 0.0) for i in self._elements])
+        self.limits: Array = np.maximum(found, np.maximum(rounding, np.finfo(float).tiny))
         self.programs = self.programs or [self.full]
 
     def _values(self, program: Program) -> Array:
@@ -82,16 +89,11 @@ class Selection:
 
     def is_allowed(self, errors: Mapping[Index, float]) -> bool:
         """Whether errors at the states are within what is allowed."""
-        return all(error <= self.allowed.get(i, 0.0) for i, error in errors.items())
+        return all(errors[i] <= limit for i, limit in zip(self._elements, self.limits, strict=True))
 
     def sizes(self, errors: Array) -> Array:
         """The sizes of errors at all states by element and place."""
         return self._probe.sizes(errors)
-
-    def limits(self) -> Array:
-        """What is allowed, in the order of the elements; for those that are not changed next to nothing."""
-        found = np.array([self.allowed.get(i, 0.0) for i in self._elements])
-        return np.maximum(found, 1e-300)
 
     def ranking(self, program: Program) -> tuple[dict[int, Array], Array, list[dict[int, Array]]]:
         """The values of a program at the states, its errors, and the sensitivities of its elements."""
@@ -106,7 +108,7 @@ class _Ranking:
     """The changes of a program, by what they save for the error that they add."""
 
     def __init__(self, selection: Selection, program: Program) -> None:
-        self.program, self.limits = program, selection.limits()
+        self.program, self.limits = program, selection.limits
         self.values, self.errors, self.slopes = selection.ranking(program)
         self.scaled = self.errors / self.limits[:, None]
         self.sizes = selection.sizes
@@ -133,4 +135,7 @@ class _Ranking:
 
 
 def _mean(errors: Array) -> float:
-    return float((errors**POWER).mean() ** (1 / POWER)) if errors.size else 0.0
+    if not errors.size:
+        return 0.0
+    with np.errstate(all="ignore"):  # infinite is as bad as it gets
+        return float((errors**POWER).mean() ** (1 / POWER))

@@ -49,12 +49,12 @@ def excess(found: Abbreviation, seed: int = 5, count: int = 4000) -> float:
         bounds[error.index] = error.bound
         if full.ndim == 3:
             bounds[error.index[::-1]] = error.bound
-    rounding = 1e-12 * np.abs(full).max()
+    rounding = 1e-12 * np.abs(full).max(initial=0.0) + 1e-300
     return float((np.abs(full - short) / (bounds + rounding)).max())
 
 
 @pytest.mark.parametrize("quantity", ["inverse_dynamics", "metric", "gravity", "bias", "kinetic_energy"])
-@pytest.mark.parametrize("seed", seeds(1, 12))
+@pytest.mark.parametrize("seed", seeds(1, 8))
 def test_errors_of_random_mechanisms_are_proven(seed: int, quantity: str) -> None:
     model, ranges = random_model(seed + 1)
     found = abbreviate(model, quantity, 0.05, ranges)
@@ -106,6 +106,13 @@ def test_bounds_of_known_sums(low: str, high: str, largest: float) -> None:
     assert largest * (1 - 1e-12) <= found.proven <= 1.05 * largest
     assert prover.bound(sums, largest * 1.02).proven <= 1.02 * largest
     assert prover.bound(sums, largest * 0.9).proven > 0.9 * largest
+
+
+def test_bounds_of_a_sum_that_is_flat_in_the_middle() -> None:
+    """1 - cos q, zero with its slope at the centre of the box."""
+    sums = AngleSums(("a",), (0,), ((Fraction(0),), (Fraction(1),)), np.array([1, -1 + 0j]))
+    found = Prover([Interval(Fraction(-1), Fraction(1))]).bound(sums)
+    assert 1 - np.cos(1) <= found.proven <= 1.05 * (1 - np.cos(1))
 
 
 def test_nothing_is_left_out_where_nothing_may_be() -> None:
