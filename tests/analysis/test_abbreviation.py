@@ -43,6 +43,7 @@ def excess(found: Abbreviation, seed: int = 5, count: int = 4000) -> float:
         name: np.where(rng.random(count) < 0.5, rng.choice(both, count), rng.uniform(*both, count))
         for name, both in ends.items()
     }
+    values["beside"] = np.zeros(count)  # as many states also where nothing varies
     full, short = (interpret(p, values)[found.quantity] for p in (found.full, found.program))
     bounds = np.zeros(full.shape[1:])
     for error in found.errors:
