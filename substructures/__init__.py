@@ -31,7 +31,8 @@ What leaves as functions of other languages is made by export, on one calling co
 them stands certificate: what every stored formula has to be, computed from the documents alone
 (certificate.md). Below all of them: printers (programs as text), textbook (formulas as a person writes them), compile
 (programs as machine code), mechanics (one recursion over any scalar), expr (formulas as graphs and programs),
-documents (JSON and YAML with exact numbers and their units). Further: catalogue (mechanisms with sources), formats
+documents (JSON and YAML with exact numbers and their units). Further: abbreviation (formulas
+without what is negligible, and proof of how wrong that is), catalogue (mechanisms with sources), formats
 (npz, Arrow), client (of the HTTP service).
 
 >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
@@ -48,6 +49,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures import catalogue
+    from substructures.abbreviation.abbreviate import abbreviate
     from substructures.analysis.equations.first_integrals import first_integrals
     from substructures.analysis.simulate import simulate
     from substructures.analysis.stability.equilibria import equilibria
@@ -88,6 +90,7 @@ __all__ = [
     "TooLarge",
     "TreeSpec",
     "__version__",
+    "abbreviate",
     "catalogue",
     "couple",
     "derive",
@@ -104,6 +107,7 @@ __all__ = [
 __version__: str
 
 _WHERE = {
+    "abbreviation.abbreviate": ("abbreviate",),
     "analysis.equations.first_integrals": ("first_integrals",),
     "analysis.simulate": ("simulate",),
     "analysis.stability.equilibria": ("equilibria",),

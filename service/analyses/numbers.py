@@ -8,11 +8,13 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from service.analyses.abbreviations import abbreviated
 from service.analyses.formulas import base_of, curvature_of
 from service.analyses.requests import arguments, read_request
-from service.analyses.results import DRAWN, PLAIN, TRAJECTORY, Answered, trajectory_of
+from service.analyses.results import DRAWN, JSON, PLAIN, TRAJECTORY, Answered, trajectory_of
 from service.analyses.source import Source
 from service.analyses.warnings import warnings_of
+from service.schemas.abbreviations import AbbreviationRequest
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from service.schemas.measurements import CurvatureRequest, ExcitationRequest, IdentificationRequest
 from service.schemas.motions import (
@@ -189,6 +191,13 @@ def _motion(read: ExcitationRequest) -> dict[str, Any]:
 
 
 ANALYSES: dict[str, Analysis] = {
+    "abbreviations": Analysis(
+        AbbreviationRequest,
+        abbreviated,
+        "A quantity with what is negligible over given ranges left out, and a proven bound of the error",
+        (JSON,),
+        needs_parts=True,
+    ),
     "simulations": Analysis(
         AnySimulationRequest,
         _simulation,

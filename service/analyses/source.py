@@ -21,7 +21,7 @@ from substructures.tree.plausibility import Plausibility
 class Source:
     """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
     ``plausibility``: what judges values, made when needed; so are ``reactions`` and ``powers``, where the parts are
-    there; ``parts``: the document of the tree and its parts by instance.
+    there, and ``grouped``: the model with base parameters; ``parts``: the document and the parts by instance.
     """
 
     model: Model
@@ -33,6 +33,7 @@ class Source:
     plausibility: Callable[[], Plausibility] | None = None
     reactions: Callable[[], ReactionModel] | None = None
     powers: Callable[[], PowerModel] | None = None
+    grouped: Callable[[], Model] | None = None
     parts: Callable[[], tuple[TreeSpec, Mapping[str, Part]]] | None = None
 
     def sources(self) -> Sources:

@@ -227,6 +227,7 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
         limits,
         reactions=lambda: reactions(spec, parts, nodes),
         powers=lambda: powers(spec, parts, nodes),
+        grouped=lambda: couple(spec, parts, nodes, group=True),
         parts=lambda: (spec, parts),
     )
 

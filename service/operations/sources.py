@@ -16,7 +16,7 @@ from substructures.quantities.powers import PowerModel, powers
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model
+from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
 
 
@@ -74,6 +74,11 @@ def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:
     """The digests of what is derived of a tree beside its own program is made of."""
     with store.database.read() as connection:
         return trees.part_programs(connection, tree.name, tree.revision)
+
+
+def grouped_model(store: Store, tree: Tree) -> Model:
+    """The model of a stored tree with base parameters. Raises TooLarge."""
+    return couple(*tree_parts(store, tree), store.settings.limits.program_nodes, group=True)
 
 
 def _reactions(store: Store, tree: Tree) -> ReactionModel:

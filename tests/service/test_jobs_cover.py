@@ -27,6 +27,7 @@ CONTROL = {"controls": ["tau.s.x"], "cost": {"running": "tau.s.x^2"}, "horizon":
 SWING = {"q": [0.3], "span": [0, 1], "count": 3}
 #: tree and request, by analysis
 REQUESTS: dict[str, tuple[str, dict[str, Any]]] = {
+    "abbreviations": ("cart", {"quantity": "metric", "simplify": 0.1, "format": "c"}),
     "simulations": ("clock", SWING),
     "sensitivities": ("cart", {**SWING, "q": [0, 0.3], "by": ["x.l0"], "of_start": True}),
     "linearisations": ("clock", {"q": [0.3]}),

@@ -30,7 +30,16 @@ Headers = dict[str, str]
 MARK = "hush"  # stands in everything that is private, and nowhere else
 NAMES = {"private": "hush", "public": "known"}
 ANALYSES = (
-    *("cost-gradients", "curvatures", "equilibria", "excitations", "identifications", "linearisations", "loop-states"),
+    *(
+        "abbreviations",
+        "cost-gradients",
+        "curvatures",
+        "equilibria",
+        "excitations",
+        "identifications",
+        "linearisations",
+        "loop-states",
+    ),
     *("optimal-controls", "root-loci", "sensitivities", "simulations", "steady-motions", "velocity-equations"),
 )
 

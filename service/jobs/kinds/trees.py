@@ -19,6 +19,7 @@ from substructures.quantities.powers import PowerModel, powers
 from substructures.quantities.reactions import ReactionModel, reactions
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
 
 CAPACITY = 2_000_000  # operations
@@ -122,5 +123,12 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
         plausibility=judge,
         reactions=sources.reactions,
         powers=sources.powers,
+        grouped=(lambda: _grouped(item, blobs)) if "parts" in item else None,
         parts=(lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None,
     )
+
+
+def _grouped(item: ItemDocument, blobs: Blobs) -> Model:
+    """The model of the tree of an item with parts, with base parameters. Raises TooLarge."""
+    parts = item["parts"]
+    return couple(*tree_parts(parts, blobs), parts["nodes"], group=True)
