@@ -15,7 +15,7 @@ from service.references import Reference
 from service.viewer import PUBLIC, Viewer
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
-_DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")
+_DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")
 _REPORTS = ("operations", "certificate", "program")
 _OWNED = ("owner", "visibility")
 COLUMNS = [
@@ -31,7 +31,11 @@ STORED = versions.join(parts, parts.c.digest == versions.c.digest).join(
     substructures, substructures.c.name == versions.c.name
 )
 #: what searches read of the latest version of a name
-_NARROW = (versions.c.digest, versions.c.created, *(parts.c[x] for x in ("dof", "joints", "searchable")))
+_NARROW = (
+    versions.c.digest,
+    versions.c.created,
+    *(parts.c[x] for x in ("dof", "joints", "mass", "searchable", "source")),
+)
 _VISIBLE, _IS_LATEST = visible(substructures), substructures.c.latest == versions.c.version
 
 
@@ -54,6 +58,7 @@ class Version:
     tags: str
     dof: int
     joints: str
+    mass: float | None
     coordinates: str
     bodies: str
     ports: str
