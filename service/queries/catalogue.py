@@ -106,26 +106,22 @@ def add_version(
     connection: Connection, name: str, digest: str, author: str, provenance: Provenance
 ) -> tuple[int, bool]:
     """The number of the version with this content, and whether it is new; the name is claimed, and so locked."""
-    known = select(versions.c.version).where(versions.c.digest == digest)
-    number = connection.execute(known).scalar()
+    number = connection.execute(_OF_DIGEST, {"of_digest": digest}).scalar()
     if number is not None:
         return number, False
-    highest = select(func.coalesce(func.max(versions.c.version), 0)).where(versions.c.name == name)
-    number = connection.execute(highest).scalar_one() + 1
+    number = connection.execute(_HIGHEST, {"of_name": name}).scalar_one() + 1
     row = {"name": name, "version": number, "digest": digest, "created": now(), "author": author}
-    connection.execute(insert(versions).values(**row, **provenance.values()))
+    connection.execute(_NEW, row | provenance.values())
     _set_latest(connection, name)
     return number, True
 
 
 def _set_latest(connection: Connection, name: str) -> None:
-    # from the highest number down: of 10,000 versions one row is read
-    offered = select(versions.c.version).where(versions.c.name == name, versions.c.yanked.is_(None))
-    latest = connection.execute(offered.order_by(versions.c.version.desc()).limit(1)).scalar()
-    query = select(*_NARROW).join(parts, parts.c.digest == versions.c.digest)
-    row = connection.execute(query.where(versions.c.name == name, versions.c.version == latest)).mappings().first()
-    shown = dict.fromkeys(column.name for column in _NARROW) if row is None else dict(row)
-    connection.execute(update(substructures).where(substructures.c.name == name).values(latest=latest, **shown))
+    latest = connection.execute(_OFFERED, {"of_name": name}).scalar()
+    row = connection.execute(_OF_LATEST, {"of_name": name, "of_version": latest}).first()
+    shown = (None,) * len(_NARROW) if row is None else row
+    values = {f"its_{column.name}": value for column, value in zip(_NARROW, shown, strict=True)}
+    connection.execute(_NEW_LATEST, {"of_name": name, "its_latest": latest, **values})
 
 
 def yank(
@@ -195,3 +191,23 @@ _BY_ALIAS = _NAMED.join(
     aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version)
 ).where(aliases.c.alias == bindparam("alias"))
 _LATEST = _NAMED.where(_IS_LATEST)
+_NEW = insert(versions)
+_OF_DIGEST = select(versions.c.version).where(versions.c.digest == bindparam("of_digest"))
+_IS_OF_NAME = versions.c.name == bindparam("of_name")
+_HIGHEST = select(func.coalesce(func.max(versions.c.version), 0)).where(_IS_OF_NAME)
+_OFFERED = (  # from the highest number down: of 10,000 versions one row is read
+    select(versions.c.version)
+    .where(_IS_OF_NAME, versions.c.yanked.is_(None))
+    .order_by(versions.c.version.desc())
+    .limit(1)
+)
+_OF_LATEST = (
+    select(*_NARROW)
+    .join(parts, parts.c.digest == versions.c.digest)
+    .where(_IS_OF_NAME, versions.c.version == bindparam("of_version"))
+)
+_NEW_LATEST = (
+    update(substructures)
+    .where(substructures.c.name == bindparam("of_name"))
+    .values({name: bindparam(f"its_{name}") for name in ("latest", *(column.name for column in _NARROW))})
+)

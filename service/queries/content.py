@@ -48,7 +48,7 @@ def put_part(
 ) -> None:
     """Store a part whose program is stored already, with its tags, ports and formulas, unless it is there."""
     if insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}]):
-        insert_missing(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
+        put_all(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
         ports = [{"part": row["digest"], "port": port} for port in dict.fromkeys(orjson.loads(row["ports"]))]
         put_all(connection, part_ports, ports)
 
