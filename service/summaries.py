@@ -8,6 +8,7 @@ from typing import Any
 
 from service.database.packed import pack
 from substructures.documents import read_json, write_json
+from substructures.part.mass import mass_at_defaults
 from substructures.part.part import Part
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
@@ -53,7 +54,9 @@ class PartContent:
     @classmethod
     def of_files(cls, files: Mapping[str, bytes], prefix: str = "") -> PartContent:
         """Out of the files of an outcome."""
-        return cls(files[f"{prefix}program"], **read_json(files[f"{prefix}content"]))
+        members = read_json(files[f"{prefix}content"])
+        row = {**members["row"], "mass": float_of(members["row"]["mass"])}
+        return cls(files[f"{prefix}program"], **{**members, "row": row})
 
 
 def part_content(part: Part) -> PartContent:
@@ -67,6 +70,8 @@ def part_content(part: Part) -> PartContent:
         "title": _plain(definition.title),
         "description": _plain(definition.description),
         "searchable": _plain("\n".join(words).lower()),
+        "source": _plain(definition.source.lower()),
+        "mass": mass_at_defaults(definition),
         "dof": part.dof,
         "joints": part.joints,
         "tags": _json(definition.tags),
@@ -83,6 +88,11 @@ def part_content(part: Part) -> PartContent:
     ]
     tags = tuple(dict.fromkeys(definition.tags))
     return PartContent(pack(part.program), len(part.program), tags, row, formulas)
+
+
+def float_of(number: Any) -> float | None:
+    """A number out of JSON as the double that it was."""
+    return None if number is None else float(number)
 
 
 def _plain(text: str) -> str:

@@ -7,7 +7,7 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
 ::
 
     substructures --< versions >-- parts --- programs
-          '--< aliases --< history   |--< tags
+          '--< aliases --< history   |--< tags, part_ports
                                      '--< part_uses >-- parts
     tree_names --< trees --< tree_parts >-- parts
                      '------------------- programs
@@ -18,6 +18,7 @@ from __future__ import annotations
 from sqlalchemy import (
     BigInteger,
     Column,
+    Float,
     ForeignKey,
     ForeignKeyConstraint,
     Index,
@@ -51,6 +52,10 @@ def _default(name: str, value: str) -> Column[str]:
     return Column(name, Text, nullable=False, server_default=value)
 
 
+def _mass() -> Column[float]:
+    return Column("mass", Float, nullable=True)
+
+
 programs = Table(
     "programs",
     metadata,
@@ -70,8 +75,10 @@ parts = Table(  # a derived definition: everything that depends on its content a
     _text("description"),
     _text("tags"),
     _text("searchable"),  # name, title, description and tags in lower case
+    _default("source", ""),  # in lower case
     _number("dof"),
     _text("joints"),
+    _mass(),  # of all bodies at the defaults of the parameters, kg; NULL where one has none
     _text("coordinates"),
     _text("bodies"),
     _text("ports"),
@@ -94,6 +101,16 @@ tags = Table(
     Index("ix_tags_tag", "tag", "part"),
 )
 
+part_ports = Table(
+    "part_ports",
+    metadata,
+    _text("port", primary_key=True),
+    _text("part", ForeignKey("parts.digest"), primary_key=True),
+)
+
+#: what a search reads of every name is in each of its indexes on SQLite, so that it reads nothing else
+_READ = ("latest", "visibility", "owner", "dof", "joints", "mass", "number")
+
 substructures = Table(  # one row a name; locked while a version number is allocated
     "substructures",
     metadata,
@@ -104,12 +121,15 @@ substructures = Table(  # one row a name; locked while a version number is alloc
     _text("created", nullable=True),
     _number("dof", nullable=True),
     _text("joints", nullable=True),
+    _mass(),
     _text("searchable", nullable=True),
+    _text("source", nullable=True),
     _number("number", nullable=True),  # by which SQLite's index of words knows it
     _default("owner", "local"),
     _default("visibility", "public"),
-    Index("ix_substructures_dof", "dof", "name"),
-    Index("ix_substructures_created", "created", "name"),
+    Index("ix_substructures_name", "name", *_READ, "digest"),
+    Index("ix_substructures_dof", "dof", "name", *(each for each in _READ if each != "dof"), "digest"),
+    Index("ix_substructures_created", "created", "name", *_READ, "digest"),
     Index("ix_substructures_number", "number", unique=True),
     Index("ix_substructures_digest", "digest"),
     Index("ix_substructures_seen", "visibility", "owner", "latest"),
@@ -174,8 +194,18 @@ tree_names = Table(
     metadata,
     _text("name", primary_key=True),
     _number("latest"),
+    # of that revision, so that searches read narrow rows
+    _text("created", nullable=True),
+    _number("dof", nullable=True),
+    _text("joints", nullable=True),
+    _mass(),
+    _number("number", nullable=True),  # by which SQLite's index of words knows it
     _default("owner", "local"),
     _default("visibility", "public"),
+    Index("ix_tree_names_name", "name", *_READ),
+    Index("ix_tree_names_dof", "dof", "name", *(each for each in _READ if each != "dof")),
+    Index("ix_tree_names_created", "created", "name", *_READ),
+    Index("ix_tree_names_number", "number", unique=True),
 )
 
 trees = Table(
@@ -193,6 +223,8 @@ trees = Table(
     Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of ``summary``
     _default("author", ""),
     _default("note", ""),
+    _default("joints", ""),
+    _mass(),  # as of parts
     Index(None, "digest"),
     Index(None, "created"),
 )

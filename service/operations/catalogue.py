@@ -1,19 +1,17 @@
-"""Submit, find, search, name and yank substructures."""
+"""Submit, find, name and yank substructures."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from service.database.connections import Connection
 from service.operations import owners
 from service.operations.provenance import Origin, derived_from, pinned, provenance
-from service.paging import is_of, read_token, write_token
-from service.queries import aliases, audit, catalogue, content, search, uses
+from service.queries import aliases, audit, catalogue, content, uses
 from service.queries.formulas import FormulaRow
 from service.queries.owners import is_version, ownership
-from service.queries.search import CatalogueSearch
 from service.references import ALIAS, Reference, parse_reference
 from service.refusals import Refused, not_found, unprocessable
 from service.schemas.entries import PLAIN, PartEntry
@@ -37,18 +35,6 @@ class PartSubmission:
     is_mended: bool = False
     entry: PartEntry = PLAIN
     origin: Origin = SUBMITTED
-
-
-@dataclass(frozen=True, slots=True)
-class Page:
-    """A page of versions, where the next one begins, the counts of the whole search, and words that were taken in
-    place of those that are nowhere.
-    """
-
-    versions: Sequence[catalogue.Version]
-    next_token: str | None
-    facets: Mapping[str, Mapping[str, int]] | None = None
-    instead: Mapping[str, str] = field(default_factory=dict)
 
 
 def prepare(
@@ -127,34 +113,6 @@ def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str 
         like = owners.candidates(connection, viewer, "substructure", text)
         raise not_found(f"there is no substructure '{text}'{like}", "unknown-substructure")
     return version
-
-
-def found(
-    connection: Connection, viewer: Viewer, wanted: CatalogueSearch, size: int, token: str | None, facets: bool = False
-) -> Page:
-    """A page of the latest versions, of the most similar words where there is nothing with the words themselves.
-    ``facets``: also counts of the whole search. Raises Refused 422 for a token of another search.
-    """
-    instead: dict[str, str] = {}
-    is_of_words = token is None or is_of(wanted, token)
-    shown = _page(connection, viewer, wanted, size, token) if is_of_words else None
-    if wanted.words and not (shown and shown.versions):
-        instead = search.corrected(connection, viewer, wanted)
-        wanted = search.with_words(wanted, instead)
-        shown = _page(connection, viewer, wanted, size, token) if instead or shown is None else shown
-    if shown is None:
-        shown = _page(connection, viewer, wanted, size, token)
-    counted = search.facets(connection, viewer, wanted) if facets else None
-    return replace(shown, facets=counted, instead=instead)
-
-
-def _page(connection: Connection, viewer: Viewer, wanted: CatalogueSearch, size: int, token: str | None) -> Page:
-    is_number = wanted.sort.lstrip("-") == "dof" or (wanted.sort == search.RELEVANCE and bool(wanted.words))
-    after = read_token(wanted, token, int if is_number else str, str)
-    versions, places = search.page(connection, viewer, wanted, after, size + 1)
-    more = len(versions) > size
-    following = write_token(wanted, places[size - 1], versions[size - 1].name) if more else None
-    return Page(versions[:size], following)
 
 
 def set_alias(

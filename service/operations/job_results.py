@@ -19,7 +19,7 @@ from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
 from service.schemas.entries import Entry, PartEntry
-from service.summaries import PartContent
+from service.summaries import PartContent, float_of
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
@@ -66,7 +66,7 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     files, told = outcome.files, outcome.summary
     inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
-    figures = told["program"], told["nodes"], told["dof"]
+    figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
     coupled = trees.TreeContent(
         told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
     )

@@ -29,6 +29,7 @@ from substructures.part.parameters import counted
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
+from substructures.tree.plausibility import Plausibility
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,7 @@ class Revision:
 @dataclass(frozen=True, slots=True)
 class TreeContent:
     """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
-    freedom, the summary as JSON.
+    freedom, joints, mass in kg if it is known, the summary as JSON.
 
     ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
     """
@@ -57,6 +58,8 @@ class TreeContent:
     program_digest: str
     nodes: int
     dof: int
+    joints: str
+    mass: float | None
     summary: bytes
     parts: Mapping[str, str]
     inline: Sequence[PartContent] = ()
@@ -239,7 +242,8 @@ def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[
     inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
     digests = {name: part.definition.digest for name, part in revision.parts.items()}
     program, summary = model.program, tree_summary(spec, model)
-    figures = program.digest, len(program), model.dof
+    mass = Plausibility(spec, {name: part.definition for name, part in revision.parts.items()}).mass
+    figures = program.digest, len(program), model.dof, model.joints, mass
     coupled = TreeContent(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
     number = revision.base.revision if revision.base else None
     return store(connection, viewer, coupled, revision.entry, number, revision.is_exact)
@@ -273,7 +277,8 @@ def store(
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
     whom = viewer.key, whose.owner, whose.visibility, entry.note or ""
-    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom)
+    figures = coupled.joints, coupled.mass
+    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom, *figures)
     trees.add_revision(connection, tree, coupled.parts)
     audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)
     return tree, True

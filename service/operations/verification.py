@@ -23,6 +23,7 @@ from substructures.part.definition import Definition
 from substructures.part.part import Part, derive, recheck
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple
+from substructures.tree.plausibility import Plausibility
 from substructures.tree.recheck import recheck_tree
 
 #: what is stored of a part, and follows from its definition and program
@@ -166,5 +167,7 @@ def _mend_tree(connection: Connection, reference: str) -> None:
     model = couple(spec, parts)
     content.replace_program(connection, model.program.digest, pack(model.program), len(model.program))
     summary = tree_summary(spec, model)
-    coupled = replace(tree, program=model.program.digest, dof=model.dof, summary=summary.decode())
+    mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
+    figures: dict[str, Any] = {"dof": model.dof, "joints": model.joints, "mass": mass}
+    coupled = replace(tree, program=model.program.digest, summary=summary.decode(), **figures)
     trees.replace_model(connection, replace(coupled, summary_digest=digest_of(summary)))

@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 import orjson
 
 from service.addresses import version_path
-from service.operations.catalogue import Page
+from service.operations.searches import Page
 from service.pages.html import Html, joined, link, tag
 from service.pages.layout import SCRIPT, document
 from service.pages.trees import trees_table
@@ -31,7 +31,7 @@ class Shown:
     whether there are more trees.
     """
 
-    page: Page
+    page: Page[Version]
     q: str
     total: int
     trees: Sequence[Tree]
@@ -50,7 +50,7 @@ def page(shown: Shown, address: str, with_key: bool) -> bytes:
             EQUATION,
             " of the whole, as formulas or as numbers, with any parameters left open.",
         ),
-        *(() if shown.q else (*_example(shown.page.versions, address, with_key), *_upload())),
+        *(() if shown.q else (*_example(shown.page.items, address, with_key), *_upload())),
         *_catalogue(shown),
         *_trees(shown),
         script=SCRIPT,
@@ -100,7 +100,7 @@ def _pair(versions: Sequence[Version]) -> tuple[str, str, str] | None:
 
 
 def _catalogue(shown: Shown) -> list[Html]:
-    versions = shown.page.versions
+    versions = shown.page.items
     note = [tag("span", len(versions), id="count"), f" of {shown.total:,} parts"]
     label = "Name, title, tag or words of the description"
     box = tag(

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
-from service.operations import catalogue, differences, jobs, trees
+from service.operations import catalogue, differences, jobs, searches, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
 from service.pages.account import PageRoute
@@ -28,9 +28,9 @@ from service.pages.versions import (
 )
 from service.queries import aliases, search, uses, versions
 from service.queries import jobs as job_rows
-from service.queries import trees as revisions
-from service.queries.search import CatalogueSearch
-from service.queries.trees import TreeSearch
+from service.queries.part_search import CatalogueSearch
+from service.queries.tree_search import TreeSearch
+from service.queries.words import words_of
 from service.settings import Settings
 from service.viewer import ANYBODY
 from substructures.part.outputs import with_own_inertia
@@ -52,12 +52,12 @@ def first_page(
     after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """The catalogue."""
-    wanted = CatalogueSearch(search.words_of(q), sort=search.RELEVANCE)
+    wanted = CatalogueSearch(words_of(q), sort=search.RELEVANCE)
     with store.database.read() as connection:
-        found = catalogue.found(connection, viewer, wanted, CARDS, after)
+        found = searches.parts(connection, viewer, wanted, CARDS, after)
         total = search.count(connection, viewer, CatalogueSearch())
-        some = revisions.page(connection, viewer, TreeSearch(), None, TREES + 1)
-    shown = Shown(found, q, total, some[:TREES], len(some) > TREES)
+        some = searches.trees(connection, viewer, TreeSearch(), TREES, None)
+    shown = Shown(found, q, total, some.items, some.next_token is not None)
     with_key = viewer != ANYBODY
     return answer(request, page(shown, _address(request, store.settings), with_key))
 
@@ -118,13 +118,13 @@ def all_trees(
     store: StoreOf,
     viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200)] = "",
-    after: Annotated[str | None, Query(max_length=64)] = None,
+    after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
-    """Trees by name."""
+    """Trees by relevance, or by name."""
+    wanted = TreeSearch(words_of(q), sort=search.RELEVANCE)
     with store.database.read() as connection:
-        found = revisions.page(connection, viewer, TreeSearch(tuple(q.split())), after, TREES + 1)
-    following = found[TREES - 1].name if len(found) > TREES else None
-    return answer(request, trees_page(found[:TREES], q, following))
+        found = searches.trees(connection, viewer, wanted, TREES, after)
+    return answer(request, trees_page(found, q))
 
 
 @router.get("/trees/{ref}")

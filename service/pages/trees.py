@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from urllib.parse import urlencode
 
 from service.addresses import tree_path
+from service.operations.searches import Page
 from service.pages.html import Html, link, table, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
@@ -27,8 +28,8 @@ def trees_table(trees: Sequence[Tree]) -> Html:
     return table(("latest revision", "dof", "owner", "created", ""), rows)
 
 
-def trees_page(trees: Sequence[Tree], q: str, following: str | None) -> bytes:
-    """The bytes of the page; ``following``: the name after which the next page begins."""
+def trees_page(page: Page[Tree], q: str) -> bytes:
+    """The bytes of the page of what was found for ``q``."""
     label = "Search by name"
     form = tag(
         "form",
@@ -38,6 +39,8 @@ def trees_page(trees: Sequence[Tree], q: str, following: str | None) -> bytes:
         action="/trees",
         class_="bar",
     )
-    listed = trees_table(trees) if trees else tag("p", "None.", class_="quiet")
-    more = tag("p", link("Next", f"/trees?{urlencode({'q': q, 'after': following})}")) if following else Html()
-    return document("Trees - substructures", tag("h1", "Trees"), form, listed, more)
+    told = [tag("p", f"'{word}' is nowhere; this is '{other}'.") for word, other in page.instead.items()]
+    listed = trees_table(page.items) if page.items else tag("p", "None.", class_="quiet")
+    query = urlencode({"q": q, "after": page.next_token or ""})
+    more = tag("p", link("Next", f"/trees?{query}")) if page.next_token else Html()
+    return document("Trees - substructures", tag("h1", "Trees"), form, *told, listed, more)

@@ -15,7 +15,7 @@ from service.references import Reference
 from service.viewer import PUBLIC, Viewer
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
-_DETAILS = ("title", "description", "tags", "dof", "joints", "coordinates", "bodies", "ports", "parameters")
+_DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")
 _REPORTS = ("operations", "certificate", "program")
 _OWNED = ("owner", "visibility")
 COLUMNS = [
@@ -31,7 +31,11 @@ STORED = versions.join(parts, parts.c.digest == versions.c.digest).join(
     substructures, substructures.c.name == versions.c.name
 )
 #: what searches read of the latest version of a name
-_NARROW = (versions.c.digest, versions.c.created, *(parts.c[x] for x in ("dof", "joints", "searchable")))
+_NARROW = (
+    versions.c.digest,
+    versions.c.created,
+    *(parts.c[x] for x in ("dof", "joints", "mass", "searchable", "source")),
+)
 _VISIBLE, _IS_LATEST = visible(substructures), substructures.c.latest == versions.c.version
 
 
@@ -54,6 +58,7 @@ class Version:
     tags: str
     dof: int
     joints: str
+    mass: float | None
     coordinates: str
     bodies: str
     ports: str
@@ -101,26 +106,22 @@ def add_version(
     connection: Connection, name: str, digest: str, author: str, provenance: Provenance
 ) -> tuple[int, bool]:
     """The number of the version with this content, and whether it is new; the name is claimed, and so locked."""
-    known = select(versions.c.version).where(versions.c.digest == digest)
-    number = connection.execute(known).scalar()
+    number = connection.execute(_OF_DIGEST, {"of_digest": digest}).scalar()
     if number is not None:
         return number, False
-    highest = select(func.coalesce(func.max(versions.c.version), 0)).where(versions.c.name == name)
-    number = connection.execute(highest).scalar_one() + 1
+    number = connection.execute(_HIGHEST, {"of_name": name}).scalar_one() + 1
     row = {"name": name, "version": number, "digest": digest, "created": now(), "author": author}
-    connection.execute(insert(versions).values(**row, **provenance.values()))
+    connection.execute(_NEW, row | provenance.values())
     _set_latest(connection, name)
     return number, True
 
 
 def _set_latest(connection: Connection, name: str) -> None:
-    # from the highest number down: of 10,000 versions one row is read
-    offered = select(versions.c.version).where(versions.c.name == name, versions.c.yanked.is_(None))
-    latest = connection.execute(offered.order_by(versions.c.version.desc()).limit(1)).scalar()
-    query = select(*_NARROW).join(parts, parts.c.digest == versions.c.digest)
-    row = connection.execute(query.where(versions.c.name == name, versions.c.version == latest)).mappings().first()
-    shown = dict.fromkeys(column.name for column in _NARROW) if row is None else dict(row)
-    connection.execute(update(substructures).where(substructures.c.name == name).values(latest=latest, **shown))
+    latest = connection.execute(_OFFERED, {"of_name": name}).scalar()
+    row = connection.execute(_OF_LATEST, {"of_name": name, "of_version": latest}).first()
+    shown = (None,) * len(_NARROW) if row is None else row
+    values = {f"its_{column.name}": value for column, value in zip(_NARROW, shown, strict=True)}
+    connection.execute(_NEW_LATEST, {"of_name": name, "its_latest": latest, **values})
 
 
 def yank(
@@ -199,3 +200,23 @@ _BY_ALIAS = _NAMED.join(
     aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version)
 ).where(aliases.c.alias == bindparam("alias"))
 _LATEST = _NAMED.where(_IS_LATEST)
+_NEW = insert(versions)
+_OF_DIGEST = select(versions.c.version).where(versions.c.digest == bindparam("of_digest"))
+_IS_OF_NAME = versions.c.name == bindparam("of_name")
+_HIGHEST = select(func.coalesce(func.max(versions.c.version), 0)).where(_IS_OF_NAME)
+_OFFERED = (  # from the highest number down: of 10,000 versions one row is read
+    select(versions.c.version)
+    .where(_IS_OF_NAME, versions.c.yanked.is_(None))
+    .order_by(versions.c.version.desc())
+    .limit(1)
+)
+_OF_LATEST = (
+    select(*_NARROW)
+    .join(parts, parts.c.digest == versions.c.digest)
+    .where(_IS_OF_NAME, versions.c.version == bindparam("of_version"))
+)
+_NEW_LATEST = (
+    update(substructures)
+    .where(substructures.c.name == bindparam("of_name"))
+    .values({name: bindparam(f"its_{name}") for name in ("latest", *(column.name for column in _NARROW))})
+)

@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import orjson
 from sqlalchemy import Connection, bindparam, select, update
 
 from service.database.packed import unpack
-from service.database.tables import parts, programs, tags
+from service.database.tables import part_ports, parts, programs, tags
 from service.integrity import checked, missing, reading
-from service.queries.common import insert_missing, now
+from service.queries.common import insert_missing, now, put_all
 from service.queries.formulas import FormulaRow, packed
 from service.queries.uploads import get_upload
 
@@ -45,9 +46,11 @@ def _unpacked(digest: str, content: bytes) -> bytes:
 def put_part(
     connection: Connection, row: Mapping[str, Any], tag_names: Sequence[str], formula_rows: Sequence[FormulaRow]
 ) -> None:
-    """Store a part whose program is stored already, with its tags and formulas, unless it is there."""
+    """Store a part whose program is stored already, with its tags, ports and formulas, unless it is there."""
     if insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}]):
-        insert_missing(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
+        put_all(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
+        ports = [{"part": row["digest"], "port": port} for port in dict.fromkeys(orjson.loads(row["ports"]))]
+        put_all(connection, part_ports, ports)
 
 
 def replace_part(

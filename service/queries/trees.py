@@ -1,4 +1,4 @@
-"""Revisions of trees: allocate, resolve, list."""
+"""Revisions of trees: allocate, resolve."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
-from service.database.tables import parts, tree_names, tree_parts, trees, versions
+from service.database.tables import parts, tree_names, tree_parts, trees
 from service.integrity import checked
 from service.queries.owners import seen_by, visible
 from service.references import Reference
@@ -33,6 +33,8 @@ class Tree:
     owner: str
     visibility: str
     note: str = ""
+    joints: str = ""
+    mass: float | None = None
 
     @property
     def is_public(self) -> bool:
@@ -48,7 +50,7 @@ def latest_revision(connection: Connection, name: str) -> int:
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
     """Store a new latest revision and which part every instance is; the name is locked."""
     connection.execute(_NEW, {name: value for name, value in asdict(tree).items() if name not in _OWNED})
-    connection.execute(_NEW_LATEST, {"of_name": tree.name, "number": tree.revision})
+    connection.execute(_NEW_LATEST, {name: getattr(tree, column) for name, column in _NARROW.items()})
     key = {"name": tree.name, "revision": tree.revision}
     values = [{**key, "instance": instance, "part": digest} for instance, digest in parts.items()]
     if values:
@@ -81,6 +83,8 @@ def remove(connection: Connection, name: str) -> None:
     """Remove all revisions; the name stays its owner's, and later ones count on, so that no number is two trees."""
     for table in (tree_parts, trees):
         connection.execute(delete(table).where(table.c.name == name))
+    gone = dict.fromkeys(("created", "dof", "joints", "mass"))
+    connection.execute(update(tree_names).where(tree_names.c.name == name).values(**gone))
 
 
 def all_revisions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:
@@ -123,34 +127,9 @@ def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None
 def replace_model(connection: Connection, tree: Tree) -> None:
     """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
     chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
-    names = ("program", "dof", "summary", "summary_digest")
+    names = ("program", "dof", "joints", "mass", "summary", "summary_digest")
     values = {name: getattr(tree, name) for name in names}
     connection.execute(update(trees).where(chosen).values(**values))
-
-
-@dataclass(frozen=True, slots=True)
-class TreeSearch:
-    """Which trees to list: words in the name, name of a part that is used, owner. All conditions must hold."""
-
-    words: tuple[str, ...] = ()
-    uses: str | None = None
-    owner: str | None = None
-
-
-def page(connection: Connection, viewer: Viewer, search: TreeSearch, after: str | None, size: int) -> list[Tree]:
-    """Up to ``size`` latest revisions that a viewer sees, whose names follow ``after``."""
-    query = _all().where(_IS_LATEST, _VISIBLE)
-    for word in search.words:
-        query = query.where(trees.c.name.contains(word.lower(), autoescape=True))
-    if search.uses is not None:
-        used = select(tree_parts.c.part).join(versions, versions.c.digest == tree_parts.c.part)
-        used = used.where(tree_parts.c.name == trees.c.name, tree_parts.c.revision == trees.c.revision)
-        query = query.where(used.where(versions.c.name == search.uses).exists())
-    if search.owner is not None:
-        query = query.where(tree_names.c.owner == search.owner)
-    if after is not None:
-        query = query.where(trees.c.name > after)
-    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.name).limit(size), seen_by(viewer))]
 
 
 def _all() -> Select[Any]:
@@ -166,6 +145,14 @@ _NAMED = _all().where(trees.c.name == bindparam("name"), _VISIBLE)
 _BY_DIGEST = _NAMED.where(trees.c.digest == bindparam("digest")).order_by(trees.c.revision).limit(1)
 _BY_NUMBER = _NAMED.where(trees.c.revision == bindparam("number"))
 _LATEST = _NAMED.where(_IS_LATEST)
+#: of all names
+LATEST = _all().where(_IS_LATEST, _VISIBLE)
 _LATEST_NUMBER = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name"))
 _NEW, _NEW_PART = insert(trees), insert(tree_parts)
-_NEW_LATEST = update(tree_names).where(tree_names.c.name == bindparam("of_name")).values(latest=bindparam("number"))
+#: what of the latest revision stands beside its name, by the values of the statement
+_NARROW = {"of_name": "name", "number_": "revision", **{f"{x}_": x for x in ("created", "dof", "joints", "mass")}}
+_SHOWN: dict[str, Any] = {
+    "latest": bindparam("number_"),
+    **{x: bindparam(f"{x}_") for x in ("created", "dof", "joints", "mass")},
+}
+_NEW_LATEST = update(tree_names).where(tree_names.c.name == bindparam("of_name")).values(_SHOWN)

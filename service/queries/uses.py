@@ -44,8 +44,10 @@ class Withdrawn:
 
 def put(connection: Connection, part: str, uses: Mapping[str, str]) -> None:
     """Note the digests of the parts that a new part is built of, by instance; those that are stored."""
+    if not uses:
+        return
     known = connection.execute(select(parts.c.digest).where(parts.c.digest.in_(list(uses.values())))).scalars()
-    stored = set(known) if uses else set()
+    stored = set(known)
     rows = [{"part": part, "instance": name, "used": digest} for name, digest in uses.items() if digest in stored]
     if rows:
         connection.execute(part_uses.insert(), rows)

@@ -14,16 +14,17 @@ from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
 from service.integrity import missing
-from service.operations import catalogue
+from service.operations import catalogue, searches
 from service.paging import limited
 from service.queries import aliases, content, uses
 from service.queries.catalogue import Version
-from service.queries.search import RELEVANCE, SORTS, CatalogueSearch, words_of
+from service.queries.part_search import CatalogueSearch
 from service.queries.uses import Withdrawn
+from service.queries.words import words_of
 from service.references import is_pinned
-from service.refusals import unprocessable
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
+from service.routes.filters import NarrowOf, PortName
 from service.schemas.entries import PartEntry
 from service.schemas.resources import VersionPage, VersionView, YankRequest
 from service.viewer import Viewer
@@ -76,35 +77,26 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     return act.run(prepare, deferred(act, "derive", body))
 
 
-SORTED = ", ".join(SORTS)
-
-
 @router.get("", response_model=VersionPage, dependencies=READ)
 def search(
     request: Request,
     store: StoreOf,
     viewer: ViewerOf,
+    narrow: NarrowOf,
     q: Annotated[str, Query(max_length=200, description="words in name, title, description and tags")] = "",
     tag: Annotated[list[str], Query(max_length=10)] = [],  # noqa: B006 -- read only
-    dof_min: Annotated[int | None, Query(ge=0, le=10**6)] = None,
-    dof_max: Annotated[int | None, Query(ge=0, le=10**6)] = None,
-    joints: Annotated[str | None, Query(pattern="^[RP]*$", max_length=1000)] = None,
-    owner: Annotated[str | None, Query(max_length=64)] = None,
-    sort: Annotated[str | None, Query(description=f"one of {SORTED}; default: relevance with q, name without")] = None,
+    port: Annotated[list[PortName], Query(max_length=10, description="name of a port")] = [],  # noqa: B006 -- read only
+    source: Annotated[str, Query(max_length=200, description="words in the source")] = "",
     facets: Annotated[bool, Query(description="also count tags, joints and degrees of freedom of all found")] = False,
     page_size: Annotated[int, Query(ge=1)] = 50,
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """A page of the latest versions. Words that are nowhere are taken for the most similar ones, told in `instead`."""
-    words = words_of(q)
-    sort = sort or (RELEVANCE if words else "name")
-    if sort not in SORTS:
-        raise unprocessable("sort", f"unknown sort '{sort[:40]}'; there are {SORTED}", "/query/sort")
-    wanted = CatalogueSearch(words, tuple(tag), dof_min, dof_max, joints, owner, sort)
-    size = limited(page_size, store.settings.limits)
+    chosen = CatalogueSearch(words_of(q), **narrow, tags=tuple(tag), ports=tuple(port), source=words_of(source))
+    wanted, size = searches.checked(chosen), limited(page_size, store.settings.limits)
     with store.database.read() as connection:
-        page = catalogue.found(connection, viewer, wanted, size, page_token, facets)
-        names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.versions))
+        page = searches.parts(connection, viewer, wanted, size, page_token, facets)
+        names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.items))
     link = next_link(request, page.next_token)
     return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))
 

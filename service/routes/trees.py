@@ -13,15 +13,17 @@ from service.database.connections import Connection
 from service.http.acting import Act, ActOf, Commit, timed
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
-from service.operations import trees
+from service.operations import searches, trees
 from service.operations.job_results import BASE_REVISION, IS_EXACT
-from service.paging import limited, read_token, write_token
-from service.queries.trees import TreeSearch, page
+from service.paging import limited
+from service.queries.tree_search import TreeSearch
+from service.queries.words import words_of
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
+from service.routes.filters import NarrowOf
 from service.schemas.entries import Entry
 from service.schemas.resources import TreePage, TreeView
-from service.views.resources import dump, tree_item, tree_view
+from service.views.resources import dump, tree_page_view, tree_view
 
 router = APIRouter(prefix="/v1/trees", tags=["trees"])
 READ, WRITE = [needs("read")], [needs("write")]
@@ -79,21 +81,19 @@ def list_trees(
     request: Request,
     store: StoreOf,
     viewer: ViewerOf,
+    narrow: NarrowOf,
     q: Annotated[str, Query(max_length=200, description="words in the name")] = "",
     uses: Annotated[str | None, Query(max_length=200, description="name of a part that is an instance")] = None,
-    owner: Annotated[str | None, Query(max_length=64)] = None,
     page_size: Annotated[int, Query(ge=1)] = 50,
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
-    """A page of trees, the latest revision of each."""
-    size, wanted = limited(page_size, store.settings.limits), TreeSearch(tuple(q.split()), uses, owner)
-    after = read_token(wanted, page_token, str)
+    """A page of trees, the latest revision of each. Words that are nowhere are taken for the most similar ones."""
+    wanted = searches.checked(TreeSearch(words_of(q), **narrow, uses=uses))
+    size = limited(page_size, store.settings.limits)
     with store.database.read() as connection:
-        found = page(connection, viewer, wanted, after[0] if after else None, size + 1)
-    token = write_token(wanted, found[size - 1].name) if len(found) > size else None
-    link = next_link(request, token)
-    view = {"items": [tree_item(t) for t in found[:size]], "next_page_token": token, "links": {"next": link}}
-    return response_of(json_answer(dump(view), headers=link_header(link)))
+        page = searches.trees(connection, viewer, wanted, size, page_token)
+    link = next_link(request, page.next_token)
+    return response_of(json_answer(dump(tree_page_view(page, link)), headers=link_header(link)))
 
 
 @router.get("/{ref}", response_model=TreeView, dependencies=READ)

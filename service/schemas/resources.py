@@ -70,6 +70,7 @@ class VersionView(Shape):
     tags: list[str]
     dof: int = Field(description="number of coordinates")
     joints: str = Field(description="R or P for every coordinate, in order")
+    mass: float | None = Field(description="kg, of all bodies at the defaults; null where a parameter has none")
     coordinates: list[str]
     bodies: list[str]
     ports: list[str]
@@ -181,6 +182,7 @@ class TreeView(Shape):
     revision: int
     digest: Digest
     dof: int
+    mass: float | None = Field(description="kg, of all bodies at the defaults; null where a parameter has none")
     coordinates: list[str] = Field(description="instance.coordinate, in the order of all arrays")
     joints: str = Field(description="R or P for every coordinate, in order")
     frames: list[str] = Field(description="instance.body and instance.port, in the order of kinematic arrays")
@@ -214,6 +216,8 @@ class TreeItem(Shape):
     revision: int
     digest: Digest
     dof: int
+    joints: str = Field(description="R or P for every coordinate, in order")
+    mass: float | None = Field(description="kg, of all bodies at the defaults; null where a parameter has none")
     created: Time
     owner: str = Field(description="whose the name is; catalogue: shipped")
     visibility: Visibility
@@ -224,6 +228,7 @@ class TreePage(Shape):
     """A page of trees, the latest revision of each."""
 
     items: list[TreeItem]
+    instead: dict[str, str] | None = Field(None, description="words that were taken in place of those that are nowhere")
     next_page_token: str | None
     links: Links
 

@@ -8,7 +8,7 @@ from typing import Any
 import orjson
 
 from service.addresses import BASE, tree_path, version_path
-from service.operations.catalogue import Page
+from service.operations.searches import Page
 from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.audit import AuditEntry
 from service.queries.catalogue import Version
@@ -48,6 +48,7 @@ def version_view(
         "description": version.description,
         "dof": version.dof,
         "joints": version.joints,
+        "mass": version.mass,
         **{name: orjson.Fragment(getattr(version, name)) for name in _STORED},
         "warnings": part_warnings(version),
         "program": version.program,
@@ -78,11 +79,11 @@ def provenance_view(version: Version) -> dict[str, Any]:
     return {name: getattr(version, name) for name in names}
 
 
-def page_view(page: Page, aliases: Sequence[Sequence[str]], next_link: str | None) -> dict[str, Any]:
+def page_view(page: Page[Version], aliases: Sequence[Sequence[str]], next_link: str | None) -> dict[str, Any]:
     """A page of versions."""
     told = {"facets": page.facets, "instead": page.instead or None}
     return {name: x for name, x in told.items() if x is not None} | {
-        "items": [version_view(version, names) for version, names in zip(page.versions, aliases, strict=True)],
+        "items": [version_view(version, names) for version, names in zip(page.items, aliases, strict=True)],
         "next_page_token": page.next_token,
         "links": {"next": next_link},
     }
@@ -153,6 +154,7 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
         "revision": tree.revision,
         "digest": tree.digest,
         "dof": tree.dof,
+        "mass": tree.mass,
         "program": tree.program,
         "created": tree.created,
         "based_on": tree.based_on,
@@ -171,8 +173,15 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
 
 def tree_item(tree: Tree) -> dict[str, Any]:
     """A tree in a list."""
-    names = ("name", "revision", "digest", "dof", "created", "owner", "visibility")
+    names = ("name", "revision", "digest", "dof", "joints", "mass", "created", "owner", "visibility")
     return {**{name: getattr(tree, name) for name in names}, "links": {"self": tree_path(tree)}}
+
+
+def tree_page_view(page: Page[Tree], next_link: str | None) -> dict[str, Any]:
+    """A page of trees."""
+    items = [tree_item(tree) for tree in page.items]
+    told = {"instead": page.instead} if page.instead else {}
+    return told | {"items": items, "next_page_token": page.next_token, "links": {"next": next_link}}
 
 
 def audit_view(entry: AuditEntry) -> dict[str, Any]:

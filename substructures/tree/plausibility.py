@@ -6,7 +6,7 @@ error but a warning ``{"pointer", "code", "message"}``: the equations hold for a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.documents.fields import in_si
-from substructures.expr.direct import value
+from substructures.expr.direct import ball, value
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.unit_check import Notice
 from substructures.part.definition import Body, Definition
+from substructures.part.mass import sum_of
 from substructures.part.parameters import names_in_limits
 from substructures.part.topology import topology
 from substructures.tree.document import TreeSpec
@@ -33,12 +34,12 @@ UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 class _Values(Mapping[str, Any]):
     """Values of parameters by their names in a tree: given, bound, or by default; computed when asked for."""
 
-    def __init__(self, texts: Mapping[str, Any], given: Mapping[str, Any]) -> None:
-        self._texts, self._found = texts, dict(given)
+    def __init__(self, texts: Mapping[str, Any], given: Mapping[str, Any], read: Callable[..., Any] = value) -> None:
+        self._texts, self._found, self._read = texts, dict(given), read
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._found:
-            self._found[name] = value(self._texts[name], self)
+            self._found[name] = self._read(self._texts[name], self)
         return self._found[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -82,6 +83,14 @@ class Plausibility:
             given = {name: each.value for name, each in own.items()} | instance.parameters
             texts |= {f"{instance.name}.{name}": x for name, x in given.items()}
         return {name: in_si(x) for name, x in texts.items() if x is not None}
+
+    @cached_property
+    def mass(self) -> float | None:
+        """Of all bodies in kg where no parameter is given; None where that of one is not known then."""
+        values = _Values(self._texts, {}, ball)
+        definitions = self.definitions.items()
+        names = {name: _OfInstance(values, name, each.parameters) for name, each in definitions}
+        return sum_of((body.mass, names[name]) for name, each in definitions for body in each.bodies)
 
     @cached_property
     def at_defaults(self) -> tuple[Notice, ...]:

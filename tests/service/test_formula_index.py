@@ -63,8 +63,9 @@ def old_store(address: str, contents: list[PartContent]) -> None:
         for content in contents:
             program = {"digest": content.row["program"], "content": content.program, "nodes": content.nodes}
             connection.execute(sa.insert(metadata.tables["programs"]).values(**program, created="then"))
-            old = sa.table("parts", *map(sa.column, (*content.row, "created")))
-            connection.execute(sa.insert(old).values(**content.row, created="then"))
+            row = {name: value for name, value in content.row.items() if name not in ("source", "mass")}
+            old = sa.table("parts", *map(sa.column, (*row, "created")))
+            connection.execute(sa.insert(old).values(**row, created="then"))
             rows = [{"part": content.digest, **dict(zip(COLUMNS, row, strict=True))} for row in content.formulas]
             connection.execute(sa.insert(VIEW), rows)
     engine.dispose()

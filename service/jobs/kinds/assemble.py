@@ -20,6 +20,7 @@ from substructures.part.parameters import described
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
+from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units
 
 WORLD = "world"
@@ -126,6 +127,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "program": model.program.digest,
         "nodes": len(model.program),
         "dof": model.dof,
+        "joints": model.joints,
+        "mass": Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass,
         "operations": model.operations["total"],
         "parts": {name: part.definition.digest for name, part in parts.items()},
         "warnings": model.certificate["warnings"],

@@ -1,0 +1,44 @@
+"""Search among the latest revisions of all trees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sqlalchemy import Connection, and_, select
+
+from service.database.tables import tree_names, tree_parts, versions
+from service.queries.membership import Condition, among
+from service.queries.owners import seen_by
+from service.queries.search import Search, in_order, places
+from service.queries.trees import LATEST, Tree
+from service.queries.words import TREES, Shelf
+from service.viewer import Viewer
+
+
+@dataclass(frozen=True)
+class TreeSearch(Search):
+    """Which trees to list; ``uses``: name of a part that one of its instances is."""
+
+    uses: str | None = None
+
+    shelf: ClassVar[Shelf] = TREES
+
+    def others(self, connection: Connection) -> Iterator[Condition]:
+        """What is used."""
+        if self.uses is None:
+            return
+        named = tree_names.alias()
+        of_latest = and_(named.c.name == tree_parts.c.name, named.c.latest == tree_parts.c.revision)
+        used = select(tree_parts.c.name).join(versions, versions.c.digest == tree_parts.c.part).join(named, of_latest)
+        yield among(connection, tree_names.c.name, used.where(versions.c.name == self.uses))
+
+
+def page(
+    connection: Connection, viewer: Viewer, search: TreeSearch, after: tuple[Any, ...] | None, size: int
+) -> list[tuple[Tree, Any]]:
+    """Up to ``size`` trees that follow a position, as :func:`places`, with their sort values."""
+    rows = places(connection, viewer, search, after, size)
+    latest = LATEST.where(tree_names.c.name.in_([name for name, _ in rows]))
+    return in_order({row.name: Tree(*row) for row in connection.execute(latest, seen_by(viewer))}, rows)
