@@ -40,6 +40,11 @@ class Formula(str):
         return {"text/plain": str(self), **({"text/latex": latex} if latex else {})}
 
 
+def shown(text: str, format: str, latex: Callable[[], str]) -> Formula:  # noqa: A002 -- the name in the contract
+    """A formula in a format: ``text`` and ``latex`` are shown as mathematics, others as they are."""
+    return Formula(text, {"text": latex, "latex": lambda: text}.get(format))
+
+
 def mathematics(latex: str) -> str:
     """LaTeX as display mathematics of a notebook, without the comments that explain its symbols."""
     lines = [line for line in latex.splitlines() if line.strip() and not line.startswith("%")]

@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.client.connection import query
 from substructures.client.jobs import JobCaller
-from substructures.display import Formula, Picture
+from substructures.display import Formula, Picture, shown
 
 
 class PictureCaller(JobCaller):
@@ -25,12 +25,10 @@ class PictureCaller(JobCaller):
 
         def text(format: str) -> str:  # noqa: A002 -- the name in the contract
             """The answer in a format."""
-            return self.request(method, path + query({"format": format, **options}), body).text
+            answer = self.request(method, path + query({"format": format, **options}), body)
+            return self._content(answer).decode()
 
-        found = text(format)
-        if format == "text":
-            return Formula(found, lambda: text("latex"))
-        return Formula(found, (lambda: found) if format == "latex" and not options.get("document") else None)
+        return shown(text(format), format, lambda: text("latex"))
 
     def _picture(self, path: str, q: Sequence[float] | None) -> Picture:
         pose = None if q is None else ",".join(str(x) for x in q)

@@ -49,10 +49,7 @@ class ExchangeCaller(JobCaller):
 
     def export_files(self, kind: str, ref: str | Referable, target: str, **options: Any) -> bytes:
         """The file of a target, or a zip of several, as :meth:`export`; waits where it becomes a job."""
-        answer = self.export(kind, ref, target, **options)
-        if answer.status_code != 202:
-            return answer.content
-        return self.request("GET", self._item_of_job(answer.json()["id"])["files"][0]["href"]).content
+        return self._content(self.export(kind, ref, target, **options))
 
     def import_file(self, content: bytes | Path, **options: Any) -> Answer:
         """A robot file as a definition, or as a tree, with a report; ``options``: ``kind, name, file, license,

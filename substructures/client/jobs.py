@@ -265,6 +265,13 @@ class JobCaller(Caller):
         require_result(item)
         return item
 
+    def _content(self, answer: httpx2.Response) -> bytes:
+        """What was answered, also where it took so long that it became a job of one item with a file."""
+        if answer.status_code != 202:
+            return answer.content
+        (file,) = self._item_of_job(answer.json()["id"])["files"]
+        return self.request("GET", file["href"]).content
+
     def _made(self, method: str, path: str, body: Any = None) -> dict[str, Any]:
         """What a request has made, also where it took so long that it became a job of one item."""
         answer = self.request(method, path, body)
