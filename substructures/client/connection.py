@@ -1,53 +1,49 @@
-"""One server over HTTP: requests, large bodies, pages, and problems as exceptions."""
+"""One server over HTTP: requests that are sent again where that helps, large bodies, pages."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from http import HTTPStatus
 from http.client import HTTPResponse
 from pathlib import Path
+from secrets import token_hex
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 from urllib.parse import quote, urlencode
 
 import httpx2
+import numpy as np
+from numpy.typing import NDArray
 
-from substructures.client.bulk import Bulk
+from substructures.client.answers import Answer, Page, Referable, plain
+from substructures.client.bulk import Bulk, read_all
+from substructures.client.problems import check, problem_of
+from substructures.client.retries import Retries
 from substructures.documents import write_json
 from substructures.formats.arrays import Npz
 
-
-class ProblemError(Exception):
-    """The service answered with a problem document, which is in ``problem``."""
-
-    def __init__(self, status: int, problem: dict[str, Any]) -> None:
-        self.status, self.problem = status, problem
-        super().__init__(f"{status}: {_told(problem)}")
+Kind = TypeVar("Kind")
+RETRIES = 3
+KEY = "Idempotency-Key"
 
 
-def _told(problem: Mapping[str, Any]) -> str:
-    """The detail of a problem and its faults, each once: a detail often says the same as the faults."""
-    detail, errors = str(problem.get("detail", "no details")), problem.get("errors", ())
-    faults = [f"{e['pointer'] or '/'}: {e['message']}" for e in errors]
-    if not faults or detail not in (errors[0]["message"], "; ".join(faults[:3])):
-        return "\n  ".join([detail, *faults])
-    return "\n  ".join([f"{len(faults)} faults", *faults]) if faults[1:] else faults[0]
-
-
-def step(given: str) -> str:
-    """A name or an id as one step of a path. Raises ValueError for what can be none."""
-    if not given.strip("."):
-        raise ValueError(f"a name or an id is needed, found '{given}'")
-    return quote(given, safe="@:")
+def step(given: str | Referable) -> str:
+    """A name, an id or what has one as one step of a path. Raises ValueError for what can be none."""
+    text = given if isinstance(given, str) else given.ref
+    if not text.strip("."):
+        raise ValueError(f"a name or an id is needed, found '{text}'")
+    return quote(text, safe="@:")
 
 
 class Caller:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
-    def __init__(self, address: str, key: str | None = None, timeout: float = 60.0) -> None:
+    def __init__(self, address: str, key: str | None = None, timeout: float = 60.0, retries: int = RETRIES) -> None:
+        """``timeout``: seconds without a byte; ``retries``: how often a request is sent again at most where the server
+        cannot be reached, is gone for a moment, or asks to wait; 0: never.
+        """
         self.address, self.timeout = address, timeout
+        self._retries = Retries(retries, timeout)
         self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}
         self._http = httpx2.Client(base_url=address, headers=self._headers, timeout=timeout)
         self._bulk = Bulk(address, timeout)
@@ -63,14 +59,44 @@ class Caller:
         self._http.close()
         self._bulk.close()
 
-    def request(self, method: str, path: str, body: Any = None, **options: Any) -> httpx2.Response:
-        """Send one request; ``body`` is sent as JSON with exact numbers."""
+    def request(
+        self, method: str, path: str, body: Any = None, *, retries: int | None = None, **options: Any
+    ) -> httpx2.Response:
+        """Send one request; ``body`` is sent as JSON with exact numbers, arrays as lists.
+
+        What changes something has an Idempotency-Key, so that it is done once however often it is sent.
+        """
+        headers = httpx2.Headers(options.pop("headers", None))
         if body is not None:
-            options["content"] = write_json(body)
-            options["headers"] = {"Content-Type": "application/json", **options.get("headers", {})}
+            options["content"] = write_json(plain(body))
+            headers.setdefault("Content-Type", "application/json")
+        if _takes_key(method, path):
+            headers.setdefault(KEY, token_hex(16))
+        is_repeatable = method == "GET" or KEY in headers or _is_computed(method, path)
+        send = lambda: self._once(method, path, headers=headers, **options)  # noqa: E731
+        return (self._retries if retries is None else Retries(retries, self.timeout)).ask(send, is_repeatable)
+
+    def _once(self, method: str, path: str, **options: Any) -> httpx2.Response:
         answer = self._http.request(method, path, **options)
         check(answer)
         return answer
+
+    def told(self, method: str, path: str, body: Any = None, **options: Any) -> Answer:
+        """The JSON object that a request answers."""
+        return Answer(self.request(method, path, body, **options).json())
+
+    def _exchange(
+        self, path: str, content: Npz, media_type: str, is_keyed: bool = False, **more: str
+    ) -> tuple[int, NDArray[np.uint8]]:
+        """Status and body of the answer to arrays; ``is_keyed``: it makes a job, which must not be made twice."""
+        more = {KEY: token_hex(16), **more} if is_keyed else more
+
+        def send() -> tuple[int, NDArray[np.uint8]]:
+            """Once, as a whole."""
+            with self._transfer(path, content, media_type, **more) as answer:
+                return answer.status, read_all(answer)
+
+        return self._retries.ask(send, True)
 
     @contextmanager
     def _transfer(
@@ -83,11 +109,14 @@ class Caller:
             content = content.pieces
         with self._bulk.transfer(path, content, headers, is_repeatable=is_repeatable) as answer:
             if answer.status >= 400:
-                raise _problem(answer.status, answer.headers.get_content_type(), answer.read())
+                raise problem_of(answer.status, httpx2.Headers(answer.getheaders()), answer.read())
             yield answer
 
     def download(self, path: str, target: Path) -> int:
         """Save what is at a path, however large; its size in bytes."""
+        return self._retries.ask(lambda: self._download(path, target), True)
+
+    def _download(self, path: str, target: Path) -> int:
         with self._http.stream("GET", path) as answer:
             if answer.is_error:
                 answer.read()
@@ -97,20 +126,34 @@ class Caller:
                     file.write(chunk)
                 return file.tell()
 
-    def _pages(self, path: str, filters: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-        link: str | None = f"{path}?{urlencode({**filters, 'page_size': 200})}"
+    def _page(self, path: str, filters: Mapping[str, Any], made: Callable[[Any], Kind]) -> Page[Kind]:
+        """One page, its items made of what was answered."""
+        told = dict(self.request("GET", path + query(filters)).json())
+        return Page([made(item) for item in told.pop("items")], told)
+
+    def _pages(self, path: str, filters: Mapping[str, Any], made: Callable[[Any], Kind]) -> Iterator[Kind]:
+        """The items of all pages."""
+        link: str | None = path + query({"page_size": 200, **filters})
         while link is not None:
             page = self.request("GET", link).json()
-            yield from page["items"]
+            yield from map(made, page["items"])
             link = page["links"]["next"]
 
 
-def check(answer: httpx2.Response) -> None:
-    """Raise ProblemError unless it is a success."""
-    if answer.is_error:
-        raise _problem(answer.status_code, answer.headers.get("content-type", ""), answer.content)
+def query(filters: Mapping[str, Any]) -> str:
+    """Options of a request behind its path; lists are given once for each item, None is left out."""
+    given = {name: str(x).lower() if isinstance(x, bool) else x for name, x in filters.items() if x is not None}
+    return f"?{urlencode(given, doseq=True)}" if given else ""
 
 
-def _problem(status: int, media_type: str, body: bytes) -> ProblemError:
-    is_problem = media_type.startswith("application/problem+json")
-    return ProblemError(status, json.loads(body) if is_problem else {"detail": HTTPStatus(status).phrase})
+def _takes_key(method: str, path: str) -> bool:
+    """Whether the contract has an Idempotency-Key there (section 6), and it is of use: evaluations store nothing, and
+    answer sooner without (of one that takes so long that it becomes a job, a second job shares the results).
+    """
+    if method == "POST":
+        return not _is_computed(method, path)
+    return method == "DELETE" and path.startswith("/v1/trees/")
+
+
+def _is_computed(method: str, path: str) -> bool:
+    return method == "POST" and path.partition("?")[0].endswith("/evaluations")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import prod
 
+from substructures.display import shown
 from substructures.errors import InvalidArgument, InvalidDocument, TooLarge
 from substructures.export.exported import Exported, Function, check_name
 from substructures.export.interface import Interface
@@ -75,7 +76,7 @@ def render(
     definitions: Definitions | None = None,
     glossary: Program | None = None,
 ) -> str:
-    """A program in one of FORMATS, ``form`` compact or expanded.
+    """A program in one of FORMATS, ``form`` compact or expanded; notebooks show text and LaTeX as mathematics.
 
     In a language it is the function ``name_quantity`` on the calling convention of the ``interface`` that it needs
     (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output. ``definitions``: of
@@ -86,7 +87,8 @@ def render(
     if format not in FORMATS:
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     if format not in LANGUAGES:
-        return write(program, format, form, name, limit, definitions, glossary)
+        text = write(program, format, form, name, limit, definitions, glossary)
+        return shown(text, format, lambda: write(program, "latex", form, name, limit, definitions, glossary))
     if interface is None:
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)

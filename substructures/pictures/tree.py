@@ -11,6 +11,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from substructures.array import Array
+from substructures.display import Picture
 from substructures.documents.fields import in_si
 from substructures.part.definition import BushingLoad, SpringLoad
 from substructures.part.part import Part
@@ -40,8 +41,9 @@ class Scene:
     springs: list[tuple[str, str]]
 
 
-def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> str:
-    """SVG of a tree at ``q`` (n,) and the default values of parameters (1 where there is none), isometric view.
+def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> Picture:
+    """SVG of a tree at ``q`` (n,) and the default values of parameters (1 where there is none), isometric view;
+    notebooks show it.
 
     Raises InvalidDocument for a wrong ``q``.
     """
@@ -54,7 +56,7 @@ def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = No
     shapes += [_ground(project(scene.position[f"{i.name}.{BASE}"])) for i in spec.instances if i.at == "world"]
     title = escape(f"{spec.name}: {model.dof} coordinates {model.joints}")
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img">'
-    return "\n".join([head, f"<title>{title}</title>", *shapes, "</svg>\n"])
+    return Picture("\n".join([head, f"<title>{title}</title>", *shapes, "</svg>\n"]))
 
 
 def scene_of(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> Scene:

@@ -13,7 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.operations import exchange
-from substructures.client.jobs import joined_parts
+from substructures.client.results import joined_parts
 from substructures.formats.arrays import as_answer, as_npz, read_npz
 
 from .test_arrow import lists, post, stream

@@ -1,0 +1,106 @@
+"""Arrays of states as columns of a table, for pandas and polars where these are installed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.client.answers import Answer
+
+Array = NDArray[Any]
+AXES = ("x", "y", "z")
+#: what the axes of quantities and series are, behind that of the states
+PLACES: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("forces", "gravity", "bias", "inverse_dynamics", "forward_dynamics", "qdd"), ("coordinates",)),
+    **dict.fromkeys(("inverse_dynamics_derivative", "forward_dynamics_derivative", "friction"), ("coordinates",)),
+    **dict.fromkeys(("power", "generalised_momenta"), ("coordinates",)),
+    **dict.fromkeys([f"canonical_equations.{name}_rates" for name in ("coordinate", "momentum")], ("coordinates",)),
+    **dict.fromkeys(("metric", "inverse_metric", "coriolis"), ("coordinates",) * 2),
+    **dict.fromkeys(("christoffel", "christoffel_second_kind"), ("coordinates",) * 3),
+    "kinematics.position": ("frames", "axes"),
+    "kinematics.rotation": ("frames", "axes", "axes"),
+    **dict.fromkeys(("kinematics.U", "kinematics.Omega"), ("frames", "coordinates", "axes")),
+    **dict.fromkeys(("momentum.linear", "momentum.angular"), ("axes",)),
+    **{
+        f"{group}{name}{world}": ("joints", "axes")
+        for group in ("reactions.", "reaction_")
+        for name in ("force", "moment")
+        for world in ("", "_world")
+    },
+}
+
+
+class Tabular(Answer):
+    """An answer about many states."""
+
+    def columns(self) -> dict[str, Array]:
+        """Columns by name, with one row for each state."""
+        raise NotImplementedError
+
+    def _labels(self, name: str, shape: Sequence[int]) -> list[list[str]]:
+        """Names of the places of a quantity, numbers from 0 where they have none."""
+        named = {"axes": AXES, **{kind: self.get(kind, ()) for kind in ("coordinates", "frames", "joints")}}
+        found = [[str(label) for label in named[kind]] for kind in PLACES.get(name, ())]
+        fits = [len(labels) for labels in found] == list(shape)
+        return found if fits else [[str(k) for k in range(size)] for size in shape]
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame``. Raises ImportError where pandas is not installed."""
+        return _module("pandas").DataFrame(self.columns())
+
+    def to_polars(self) -> Any:
+        """A ``polars.DataFrame``. Raises ImportError where polars is not installed."""
+        return _module("polars").DataFrame(self.columns())
+
+
+def _module(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        raise ImportError(f"a frame of {name} needs the package: pip install {name}") from None
+
+
+def labelled(name: str, values: Array, axes: Sequence[Sequence[str]]) -> Iterator[tuple[str, Array]]:
+    """An array (N, ...) as columns ``name.<label>.<label>``: ``axes`` has the labels of all axes but the first."""
+    rows = values.reshape(len(values), -1)
+    for labels, column in zip(product(*axes), rows.T, strict=True):
+        yield ".".join([name, *labels]), column
+
+
+def states(given: Mapping[str, Any], coordinates: Sequence[str], count: int) -> dict[str, Array]:
+    """The states of a request as columns ``t``, ``q.<coordinate>``, ``qd.<coordinate>``, as far as they are numbers."""
+    found: dict[str, Array] = {}
+    for name in ("t", "q", "qd"):
+        value = given.get(name)
+        if isinstance(value, Mapping):
+            columns = {f"{name}.{key}": value[key] for key in coordinates if key in value}
+        elif name == "t":
+            columns = {name: value}
+        else:
+            columns = dict(_by_coordinate(name, value, coordinates, count))
+        for label, column in columns.items():
+            array = _numbers(column)
+            if array is not None:
+                found[label] = np.broadcast_to(array.ravel(), (count,))
+    return found
+
+
+def _by_coordinate(name: str, value: Any, coordinates: Sequence[str], count: int) -> Iterator[tuple[str, Array]]:
+    array, n = _numbers(value), len(coordinates)
+    if array is not None:
+        yield from labelled(name, np.broadcast_to(array.reshape(-1, n), (count, n)), [coordinates])
+
+
+def _numbers(value: Any) -> Array | None:
+    """An array of numbers, None for all else, as numbers with units."""
+    if value is None:
+        return None
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return None
