@@ -139,6 +139,10 @@ class CatalogueCaller(PictureCaller):
         """
         return self._formula(f"/v1/substructures/{step(ref)}/formulas/{step(quantity)}", format, options)
 
+    def part_report(self, ref: str | Referable, format: str = "json") -> str:  # noqa: A002 -- the name in the contract
+        """What there is to be said of a part, with its formulas: ``json, text, latex`` or ``mathml``."""
+        return self.request("GET", f"/v1/substructures/{step(ref)}/report", params={"format": format}).text
+
     def part_picture(self, ref: str | Referable, q: Sequence[float] | None = None) -> Picture:
         """SVG of a part, in the pose ``q`` or in one that shows its joints."""
         return self._picture(f"/v1/substructures/{step(ref)}", q)

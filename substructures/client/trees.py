@@ -64,6 +64,10 @@ class TreeCaller(CatalogueCaller):
         """All revisions of a tree, the newest first."""
         return self._pages(f"/v1/trees/{step(name)}/revisions", {}, self.tree_of)
 
+    def remove_tree(self, name: str) -> None:
+        """Remove a tree with all its revisions; its parts stay."""
+        self.request("DELETE", f"/v1/trees/{step(name)}")
+
     def couple(self, tree: str | Referable, instance: Any) -> Tree:
         """Couple one more instance onto a tree; the new revision. Of a Tree it is that revision which is changed."""
         return self.tree_of(self._made("POST", f"/v1/trees/{step(tree)}/couplings", instance))
@@ -96,6 +100,10 @@ class TreeCaller(CatalogueCaller):
     def set_tree_visibility(self, name: str, visibility: str = "public") -> Answer:
         """Make all revisions of a tree public, for good."""
         return self.told("PUT", f"/v1/trees/{step(name)}/visibility", {"visibility": visibility})
+
+    def report(self, tree: str | Referable, format: str = "json") -> str:  # noqa: A002 -- the name in the contract
+        """What there is to be said of a tree, with its formulas: ``json, text, latex`` or ``mathml``."""
+        return self.request("GET", f"/v1/trees/{step(tree)}/report", params={"format": format}).text
 
     def tree_picture(self, tree: str | Referable, q: Sequence[float] | None = None) -> Picture:
         """SVG of a tree, in the pose ``q`` or in one that shows its joints."""
