@@ -50,7 +50,8 @@ def latest_revision(connection: Connection, name: str) -> int:
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
     """Store a new latest revision and which part every instance is; the name is locked."""
     connection.execute(_NEW, {name: value for name, value in asdict(tree).items() if name not in _OWNED})
-    connection.execute(_NEW_LATEST, {name: getattr(tree, column) for name, column in _NARROW.items()})
+    shown = {f"its_{name}": getattr(tree, name) for name in _NARROW}
+    connection.execute(_NEW_LATEST, {"of_name": tree.name, "its_latest": tree.revision, **shown})
     key = {"name": tree.name, "revision": tree.revision}
     values = [{**key, "instance": instance, "part": digest} for instance, digest in parts.items()]
     if values:
@@ -149,10 +150,9 @@ _LATEST = _NAMED.where(_IS_LATEST)
 LATEST = _all().where(_IS_LATEST, _VISIBLE)
 _LATEST_NUMBER = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name"))
 _NEW, _NEW_PART = insert(trees), insert(tree_parts)
-#: what of the latest revision stands beside its name, by the values of the statement
-_NARROW = {"of_name": "name", "number_": "revision", **{f"{x}_": x for x in ("created", "dof", "joints", "mass")}}
-_SHOWN: dict[str, Any] = {
-    "latest": bindparam("number_"),
-    **{x: bindparam(f"{x}_") for x in ("created", "dof", "joints", "mass")},
-}
-_NEW_LATEST = update(tree_names).where(tree_names.c.name == bindparam("of_name")).values(_SHOWN)
+_NARROW = ("created", "dof", "joints", "mass")  # what searches read of the latest revision
+_NEW_LATEST = (
+    update(tree_names)
+    .where(tree_names.c.name == bindparam("of_name"))
+    .values({name: bindparam(f"its_{name}") for name in ("latest", *_NARROW)})
+)

@@ -286,6 +286,10 @@ def test_only_what_is_seen_is_found(store: Store, client: TestClient) -> None:
     for query in ("uses=zeppelin", "q=zepelins", "mass_min=6&mass_max=7"):
         assert (names(client, query, "trees", **a), names(client, query, "trees", **b)) == ("zeppelins", "")
     assert "instead" not in ask(client, "q=zepelins", "trees", **b)
+    similar = {**part("feather"), "name": "zeppolin"}
+    assert client.post("/v1/substructures", json=similar, headers=a).status_code == 201
+    assert ask(client, "q=zeppelin", **b)["instead"] == {"zeppelin": "zeppolin"}
+    assert "instead" not in ask(client, "q=zeppelin", **a)
 
 
 @pytest.mark.parametrize("kind", KINDS)
