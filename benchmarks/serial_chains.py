@@ -39,6 +39,9 @@ CHAINS: dict[str, list[Row]] = {
     "rrpr": [{}, {"d": "l1"}, {"type": "prismatic", "d": "l2"}, {}],
     "planar4": [{}, *({"d": f"l{i}"} for i in range(1, 4))],
     "planar8": [{}, *({"d": f"l{i}"} for i in range(1, 8))],
+    # the same with mass centres on the link axes
+    "planar4x": [{}, *({"d": f"l{i}"} for i in range(1, 4))],
+    "planar8x": [{}, *({"d": f"l{i}"} for i in range(1, 8))],
     # M. Schappler, serroblib, S6RRRRRR10
     "6r14": [
         {"tau": "d1"},
@@ -84,9 +87,12 @@ def definition(name: str) -> Definition:
     """A chain as a document."""
     bodies, used = [], set[str]()
     for i, row in enumerate(CHAINS[name], 1):
-        com, tensor = [f"c{x}{i}" for x in "xyz"], {e: f"I{e}{i}" for e in TENSOR}
+        com: list[Any] = (
+            [f"cx{i}", 0, 0] if name.endswith("x") and name.startswith("planar") else [f"c{x}{i}" for x in "xyz"]
+        )
+        tensor = {e: f"I{e}{i}" for e in TENSOR}
         joint = {"type": "revolute", "coordinate": f"q{i}", **row}
-        used |= {f"m{i}", *com, *tensor.values()}
+        used |= {f"m{i}", *(x for x in com if x), *tensor.values()}
         used |= {x for key, x in row.items() if key != "type" and x.isalnum() and not x[0].isdigit()}
         body = {"name": f"b{i}", "parent": f"b{i - 1}" if i > 1 else "base", "joint": joint}
         bodies.append(body | {"mass": f"m{i}", "com": com, "inertia": tensor | {"about": "origin"}})

@@ -120,3 +120,31 @@ def tan(x: Expr) -> Expr:
     """Tangent of an angle in rad, as sin/cos. Raises ZeroDivisionError at exact poles."""
     c, s = cos_sin(x)
     return s / c
+
+
+def angle(c: Expr, s: Expr) -> Expr | None:
+    """An angle of which these are written as cosine and sine; None where they are written otherwise."""
+    core = c.args[0] if c.op == "neg" else c
+    if core.op not in ("cos", "sin"):
+        return None
+    quarter = c.graph.pi / 2
+    for x in (core.args[0], -core.args[0]):
+        for n in range(4):
+            if cos_sin(x + n * quarter) == (c, s):
+                return x + n * quarter
+    return None
+
+
+def of_sum(first: tuple[Expr, Expr], second: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
+    """(cos, sin) of the sum of two angles from those of each: by the sum where both are known, else by their products.
+
+    >>> graph = Graph()
+    >>> a, b = graph.symbol("a"), graph.symbol("b")
+    >>> of_sum(cos_sin(a), cos_sin(b)) == cos_sin(a + b)
+    True
+    """
+    x, y = angle(*first), angle(*second)
+    if x is not None and y is not None:
+        return cos_sin(x + y)
+    (c, s), (d, t) = first, second
+    return c * d - s * t, s * d + c * t

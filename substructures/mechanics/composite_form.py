@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from substructures.mechanics.kinematics import INTERFACE, Columns, OneDofJoint, Twist
+from substructures.mechanics.kinematics import INTERFACE, Columns, Link, OneDofJoint, Twist
 from substructures.mechanics.linear3 import (
     ZERO,
     ZERO6,
@@ -99,7 +99,7 @@ def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict
     sum, which their turns leave as it is (notation.md, section 8.4).
     """
     total = {INTERFACE: Inertia(), **dict(enumerate(bodies))}
-    parallel = _parallel_to_root(joints)
+    parallel = parallel_to_root(joints)
     for k in reversed(range(len(joints))):
         joint = joints[k]
         # own body, about O_k: z = tau e3 to the body frame origin
@@ -112,7 +112,30 @@ def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict
     return total
 
 
-def _parallel_to_root(joints: Sequence[OneDofJoint]) -> list[bool]:
+def with_moments_about_axes(
+    chain: Sequence[Link], carried: Sequence[Inertia], body: Callable[[int], Inertia]
+) -> list[Inertia]:
+    """Composites of which s and J are known, with J_xx + J_yy in the form that :func:`composites` gives it.
+
+    ``body``: what is fixed in the carrier of a joint, about O_k in frame k.
+    """
+    result, parallel = list(carried), parallel_to_root(chain)
+    below: dict[int, list[int]] = {link.parent: [] for link, is_in in zip(chain, parallel, strict=True) if is_in}
+    for c, link in enumerate(chain):
+        if link.parent in below:
+            below[link.parent].append(c)
+    for k in sorted(below, reverse=True):
+        total = body(k).about_third_axis
+        for c in reversed(below[k]):
+            up = result[c].turned_back(chain[c].rotation)
+            if parallel[c]:
+                up = replace(up, polar=result[c].about_third_axis)
+            total = total + up.shifted(chain[c].Z).about_third_axis
+        result[k] = replace(result[k], polar=total)
+    return result
+
+
+def parallel_to_root(joints: Sequence[OneDofJoint | Link]) -> list[bool]:
     """For every joint but a root: whether it and its ancestors turn about one direction, down to the root's axis."""
     group: list[bool] = []
     for joint in joints:

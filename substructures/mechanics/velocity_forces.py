@@ -31,9 +31,11 @@ def velocity_forces(
     for a in reversed(range(n)):
         link, momentum, motion = chain[a], momenta[a], before[a]
         # bias_a = (wrenches of joints c > a, on axis a) + p_a . a + H_a . alpha - omega . K_a omega
-        beyond = wrenches[a].f[2] if link.s else wrenches[a].n[2]
-        rigid = dot(motion.a, momentum.p) + dot(motion.alpha, momentum.H)
-        result[a] = beyond + rigid - dot(motion.omega, momentum.moment(motion.omega))
+        total = wrenches[a].f[2] if link.s else wrenches[a].n[2]
+        # one by one: a . p of a root is the gravity force, which may be known as a longer formula
+        for x, p in zip(motion.a, momentum.p, strict=True):
+            total = total + x * p
+        result[a] = total + dot(motion.alpha, momentum.H) - dot(motion.omega, momentum.moment(motion.omega))
         if link.parent != INTERFACE:
             needed = wrenches[a] + _wrench(momentum, motion, rates[a])
             wrenches[link.parent] += needed.before(link.Z, link.rotation)

@@ -34,7 +34,7 @@ christoffel, kappa, F and N.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.expr.program import Formulas, array
@@ -68,7 +68,9 @@ from substructures.mechanics.linear3 import (
     subtract,
     transpose,
 )
+from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes, absolute
 from substructures.part.applied_forces import applied_forces
+from substructures.part.frames import joined_turns
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.kinematics import Kinematics, frame_link, kinematics
 from substructures.part.loads import Loads
@@ -95,14 +97,17 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
     """
     if coupled is None:
-        chain = links(m.joints)
+        chain, bodies = links(m.joints), inertia_symbols(m)
+        axes, parallel = parallel_axes(chain, bodies), absolute(chain)
+        g = axes.metric(parallel)
         columns = base_functions(chain)
-        carried: Mapping[int, Inertia] = composites(m.joints, inertia_symbols(m))
+        carried: Mapping[int, Inertia] = composites(m.joints, bodies)
+        # after the composites, of which it has products: these are what a host with other axes takes
+        by_angles = ByAngles(parallel, g, {} if large else axes.christoffel(parallel))
     else:
         chain, columns, carried = coupled.chain, coupled.columns, coupled.carried
     momenta = [joint_momentum(joint.s, carried[c]) for c, joint in enumerate(m.joints)]
-    equations = own_dynamics(m, chain, columns, momenta, large) if coupled is None else coupled.equations
-    outputs = dict(equations)
+    outputs = own_dynamics(m, chain, columns, momenta, by_angles, large) if coupled is None else dict(coupled.equations)
     k = kinematics(chain, columns)
     outputs |= _joint_outputs(m, k)
     outputs |= _inertia_outputs("subtree", [carried[c] for c in range(len(m.joints))])
@@ -203,25 +208,32 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum], large: bool)
     return outputs | {"K": array((n, 3, 3), lambda c, i, j: K[c][i][j])}
 
 
+def parallel_axes(chain: Sequence[Link], bodies: Sequence[Inertia]) -> ParallelAxes:
+    """Over formulas; ``bodies``: about their body frame origins."""
+    # z = tau e3 from O_k to the body frame origin
+    return ParallelAxes(chain, lambda k: bodies[k].shifted((0, 0, chain[k].tau)), joined_turns)
+
+
 def own_dynamics(
     m: Mechanism,
     chain: tuple[Link, ...],
     columns: dict[int, Columns],
     momenta: list[JointMomentum],
+    by_angles: ByAngles,
     large: bool = False,
 ) -> dict[str, Formulas]:
     """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5); of a ``large`` one
-    the metric alone.
+    the metric alone. ``by_angles``: what is known of them.
     """
     n = len(momenta)
     entries = InertialEntries(chain, columns, evaluation_frames(chain, not large))
-    g: dict[tuple[int, ...], Scalar] = {}
-    gamma: dict[tuple[int, ...], Scalar] = {}
+    g, gamma = dict(by_angles.metric), dict(by_angles.christoffel)
     for c, momentum in enumerate(momenta):
-        g |= entries.metric(c, momentum)
+        if c not in by_angles.joints:
+            g |= entries.metric(c, momentum)
         # the rotor of joint c turns with q'^c alone
         g[c, c] = g[c, c] + m.laws[c].armature
-        if not large:
+        if not large and c not in by_angles.joints:
             gamma |= entries.christoffel(c, momentum)
     metric = {"metric": Formulas((n, n), g, "symmetric")}
     return metric if large else metric | {"christoffel": Formulas((n, n, n), gamma, "christoffel")}

@@ -7,7 +7,20 @@ from dataclasses import dataclass
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import array, program
-from substructures.mechanics.linear3 import IDENTITY, Matrix, Vector, add, apply, cross, multiply, negate, transpose
+from substructures.expr.trigonometry import of_sum
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    Matrix,
+    Planar,
+    Vector,
+    add,
+    apply,
+    cross,
+    multiply,
+    negate,
+    transpose,
+)
+from substructures.mechanics.parallel_axes import one_after_the_other
 from substructures.part.scope import Scope, no_names
 
 #: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
@@ -46,6 +59,15 @@ def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: st
     if len(given) == 1:
         return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
     return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
+
+
+def joined_turns(first: Planar, second: Planar) -> Planar:
+    """One turn after the other about the third axis, by the sum of the angles where formulas show it."""
+    graph = next((x.graph for x in (first.c, first.s, second.c, second.s) if isinstance(x, Expr)), None)
+    if graph is None:
+        return one_after_the_other(first, second)
+    one, other = ((graph.lift(turn.c), graph.lift(turn.s)) for turn in (first, second))
+    return Planar(2, *of_sum(one, other))
 
 
 def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:

@@ -7,9 +7,10 @@ from typing import Any
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import composites, joint_momentum
 from substructures.mechanics.kinematics import INTERFACE, base_functions, links
-from substructures.mechanics.linear3 import Vector, dot
+from substructures.mechanics.linear3 import Vector
+from substructures.mechanics.parallel_axes import absolute
 from substructures.part.definition import Definition
-from substructures.part.formulas import own_dynamics
+from substructures.part.formulas import own_dynamics, parallel_axes
 from substructures.part.mechanism import Mechanism, mechanism
 
 
@@ -28,11 +29,13 @@ def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = 
 def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     """The outputs metric, christoffel and gravity; ``gravity``: acceleration in base axes, expressions."""
     chain = links(m.joints)
+    before = dict.fromkeys(range(len(chain)), gravity)
+    by_angles = parallel_axes(chain, m.own).by_angles(absolute(chain), True, before)
     carried = composites(m.joints, m.own)
     momenta = [joint_momentum(link.s, carried[c]) for c, link in enumerate(chain)]
-    outputs = own_dynamics(m, chain, base_functions(chain), momenta)
+    outputs = own_dynamics(m, chain, base_functions(chain), momenta, by_angles)
     gamma = {INTERFACE: gravity}
     for c, link in enumerate(chain):
         gamma[c] = link.rotation.forward(gamma[link.parent])
-    # Q_c = gamma_c . p_c
-    return outputs | {"gravity": array((len(chain),), lambda c: dot(gamma[c], momenta[c].p))}
+    Q = by_angles.gravity([gamma[c] for c in range(len(chain))], momenta)
+    return outputs | {"gravity": array((len(chain),), lambda c: Q[c])}

@@ -8,10 +8,10 @@ and 6, and :mod:`.inertial`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from substructures.mechanics.composite_form import Inertia, joint_momentum
+from substructures.mechanics.composite_form import Inertia, joint_momentum, with_moments_about_axes
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -24,11 +24,13 @@ from substructures.mechanics.kinematics import (
     transport,
 )
 from substructures.mechanics.linear3 import Scalar, Vector, add, apply, dot, transpose
+from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
+from substructures.part.frames import joined_turns
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
 from substructures.part.pairs import wrench_forces
 from substructures.part.part import Part
-from substructures.tree.grouping import Admitted, Inertias, as_they_are, grouped, numbers
-from substructures.tree.inertial import EQUATIONS, FRAMES, inertial_entries, planned
+from substructures.tree.grouping import Admitted, Inertias, as_they_are, fixed_inertia, grouped, numbers
+from substructures.tree.inertial import EQUATIONS, FRAMES, Plan, inertial_entries, planned
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: outputs of a stored program that coupling uses
@@ -90,22 +92,49 @@ def couple_parts(
     # from the leaves, as they are evaluated: of equal formulas the graph keeps the first
     own = [run(m.part, m.bindings, OWN) for m in reversed(mounted)][::-1]
     inertias, ground = grouped(plan.outlined, own, group) if chosen else (as_they_are(mounted, own), Inertia())
+    body = fixed_inertia(plan.outlined, inertias)
+    by_angles = _by_angles(plan, body, gravity, christoffel) if chosen else ByAngles()
     evaluated, total = evaluate_parts(run, mounted, own, inertias, [(*USED, *names) for names in plan.stored])
+    if chosen:
+        evaluated = _about_axes(plan, body, evaluated)
     total = total + ground
-    n = sum(m.part.dof for m in mounted)
-    Q_gravity: list[Scalar] = [0] * n
-    Q: list[Scalar] = [0] * n
     placed: list[PlacedPart] = []
     for part in evaluated:
         placed.append(place(part, placed, gravity))
-    inertial = inertial_entries(plan, placed, christoffel)
+    inertial = inertial_entries(plan, placed, christoffel, by_angles)
+    gamma = [here.gamma[c] for here in placed for c in range(len(here.links))]
+    Q_gravity = by_angles.gravity(gamma, [momentum for here in placed for momentum in here.evaluated.momenta])
+    Q = list(Q_gravity)
     # V = -gamma . s of the whole about the world's origin, what every part has of its own, and constant forces
     V = -dot(gravity, total.s)
     for here in placed:
-        _add_gravity(here, Q_gravity, Q)
+        for c in range(len(here.links)):
+            Q[here.first + c] = Q[here.first + c] + here.outputs.scalar("applied", c)
         V = V + here.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
     return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed, plan.chain)
+
+
+def _by_angles(plan: Plan, body: Callable[[int], Inertia], gravity: Vector, christoffel: bool) -> ByAngles:
+    """What absolute angles give, from links and from what is fixed in the carriers alone."""
+    before: dict[int, Vector] = {}
+    for here in plan.outlined:
+        root = here
+        while root.host is not None:
+            root = root.host
+        before |= {here.first + c: root.seat.rotation.forward(gravity) for c in range(len(here.links))}
+    return ParallelAxes(plan.chain, body, joined_turns).by_angles(plan.by_angles, christoffel, before)
+
+
+def _about_axes(plan: Plan, body: Callable[[int], Inertia], evaluated: Sequence[EvaluatedPart]) -> list[EvaluatedPart]:
+    """With the moments about parallel axes in their short form, over the borders of parts."""
+    carried = [momentum.composite for part in evaluated for momentum in part.momenta]
+    carried = with_moments_about_axes(plan.chain, carried, body)
+    momenta = [joint_momentum(link.s, inertia) for link, inertia in zip(plan.chain, carried, strict=True)]
+    return [
+        replace(part, momenta=tuple(momenta[part.mounted.first : part.mounted.first + part.mounted.part.dof]))
+        for part in evaluated
+    ]
 
 
 def evaluate_parts(
@@ -188,15 +217,6 @@ def _columns(part: EvaluatedPart, outside: Columns) -> dict[int, Columns]:
             own = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
             columns[c][part.mounted.first + a] = own
     return columns
-
-
-def _add_gravity(here: PlacedPart, Q_gravity: list[Scalar], Q: list[Scalar]) -> None:
-    """Gravity on everything that a joint carries, and what joints and springs do by themselves."""
-    for c, momentum in enumerate(here.evaluated.momenta):
-        # Q_c = gamma_c . p_c
-        q = dot(here.gamma[c], momentum.p)
-        Q_gravity[here.first + c] = q
-        Q[here.first + c] = q + here.outputs.scalar("applied", c)
 
 
 def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:

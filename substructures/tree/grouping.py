@@ -58,7 +58,7 @@ def grouped(
             if not admitted(inertias[k]):
                 continue
             moved, left = _unmoved(link, inertias[k])
-            host, carrier, above = _carried_by(outlined, i, link.parent, _before(here.links, link, moved))
+            host, carrier, above = carried_by(outlined, i, link.parent, _before(here.links, link, moved))
             onto = ground if host == WORLD else result[host].get(carrier)
             if onto is None or not (admitted(above) and admitted(onto)):
                 continue
@@ -70,7 +70,33 @@ def grouped(
     return result, ground
 
 
-def _carried_by(outlined: Sequence[PlacedPart], i: int, carrier: int, inertia: Inertia) -> tuple[int, int, Inertia]:
+def fixed_inertia(outlined: Sequence[PlacedPart], inertias: Sequence[Inertias]) -> Callable[[int], Inertia]:
+    """What is fixed in the carrier of joint a of the tree, interfaces of parts with it, about O_a in frame a.
+
+    ``inertias``: of the carriers of all parts, and of what is fixed to their interfaces.
+    """
+    places = [(i, k) for i, here in enumerate(outlined) for k in range(len(here.links))]
+    fixed: dict[int, list[int]] = {}
+    for i, here in enumerate(outlined):
+        part = here
+        while part.host is not None and part.seat.parent == INTERFACE:
+            part = part.host
+        if part.host is not None:
+            fixed.setdefault(part.host.first + part.seat.parent, []).append(i)
+
+    def inertia(a: int) -> Inertia:
+        """Formed when it is asked for."""
+        part, k = places[a]
+        total = inertias[part].get(k, Inertia())
+        for i in fixed.get(a, ()):
+            if INTERFACE in inertias[i]:
+                total = total + carried_by(outlined, i, INTERFACE, inertias[i][INTERFACE])[2]
+        return total.shifted((0, 0, outlined[part].links[k].tau))
+
+    return inertia
+
+
+def carried_by(outlined: Sequence[PlacedPart], i: int, carrier: int, inertia: Inertia) -> tuple[int, int, Inertia]:
     """The part and the carrier that move what is fixed in a carrier of part i, and it in the body frame of that one."""
     while carrier == INTERFACE:
         m = outlined[i].mounted

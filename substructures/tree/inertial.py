@@ -2,7 +2,8 @@
 
 Frames are chosen for the tree as a whole, as they would be for the same joints in one piece. Where the frames of a part
 are those of its stored formulas its own entries are taken over as they are; where its momenta are carried on into a
-host, a component of theirs gives its own entries as well, with fewer operations.
+host, a component of theirs gives its own entries as well, with fewer operations. Trees of parallel axes have theirs by
+absolute angles (:mod:`substructures.mechanics.parallel_axes`), over the borders of parts.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.expr.graph import Graph
+from substructures.mechanics.composite_form import parallel_to_root
 from substructures.mechanics.evaluation_frames import Entries, Frames, InertialEntries
 from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, joint_rotation
 from substructures.mechanics.linear3 import ZERO, Planar, Rotation, add, multiply
+from substructures.mechanics.parallel_axes import ByAngles, absolute
 from substructures.part.outputs import Run, over_formulas
-from substructures.part.part import Part
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
 
 #: stored outputs that make up the links of a part
@@ -30,13 +32,15 @@ EQUATIONS = ("metric", "christoffel")
 class Plan:
     """The links of a tree and e(c), by index there; of every part, which of EQUATIONS are taken over as stored.
 
-    ``outlined``: links and seats of the parts, where they were looked at.
+    ``outlined``: links and seats of the parts, where they were looked at; ``by_angles``: the joints whose entries are
+    by absolute angles.
     """
 
     chain: Sequence[Link]
     frames: Frames
     stored: Sequence[Sequence[str]]
     outlined: Sequence[PlacedPart] = ()
+    by_angles: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -56,19 +60,36 @@ def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen:
         return Plan(kind_only, range(len(kind_only)), kinds)
     outlined = _outlined(run, mounted)
     chain = _tree_links(outlined)
-    frames = evaluation_frames(chain, christoffel)
-    is_same = [
-        [m.first + e for e in stored_frames(m.part)] == list(frames[m.first : m.first + m.part.dof]) for m in mounted
-    ]
-    return Plan(chain, frames, [some if same else () for some, same in zip(kinds, is_same, strict=True)], outlined)
+    frames, by_angles = evaluation_frames(chain, christoffel), absolute(chain)
+    # joints beside whose axes others turn in parts mounted there: moments about them are summed over the border
+    parallel, firsts = parallel_to_root(chain), [m.first for m in mounted for _ in _joints(m)]
+    borders = {link.parent for c, link in enumerate(chain) if parallel[c] and link.parent < firsts[c]}
+    is_same = [_is_as_stored(m, frames, by_angles | borders) for m in mounted]
+    stored = [some if same else () for some, same in zip(kinds, is_same, strict=True)]
+    return Plan(chain, frames, stored, outlined, by_angles)
 
 
-def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool) -> Inertial:
-    """Of all parts; hosts come before what is mounted on them."""
+def _is_as_stored(m: MountedPart, frames: Frames, axes: frozenset[int]) -> bool:
+    """Whether the tree wants the entries of a part as they are stored: in the same frames, and none of joints ``axes``,
+    nor by absolute angles, which the tree has from the links and what is fixed in the carriers.
+    """
+    links = links_of(m.part, over_formulas(Graph())(m.part, {}, LINKS))
+    if absolute(links) or axes.intersection(_joints(m)):
+        return False
+    stored = evaluation_frames(links, m.part.has_christoffel)
+    return [m.first + e for e in stored] == [frames[c] for c in _joints(m)]
+
+
+def _joints(m: MountedPart) -> range:
+    """Indices of the joints of a part in the tree."""
+    return range(m.first, m.first + m.part.dof)
+
+
+def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool, by_angles: ByAngles) -> Inertial:
+    """Of all parts; hosts come before what is mounted on them. ``by_angles``: what is known of joints of the plan."""
     columns = {here.first + c: here.columns[c] for here in placed for c in range(len(here.links))}
     entries = InertialEntries(plan.chain, columns, plan.frames)
-    g_ab: Entries = {}
-    gamma_abc: Entries = {}
+    g_ab, gamma_abc = dict(by_angles.metric), dict(by_angles.christoffel)
     for here, names in zip(placed, plan.stored, strict=True):
         first = here.first
         # a, b <= c in the part: as stored
@@ -76,18 +97,14 @@ def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool
             stored = here.outputs.entries(name)
             all_of |= {tuple(first + a for a in index): x for index, x in stored.items()}
         for c, momentum in enumerate(here.evaluated.momenta, first):
-            g_ab |= entries.metric(c, momentum, first if "metric" in names else None)
+            if c not in by_angles.joints:
+                g_ab |= entries.metric(c, momentum, first if "metric" in names else None)
             if "metric" not in names:
                 # the rotor of joint c turns with q'^c alone
                 g_ab[c, c] = g_ab[c, c] + here.evaluated.own.scalar("armature", c - first)
-            if christoffel:
+            if christoffel and c not in by_angles.joints:
                 gamma_abc |= entries.christoffel(c, momentum, first if "christoffel" in names else None)
     return Inertial(g_ab, gamma_abc if christoffel else None)
-
-
-def stored_frames(part: Part) -> Frames:
-    """The evaluation frames of the stored formulas of a part."""
-    return evaluation_frames(links_of(part, over_formulas(Graph())(part, {}, LINKS)), part.has_christoffel)
 
 
 def _outlined(run: Run, mounted: Sequence[MountedPart]) -> list[PlacedPart]:

@@ -14,7 +14,7 @@ from substructures.expr.program import Formulas
 from substructures.mechanics.composite_form import Inertia, joint_momentum
 from substructures.mechanics.kinematics import INTERFACE, Columns, Link, constant_rotation
 from substructures.mechanics.linear3 import ZERO
-from substructures.part.formulas import Coupled
+from substructures.part.formulas import Coupled, parallel_axes
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.mechanism import Mechanism
 from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings, over_formulas
@@ -49,11 +49,13 @@ def _coupled(found: Published, parts: Mapping[str, Part], m: Mechanism, large: b
     run = over_formulas(m.graph)
     mounted = _mounted(found, parts, m)
     plan = planned(run, mounted, not large, True)
-    evaluated, total = _evaluated(run, mounted, inertia_symbols(m), plan)
+    symbols = inertia_symbols(m)
+    by_angles = parallel_axes(plan.chain, symbols).by_angles(plan.by_angles, not large)
+    evaluated, total = _evaluated(run, mounted, symbols, plan)
     placed: list[PlacedPart] = []
     for part in evaluated:
         placed.append(place(part, placed, ZERO))
-    inertial, n = inertial_entries(plan, placed, not large), len(m.joints)
+    inertial, n = inertial_entries(plan, placed, not large, by_angles), len(m.joints)
     columns: dict[int, Columns] = {INTERFACE: {}}
     carried: dict[int, Inertia] = {INTERFACE: total}
     for here in placed:
