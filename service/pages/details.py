@@ -147,7 +147,8 @@ def _withdrawn(version: Version) -> Html:
 
 def _split(path: str, reference: str, about: Html) -> Html:
     picture = tag("img", src=f"{path}/picture", alt=f"Picture of {reference}", width="320", height="240")
-    return tag("div", tag("div", picture, class_="picture"), about, class_="split")
+    report = link("Report: structure, derivation and formulas", f"{path}/report?format=mathml")
+    return tag("div", tag("div", picture, tag("p", report), class_="picture"), about, class_="split")
 
 
 def _sections(

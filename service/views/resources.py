@@ -65,6 +65,7 @@ def version_view(
             "definition": f"{path}/definition",
             "formulas": f"{path}/formulas",
             "picture": f"{path}/picture",
+            "report": f"{path}/report",
             "latest": f"{BASE}/substructures/{version.name}",
             "aliases": f"{BASE}/substructures/{version.name}/aliases",
             "versions": f"{BASE}/substructures/{version.name}/versions",
@@ -166,7 +167,7 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
         "withdrawn": withdrawn_view(withdrawn),
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
         | {"kernels": f"{path}/kernels"}
-        | {name: f"{path}/{name}" for name in (*quantities, "picture")},
+        | {name: f"{path}/{name}" for name in (*quantities, "picture", "report")},
     }
     return dump(names)[:-1] + b"," + tree.summary.encode()[1:]
 

@@ -82,3 +82,15 @@ def test_too_much_is_refused_with_its_size(filled: TestClient, monkeypatch: pyte
     answer = filled.get("/v1/trees/cell/report?format=latex")
     assert (answer.status_code, answer.json()["code"]) == (422, "too-large")
     assert "limit is 2" in answer.json()["detail"]
+
+
+def test_parts_and_trees_lead_to_their_reports(filled: TestClient) -> None:
+    for path, page in (
+        ("/v1/substructures/pendulum@1", "/substructures/pendulum@1"),
+        ("/v1/trees/cell@1", "/trees/cell@1"),
+    ):
+        report = filled.get(path).json()["links"]["report"]
+        assert filled.get(report).status_code == 200
+        shown = filled.get(page)
+        assert shown.status_code == 200
+        assert f'href="{report}?format=mathml"' in shown.text
