@@ -33,6 +33,10 @@ SLACK = 60.0
 _log = logging.getLogger(__name__)
 
 
+#: headers that belong to an answer that is kept; the others are made for each request
+OF_ANSWER = ("Content-Type", "Content-Disposition", "Content-Security-Policy")
+
+
 class RefusedThere(Exception):
     """An answer that is no success, with all that there is to say."""
 
@@ -79,7 +83,8 @@ class Away:
                 _log.warning("attempt %d at the process that computes: %r", attempt + 1, error)
                 continue
             if answer.status_code == 200:
-                return Answer(200, answer.content, {"Content-Type": answer.headers["content-type"]})
+                told = {name: answer.headers[name.lower()] for name in OF_ANSWER if name.lower() in answer.headers}
+                return Answer(200, answer.content, told)
             raise RefusedThere(Response(answer.content, answer.status_code, _told(answer)))
         raise _gone()
 

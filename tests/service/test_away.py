@@ -93,6 +93,15 @@ def test_printed_formulas_are_kept_and_conditional(http: httpx2.Client) -> None:
     assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/query/bind")
 
 
+def test_what_is_kept_has_its_headers(http: httpx2.Client) -> None:
+    """The name of a file, and that a page may have its style: asked twice, since the second answer is the kept one."""
+    tree = f"{TREES}/{TREE['name']}@1"
+    for _ in range(2):
+        report, archive = http.get(f"{tree}/report?format=mathml"), http.get(f"{tree}/export?target=c")
+        assert report.headers["content-security-policy"].startswith("default-src 'none'; style-src 'unsafe-inline'")
+        assert "filename=" in archive.headers["content-disposition"]
+
+
 def test_killed_it_is_there_again(server: Server, http: httpx2.Client) -> None:
     until(server.computing)
     [computes] = server.computing()
