@@ -20,9 +20,9 @@ Where the symbols of the notation (notation.md) are made:
 
 =============  ================================================================================================
 U, Omega       partial velocities: mechanics.kinematics (base_functions), carried to hosts in tree.coupling
-g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric)
-Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating:
-               mechanics.evaluation_frames (christoffel)
+g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric), of parallel axes
+               mechanics.parallel_axes
+Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: the same modules (christoffel)
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: part.applied_forces
                (own forces of a part) and tree.coupling (gravity, and wrenches on what others carry)
 =============  ================================================================================================

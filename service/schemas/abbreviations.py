@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from service.schemas.measured import Values
+from service.schemas.measured import RANGES, Values
 from substructures.documents import DocumentPart
 from substructures.export import FORMATS
 from substructures.printers import FORMS
@@ -19,7 +19,7 @@ class AbbreviationRequest(DocumentPart):
 
     quantity: str = Field(max_length=200, description="metric, gravity, bias, inverse_dynamics, ...")
     simplify: float = Field(ge=0, lt=1, allow_inf_nan=False, description="0.01: one percent")
-    ranges: dict[str, Any] = Field(
+    ranges: Annotated[dict[str, Any], RANGES] = Field(
         {},
         description="[lowest, highest] by name of a coordinate, velocity q', acceleration q'', input, parameter or t, "
         "numbers or texts such as -pi/2; 'coordinates', 'velocities', 'accelerations' for all others of a kind",

@@ -162,6 +162,13 @@ def _dimension(model: Model, name: str) -> Inferred:
     return replace(found, sure=False) if name in moving and isinstance(found, Dimensioned) else found
 
 
+def _of_symbols(model: Model) -> PlaceUnits:
+    """Of coordinates and their rates, the time, parameters and inputs."""
+    moving = zip(("", "'", "''"), model.state_units.values(), strict=True)
+    rates = {f"{name}{primes}": unit for primes, units in moving for name, unit in units.items()}
+    return {**model.units, **rates, "t": "s"}
+
+
 def _quasi_velocities(model: Model, read_before: Plain, _: Any) -> PlaceUnits:
     """Of quasi-velocities by name: of the expressions that they are, or rates of coordinates."""
     given = read_before.get("velocities")
@@ -179,6 +186,8 @@ EFFORTS_OF_ACTUATORS = Measured(place=_in_order(EFFORTS))
 MOMENTA_OF_COORDINATES = Measured(place=_in_order(MOMENTA))
 #: parameters or inputs by name
 BY_NAME = Measured(place=lambda model, _, __: model.units)
+#: of everything that a formula may depend on, by name
+RANGES = Measured(place=lambda model, _, __: _of_symbols(model))
 INPUT_SIGNALS = Measured(place=lambda model, _, given: _signals(model.units, given))
 COORDINATE_SIGNALS = Measured(place=lambda model, _, given: _signals(model.state_units["q"], given))
 EXPRESSION = Measured(place=lambda _, __, ___: "")

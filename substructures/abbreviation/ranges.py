@@ -47,7 +47,7 @@ Box = Mapping[str, Interval]
 
 
 def fixed_values(model: Model, program: Program, ranges: Ranges, given: Mapping[str, Any] | None) -> dict[str, Value]:
-    """Numbers of all parameters and inputs of a program that have no range: given, defaults; inputs are 0.
+    """Numbers of all parameters and inputs of a program that have no range: given, or their defaults, of inputs without one 0.
 
     Raises InvalidArgument (``/parameters/name``) for unknown names, for parameters without any value, and for those
     with a number and a range.
@@ -63,7 +63,10 @@ def fixed_values(model: Model, program: Program, ranges: Ranges, given: Mapping[
         name = symbol.name
         if name in ranges or symbol.kind not in ("parameter", "input"):
             continue
-        value = 0 if symbol.kind == "input" else given.get(name, model.parameters[name].get("value"))
+        if symbol.kind == "input":
+            value = (model.inputs.get(name) or {}).get("default") or 0
+        else:
+            value = given.get(name, model.parameters[name].get("value"))
         if value is None:
             message = f"'{name}' has no default: it needs a number or a range"
             faults.append(Fault(f"/parameters/{name}", "missing", message))

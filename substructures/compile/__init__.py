@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from substructures.compile import cache, target
+from substructures.compile.angles import by_addition_theorem
 from substructures.compile.emission import assembly
 from substructures.compile.engine import shared_runtime
 from substructures.compile.kernel import InterpretedKernel, Kernel
@@ -30,18 +31,19 @@ def compile_program(
     names = tuple(dict.fromkeys(outputs))
     if not target.available():
         return InterpretedKernel(program, names)
+    source = by_addition_theorem(program, names)
     runtime = shared_runtime(width or target.host().width, folder)
     if folder is None:
-        return MachineKernel(program, names, *_compiled(program, names, runtime.width), runtime)
+        return MachineKernel(source, names, *_compiled(source, names, runtime.width), runtime)
     wanted = cache.key(program.digest, names, f"{target.host().identity} {runtime.width}")
     found = cache.read(folder, wanted)
     # whatever else is wrong with an entry: it is made anew
     with contextlib.suppress(KeyError, TypeError, ValueError, RuntimeError):
         if found is not None:
-            return MachineKernel(program, names, Recipe.read(found[0]), found[1], runtime)
-    recipe, code = _compiled(program, names, runtime.width)
+            return MachineKernel(source, names, Recipe.read(found[0]), found[1], runtime)
+    recipe, code = _compiled(source, names, runtime.width)
     cache.write(folder, wanted, recipe.plain(), code)
-    return MachineKernel(program, names, recipe, code, runtime)
+    return MachineKernel(source, names, recipe, code, runtime)
 
 
 def _compiled(program: Program, names: Sequence[str], width: int) -> tuple[Recipe, bytes]:

@@ -87,7 +87,7 @@ def test_trees(filled: TestClient, change: dict[str, Any], words: tuple[str, ...
         ("/v1/trees/cel", "did you mean 'cell'?"),
         ("/v1/trees/cell/metrik", "did you mean 'metric'?"),
         ("/v1/trees/cell/metric?fromat=text", "unknown query parameter 'fromat'; did you mean 'format'?"),
-        ("/v1/trees?dofs=2", "unknown query parameter 'dofs'; there are q, uses, owner, page_size, page_token"),
+        ("/v1/trees?dofs=2", "unknown query parameter 'dofs'; there are q, uses, page_size, page_token, dof_min"),
         ("/v1/limits?x=1", "there are none"),
     ],
 )

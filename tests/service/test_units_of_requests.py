@@ -126,9 +126,20 @@ CONTROLS: list[Row] = [
     ("optimal-controls", CONTROL, "/guess/tau.arm.q", measured([25, 50], "N cm"), [0.25, 0.5], "N"),
     ("cost-gradients", CONTROL, "/values/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
 ]
-TABLE = [*MOTION, *QUESTIONS, *CONTROLS]
+ABOUT: Plain = {"quantity": "metric", "simplify": 0.01}
+RANGES: list[Row] = [
+    ("abbreviations", ABOUT, "/ranges/arm.q", [measured(-90, "deg"), DEG], [-pi / 2, pi / 2], "m"),
+    ("abbreviations", ABOUT, "/ranges/slide.x", measured([-250, 250], "mm"), [-0.25, 0.25], "rad"),
+    ("abbreviations", ABOUT, "/ranges/arm.q'", measured([0, 60], "rpm"), [0, 2 * pi], "rad"),
+    ("abbreviations", ABOUT, "/ranges/slide.x''", measured([0, 250], "mm/s^2"), [0, 0.25], "m/s"),
+    ("abbreviations", ABOUT, "/ranges/arm.m", measured([250, 500], "g"), [0.25, 0.5], "m"),
+    ("abbreviations", ABOUT, "/ranges/tau.arm.q", measured([0, 25], "N cm"), [0, 0.25], "N"),
+    ("abbreviations", ABOUT, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+]  # fmt: skip
+TABLE = [*MOTION, *QUESTIONS, *CONTROLS, *RANGES]
 #: numbers without a dimension, or with one that changes from coordinate to coordinate
 PURE = {
+    "simplify",
     *("absolute_tolerance", "relative_tolerance", "drift_limit", "error_limit", "tolerance", "constraints.normal"),
 }
 
