@@ -47,7 +47,7 @@ Box = Mapping[str, Interval]
 
 
 def fixed_values(model: Model, program: Program, ranges: Ranges, given: Mapping[str, Any] | None) -> dict[str, Value]:
-    """Numbers of all parameters and inputs of a program that have no range: given, or their defaults; other inputs are 0.
+    """Numbers of all parameters and inputs of a program that have no range: given, or defaults; other inputs are 0.
 
     Raises InvalidArgument (``/parameters/name``) for unknown names, for parameters without any value, and for those
     with a number and a range.
