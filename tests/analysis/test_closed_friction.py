@@ -14,7 +14,9 @@ from scipy.integrate import solve_ivp
 from substructures import InvalidInput, Model, catalogue
 from substructures.analysis.closed import dry_friction
 from substructures.analysis.closed.constrained import Constrained
-from substructures.analysis.closed.dry_friction import DryConstrained
+from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
+from substructures.analysis.closed.sticking_forces import bounded
+from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep, simulate
 
@@ -251,6 +253,69 @@ def test_loops_beside_each_other_stick_one_by_one() -> None:
     np.testing.assert_allclose(held[:, 2:], [[8 * 6 / 13, 8 * 7 / 13]] * len(t), rtol=1e-7)
     np.testing.assert_allclose(held[~late, :2], -np.outer(6 + 4 * t[~late], [4 / 9, 5 / 9]), rtol=1e-7)
     np.testing.assert_allclose(held[late, :2], [[-3, -4]] * late.sum(), rtol=1e-12)
+
+
+def test_a_carriage_that_holds_its_mechanism() -> None:
+    """Two degrees of freedom, one of which sticks: crank and piston move as on the ground, to and fro."""
+    joint: Plain = {"type": "prismatic", "coordinate": "c", "placement": {"position": [0, 0, 0]}, "axis": [1, 0, 0]}
+    cart = {"name": "cart", "bodies": [{"name": "cart", "parent": "base", "mass": 3, "joint": joint}]}
+    wrist = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
+    document: Plain = {"gravity": [0, -9.81, 0], "closures": [wrist]}
+    document["instances"] = [
+        {"name": "y", "substructure": "cart"},
+        {"name": "x", "substructure": "slider-crank", "at": "y.cart"},
+    ]
+    document["loads"] = [friction("y.c", "50", "60"), *(friction(f"x.{name}", *law) for name, law in LAWS.items())]
+    both = tree_model(document, {"cart": cart, "slider-crank": catalogue.load("slider-crank")})
+    alone = slider_crank(LAWS, gravity=(0, -9.81, 0))
+    request: Plain = {"span": (0, 1.5), "fixed": ["x.crank"], "count": 31, "friction": "exact"}
+    found, wanted = (
+        simulate(model, at(model, crank=0.3, piston=0.17), qd=at(model, crank=9), **request) for model in (both, alone)
+    )
+    right(found)
+    assert (np.diff(np.sign(wanted.qd[:, 0])) != 0).any()
+    np.testing.assert_allclose(found.q[:, 0], 0, atol=1e-9)
+    np.testing.assert_allclose(found.q[:, 1:], wanted.q, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(found.series["friction"][:, 1:], wanted.series["friction"], atol=1e-6)
+
+
+def test_a_mechanism_without_masses() -> None:
+    """A failure with a message, and the state where it is."""
+    nothing = dict.fromkeys(("mc", "Jc", "mr", "Jr", "mp"), 0)
+    model = slider_crank(LAWS)
+    values = {f"x.{name}": 0.0 for name in nothing}
+    motion = simulate(model, at(model, piston=0.18), (0, 1), parameters=values, friction="exact")
+    assert motion.status == "failed"
+    assert "mass" in motion.message
+    assert len(motion.t) == 1
+
+
+@pytest.mark.parametrize(("rate", "ways"), [(3e-12, (0, 0, 0)), (1e-3, (1, -1, -1)), (-1e-3, (-1, 1, 1))])
+def test_who_is_at_rest(rate: float, ways: tuple[int, ...]) -> None:
+    """The piston is, by its rate, and with it crank and rod, whose rates are larger; they slip where none is."""
+    model, a = slider_crank(LAWS), np.array(0.3)
+    q = np.array([0.3, np.arcsin(-0.04 * np.sin(0.3) / 0.14) - 0.3, piston(a)[0]])
+    s = DryConstrained(model, Start(q), (0, 1))
+    signs, x = ClosedDryMotion(s).decided(0.0, np.concatenate((q, rate * levers(a), [0.0])))
+    assert abs(rate * levers(a)[2]) < 2e-12 or all(ways)
+    assert tuple(signs.tolist()) == ways
+    np.testing.assert_allclose(x[3:6], rate * levers(a) * np.abs(ways), rtol=1e-12, atol=1e-24)
+
+
+def test_who_breaks_away_when_not_all_can() -> None:
+    """Four joints and two degrees of freedom: the conditions of Gauss's principle, |f| <= F_s, and a joint that is not
+    held goes the way against which it has all of F_s.
+    """
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        ways, a, most = rng.normal(size=(4, 2)), rng.normal(size=2), rng.uniform(0.1, 1, 4)
+        f = bounded(ways, ways @ a, most)
+        left = ways @ (ways.T @ f + a)
+        # a joint at rest has less than F_s, or what it has is against its way
+        held = np.abs(f) < most * (1 - 1e-9)
+        np.testing.assert_allclose(left[held], 0, atol=1e-9)
+        assert (left[~held] * f[~held] <= 1e-9).all()
+        assert (np.abs(f) <= most * (1 + 1e-12)).all()
 
 
 @pytest.mark.parametrize("fault", ["EDGE", "lost_power"])

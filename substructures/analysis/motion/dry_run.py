@@ -66,6 +66,15 @@ class DryRun(IntegratedMotion):
             second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
         return second, force
 
+    def undecided(self, t: float, x: Array, signs: Signs, why: str) -> None:
+        """End where nobody can tell who slips and who sticks, with the state there."""
+        self.since.append(t)
+        self.signs.append(signs)
+        if not self.t or self.t[-1] < t:
+            self.t.append(t)
+            self.x.append(x)
+        self.end("failed", f"at t = {t:.9g} s {why}")
+
     def add(self, piece: IntegratedMotion, outputs: Array, events: int) -> None:
         """One more piece; what it has at its own end is no result, unless the motion ends there."""
         ends = piece.status != "stopped" or piece.cancelled or piece.found[-1][0] < events
@@ -98,7 +107,7 @@ def integrate_dry(
         try:
             f.signs, x = f.decided(t, x)
         except ArithmeticError as error:
-            run.end("failed", f"at t = {t:.9g} s {error}")
+            run.undecided(t, x, f.signs, str(error))
             return run
         run.since.append(t)
         run.signs.append(f.signs)
