@@ -191,6 +191,9 @@ class ClosedRequest(WithReactions):
     prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
     method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
     reduction: Literal["projection", "partitioning"] = "projection"
+    friction: Literal["regularised", "exact"] = Field(
+        "regularised", description="of joints: by the smooth law of the formulas, or set-valued at rest"
+    )
 
 
 class RollingRequest(SpanRequest, VelocityConstraints):

@@ -99,9 +99,9 @@ def simulate(
     ``form`` of the equations.
 
     ``friction`` of joints that have some: by the smooth law of the formulas, or ``exact``, set-valued at rest, with
-    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction``; or ``loaded``, with
-    what the reactions of joints add (``bearings``: all reactions of the tree): these series, and the check
-    ``friction-load``. Of trees alone.
+    joints that stick; then the series ``friction`` and ``qdd`` (K, n), and the check ``friction`` (not with
+    ``constraints``; that of ``prescribed`` coordinates stays smooth); or ``loaded``, with what the reactions of joints
+    add (``bearings``: all reactions of the tree): these series, and the check ``friction-load``, of trees alone.
 
     ``geodesic``: of a tree without any force, q''^a + Gamma^a_bc q'^b q'^c = 0.
 
@@ -140,9 +140,10 @@ def simulate(
         rolled = RollingProblem(**given, constraints=constraints, form=form, **rolling)
         return with_limits(model, parameters, simulate_rolling(rolled, progress, folder))
     if model.closures or prescribed:
-        _refuse("closures or prescribed coordinates", fixed_step=fixed_step, friction=exact, **rolling)
-        closed["prescribed"] = prescribed or {}
-        loops = ClosedProblem(**given, reduction=reduction, **closed)
+        loaded = friction if friction == "loaded" else None
+        _refuse("closures or prescribed coordinates", fixed_step=fixed_step, friction=loaded, **rolling)
+        closed |= {"prescribed": prescribed or {}, "reduction": reduction, "friction": friction}
+        loops = ClosedProblem(**given, **closed)
         motion = simulate_closed(loops, progress, folder)
     else:
         _refuse("neither closures nor velocity constraints", **rolling, **closed)

@@ -9,18 +9,18 @@ from fastapi.testclient import TestClient
 
 URL = "/v1/trees/incline/simulations"
 START = {"q": [0], "qd": [1], "span": [0, 1], "count": 3}
+FRICTION = {"coulomb": "F", "static": 3, "velocity": {"value": 1, "unit": "mm/s"}}
+JOINT = {"type": "prismatic", "coordinate": "x", "friction": FRICTION}
+BLOCK = {
+    "name": "block", "parameters": {"F": {"value": 2.5, "unit": "N"}},
+    "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": JOINT}],
+}  # fmt: skip
 
 
 @pytest.fixture
 def incline(client: TestClient) -> TestClient:
     """A block that gravity pulls back along a slide with 2 N, and friction holds with up to 3 N."""
-    friction = {"coulomb": "F", "static": 3, "velocity": {"value": 1, "unit": "mm/s"}}
-    joint = {"type": "prismatic", "coordinate": "x", "friction": friction}
-    definition = {
-        "name": "block", "parameters": {"F": {"value": 2.5, "unit": "N"}},
-        "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": joint}],
-    }  # fmt: skip
-    tree = {"name": "incline", "gravity": [0, 0, -2], "instances": [{"name": "a", "definition": definition}]}
+    tree = {"name": "incline", "gravity": [0, 0, -2], "instances": [{"name": "a", "definition": BLOCK}]}
     answer = client.post("/v1/trees", json=tree)
     assert answer.status_code == 201, answer.text
     return client
@@ -42,6 +42,25 @@ def test_a_simulation_that_sticks(incline: TestClient) -> None:
 def test_its_numbers_are_an_output(incline: TestClient) -> None:
     text = incline.get("/v1/trees/incline/friction?format=json").json()
     assert text["outputs"]["friction"]["shape"] == [1, 4]
+
+
+def test_a_closed_simulation_that_sticks(incline: TestClient) -> None:
+    """Two such blocks that are tied together do the same, each held by its own share, or where both are driven."""
+    instances = [{"name": name, "definition": BLOCK} for name in ("a", "b")]
+    weld = {"name": "tie", "type": "ball", "from": "a.b", "to": "b.b"}
+    tree = {"name": "pair", "gravity": [0, 0, -2], "instances": instances, "closures": [weld]}
+    answer = incline.post("/v1/trees", json=tree)
+    assert answer.status_code == 201, answer.text
+    body = {**START, "q": [0, 0], "qd": [1, 1], "friction": "exact", "reactions": True, "powers": True}
+    motion = incline.post("/v1/trees/pair/simulations", json=body).json()
+    assert motion["is_right"], motion["checks"]
+    assert {"friction", "power", "energy"} <= {check["name"] for check in motion["checks"]}
+    assert motion["q"][-1] == pytest.approx([1 / 9] * 2, abs=1e-12)
+    assert motion["series"]["friction"][-1] == pytest.approx([2.0, 2.0], abs=1e-12)
+    driven = incline.post(URL, json={**START, "friction": "exact", "prescribed": {"a.x": "t"}}).json()
+    assert driven["is_right"], driven["checks"]
+    # 2 N of gravity, 2.5 N of friction
+    assert driven["series"]["actuation"][-1] == pytest.approx([4.5], abs=1e-12)
 
 
 @pytest.fixture
@@ -89,7 +108,6 @@ def test_a_published_part_keeps_it(loaded: TestClient) -> None:
     [
         ({"friction": "sticky"}, URL, "/friction"),
         ({"friction": "exact", "fixed_step": {"step": 0.01}}, URL, "/friction"),
-        ({"friction": "exact", "prescribed": {"a.x": "t"}}, URL, "/friction"),
         ({"friction": "exact", "by": ["a.F"]}, "/v1/trees/incline/sensitivities", "/friction"),
         ({"friction": "exact", "parameters": {"a.F": -1}}, URL, "/parameters"),
         ({"friction": "loaded"}, URL, "/friction"),

@@ -108,7 +108,8 @@ def test_constraints(change: Plain, pointer: str, code: str) -> None:
 
 
 def test_friction_that_loops_do_not_have() -> None:
-    assert faults(CRANK, "simulations", CLOSED | {"friction": "loaded"}) == [("/friction", "extra-forbidden")]
+    assert faults(CRANK, "simulations", CLOSED | {"friction": "loaded"}) == [("/friction", "literal-error")]
+    assert faults(CRANK, "simulations", CLOSED | {"friction": "exact"}) == [("/friction", "no-friction")]
 
 
 def test_a_body_is_an_object() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,10 +13,12 @@ import numpy as np
 from substructures.analysis.arguments import one_of
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
 from substructures.analysis.closed.doubt import energy_doubt
+from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
 from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
+from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, unbalanced
 from substructures.analysis.motion.output_times import OutputTimes
@@ -44,16 +47,19 @@ class ClosedProblem(MotionProblem):
     while the loops are closed, ``prescribed`` ones move as given [rad, m].
 
     ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
+    ``friction``: by the smooth law of the formulas, or set-valued at rest.
     """
 
     prescribed: Mapping[str, Signal] = field(default_factory=dict)
     fixed: Sequence[str] = ()
     reduction: Literal["projection", "partitioning"] = "projection"
+    friction: Literal["regularised", "exact"] = "regularised"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         one_of(self.integrator.method, "method", METHODS)
         one_of(self.reduction, "reduction", tuple(REDUCTIONS))
+        one_of(self.friction, "friction", ("regularised", "exact"))
 
 
 def simulate_closed(
@@ -65,7 +71,8 @@ def simulate_closed(
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
-    of the prescribed coordinates), varying inputs, and those of the problem. Checks: both residuals are zero, beside
+    of the prescribed coordinates), varying inputs, and those of the problem, with exact friction ``friction`` (K, n),
+    where forces are not unique those whose largest share of F_s is least. Checks: both residuals are zero, beside
     how far the closures are open in other positions, and T + V - work is constant, or, where an input that varies is
     part of V, a second run finds the same; work is that of forces without potential, of springs that change with time,
     and of prescribed coordinates. Loops that cannot be closed, a singular position at the start or on the way and a
@@ -124,7 +131,8 @@ def _steps_again(
 
 def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:
     notes: dict[str, Any] = {"events": problem.events, "series": problem.series}
-    return Constrained(problem.model, problem.start, problem.span, problem.prescribed, **notes, folder=folder)
+    kind = DryConstrained if problem.friction == "exact" else Constrained
+    return kind(problem.model, problem.start, problem.span, problem.prescribed, **notes, folder=folder)
 
 
 def _moved(
@@ -145,19 +153,16 @@ def _moved(
         """The stepper that lands on the closures."""
         return ClosedStepper(reduction, inner, t, y, end)
 
-    corners = s.corners(span[0], x, folder) if turning else []
-    motion = integrate(
-        reduction.rates,
-        x,
-        span,
-        problem.times.grid(),
-        IntegratorSettings(stepper, problem.integrator.max_steps, ADVICE),
-        [*s.conditions.watches(lambda _, y: y[:-1], folder), *corners],
-        breaks,
-        share_of(span, progress),
-        s.inputs.enter,
-    )
-    s.plain()
+    settings = IntegratorSettings(stepper, problem.integrator.max_steps, ADVICE)
+    watches, told = s.conditions.watches(lambda _, y: y[:-1], folder), share_of(span, progress)
+    given = x, span, problem.times.grid(), settings
+    motion: IntegratedMotion
+    if isinstance(s, DryConstrained):
+        motion = integrate_dry(ClosedDryMotion(s, reduction), *given, watches, breaks, told)
+    else:
+        watches = [*watches, *(s.corners(span[0], x, folder) if turning else [])]
+        motion = integrate(reduction.rates, *given, watches, breaks, told, s.inputs.enter)
+        s.plain()
     s.inputs.leave()
     return motion
 
@@ -173,11 +178,16 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     else:
         doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
         balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
-    checks = (*residuals, balance)
+    forces: Callable[[Constrained], dict[str, Any]] = _forces
+    checks: tuple[Check, ...] = (*residuals, balance)
+    if isinstance(s, DryConstrained) and isinstance(motion, DryRun):
+        dry = ClosedDryMotion(s)
+        judged["friction"], forces = dry.friction(motion, t, x), partial(_dry_forces, dry, motion)
+        checks = (*checks, sticking(dry, motion, t, judged["friction"], problem.drift_limit))
     span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
-    series = _at_states(_forces, s, t, x) | {name: values[results] for name, values in judged.items()}
+    series = _at_states(forces, s, t, x) | {name: values[results] for name, values in judged.items()}
     series |= s.conditions.series_at(t, x[:, :-1])
     found = crossings(problem.events, motion.found, s.n)
     figures = {"evaluations": float(motion.evaluations)}
@@ -208,6 +218,14 @@ def _at_states(
         rows.append(quantities(s))
     like = {name: np.shape(value) for name, value in quantities(s).items()}
     return {name: np.array([row[name] for row in rows]).reshape(len(rows), *shape) for name, shape in like.items()}
+
+
+def _dry_forces(dry: ClosedDryMotion, run: DryRun, s: Constrained) -> dict[str, Any]:
+    """As _forces, with the joints that slip and stick then."""
+    qdd, _, _ = dry.moved(s.t, np.concatenate((s.q, s.qd)), run.at(s.t))
+    known = np.isfinite(qdd).all()
+    multipliers = least_multipliers(s, qdd) if known else np.full(len(s.labels), np.nan)
+    return {"qdd": qdd, "multipliers": multipliers, "actuation": multipliers[s.closed :]}
 
 
 def _forces(s: Constrained) -> dict[str, Any]:

@@ -82,7 +82,7 @@ class DryMotion:
     """
 
     def __init__(self, f: RightHandSide, conditions: Conditions, laws: FrictionLaws) -> None:
-        self.f, self.laws, self.n = f, laws, f.n
+        self.f, self.laws, self.n, self.enter = f, laws, f.n, f.enter
         self.signs: Signs = np.zeros(len(laws.places), dtype=np.int64)
         self._q, self._g = np.zeros((1, f.n)), np.zeros((1, f.n, f.n))
         kernel = program_kernel(conditions.model.program.select(["metric"]))

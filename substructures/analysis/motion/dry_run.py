@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
-from substructures.analysis.motion.dry_friction import DryMotion, Signs
+from substructures.analysis.motion.dry_friction import FrictionLaws, Signs
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, TimeReport, integrate
 from substructures.analysis.motion.zeros import Watch
 from substructures.analysis.verdict import About, Check
@@ -16,6 +17,35 @@ from substructures.array import Array
 #: so many pieces, one after the other, of less than this share of the span mean that the motion is stuck
 STUCK, LEAST = 50, 1e-9
 ADVICE = "joints stop and break away without end: raise 'max_steps', or take the smooth law of friction ('regularised')"
+
+
+class Sticking(Protocol):
+    """x' = f(t, x), x = (q, q', ...), while the joints with friction slip or stick as ``signs`` say."""
+
+    laws: FrictionLaws
+    n: int
+
+    @property
+    def signs(self) -> Signs:
+        """By joint with friction: 1 and -1 slip that way, 0 sticks."""
+
+    @signs.setter
+    def signs(self, signs: Signs) -> None: ...
+
+    def __call__(self, t: float, x: Array) -> Array:
+        """x' at (t, x)."""
+
+    def enter(self, start: float, end: float) -> None:
+        """Told the times between which it is called next."""
+
+    def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
+        """q'' (n,), the friction of the joints that have some (k,), and the power of all forces without potential."""
+
+    def decided(self, t: float, x: Array) -> tuple[Signs, Array]:
+        """Who slips and who sticks at a state, and the state with those at rest at rest."""
+
+    def watches(self) -> list[Watch]:
+        """What ends that."""
 
 
 @dataclass
@@ -29,12 +59,21 @@ class DryRun(IntegratedMotion):
         """Who slips and who sticks at a time; of two that meet there the later one."""
         return self.signs[max(0, int(np.searchsorted(self.since, t, side="right")) - 1)]
 
-    def forces(self, f: DryMotion, t: Array, x: Array) -> tuple[Array, Array]:
+    def forces(self, f: Sticking, t: Array, x: Array) -> tuple[Array, Array]:
         """q'' (K, n) and the friction on all coordinates (K, n)."""
         second, force = np.zeros((len(t), f.n)), np.zeros((len(t), f.n))
         for i, (at, state) in enumerate(zip(t.tolist(), x, strict=True)):
             second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
         return second, force
+
+    def undecided(self, t: float, x: Array, signs: Signs, why: str) -> None:
+        """End where nobody can tell who slips and who sticks, with the state there."""
+        self.since.append(t)
+        self.signs.append(signs)
+        if not self.t or self.t[-1] < t:
+            self.t.append(t)
+            self.x.append(x)
+        self.end("failed", f"at t = {t:.9g} s {why}")
 
     def add(self, piece: IntegratedMotion, outputs: Array, events: int) -> None:
         """One more piece; what it has at its own end is no result, unless the motion ends there."""
@@ -53,7 +92,7 @@ class DryRun(IntegratedMotion):
 
 
 def integrate_dry(
-    f: DryMotion,
+    f: Sticking,
     x: Array,
     span: tuple[float, float],
     outputs: Array,
@@ -65,13 +104,17 @@ def integrate_dry(
     """As :func:`substructures.analysis.motion.integration.integrate`; joints slip and stick as friction lets them."""
     run, t, still = DryRun(), span[0], 0
     while True:
-        f.signs, x = f.decided(t, x)
+        try:
+            f.signs, x = f.decided(t, x)
+        except ArithmeticError as error:
+            run.undecided(t, x, f.signs, str(error))
+            return run
         run.since.append(t)
         run.signs.append(f.signs)
         left = replace(settings, max_steps=max(1, settings.max_steps - run.steps))
         wanted = outputs if t == span[0] else outputs[outputs > t]
         pieces = (t, span[1]), wanted, left, [*watches, *f.watches()], [b for b in breaks if b > t]
-        piece = integrate(f, x, *pieces, progress, f.f.enter)
+        piece = integrate(f, x, *pieces, progress, f.enter)
         run.add(piece, outputs, len(watches))
         if piece.status != "stopped" or piece.cancelled or piece.found[-1][0] < len(watches):
             return run
@@ -85,7 +128,7 @@ def integrate_dry(
         t = end
 
 
-def sticking(f: DryMotion, run: DryRun, t: Array, force: Array, limit: float) -> Check:
+def sticking(f: Sticking, run: DryRun, t: Array, force: Array, limit: float) -> Check:
     """No joint sticks with more than its static friction; ``force``: on all coordinates (K, n)."""
     about: About = "friction", "zero", "no joint that sticks needs more than its static friction F_s", "1"
     stuck = np.array([run.at(at) == 0 for at in t.tolist()]).reshape(len(t), -1)
