@@ -43,8 +43,8 @@ def by_addition_theorem(source: Program, names: Sequence[str]) -> Program:
     for i, operation in enumerate(operations):
         if operation[0] in ("sin", "cos") and operation[1] in turning:
             new[i] = pairs[operation[1]][operation[0] == "sin"]
-            continue
-        new[i] = write(*renumbered(operation, new, symbols))
+        else:
+            new[i] = write(*renumbered(operation, new, symbols))
         if i in sums:
             (c, s), (d, t) = pairs[operation[1]], pairs[operation[2]]
             other = "add" if operation[0] == "sub" else "sub"

@@ -60,3 +60,13 @@ def test_a_sum_stays_where_its_sine_is_the_only_one(names: list[Expr]) -> None:
     beside = of(sin(a + b), cos(a), other=cos(b))
     assert by_addition_theorem(beside, ["y"]) is beside
     assert angles(by_addition_theorem(beside, ["y", "other"]), ["y", "other"]) == 2
+
+
+def test_sines_of_sines(names: list[Expr], tmp_path: Path) -> None:
+    """An angle that is a sine itself has one, too."""
+    a, b, *_ = names
+    inner = sin(a)
+    made = of(inner, cos(b), sin(a + b), sin(inner), cos(inner + b), cos(cos(inner)))
+    values = {name: np.linspace(-3, 3, 11) for name in KINDS}
+    found = compile_program(made, ["y"], tmp_path).evaluate(values)["y"]
+    assert np.abs(found - interpret(made, values)["y"]).max() < 1e-15

@@ -36,7 +36,9 @@ def test_every_answer_keeps_the_contract(kind: str, tmp_path: Path) -> None:
             command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(CONFIGURATION), "run"]
             command += [f"{address}/openapi.json", "--max-examples", EXAMPLES, "--request-timeout", "30"]
             command += ["--generation-deterministic", "--no-color"]
-            found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+            hooks = {"SCHEMATHESIS_HOOKS": "generated_hooks", "PYTHONPATH": str(CONFIGURATION.parent)}
+            named = {**os.environ, **hooks}
+            found = subprocess.run(command, cwd=tmp_path, env=named, capture_output=True, text=True, check=False)
     lines = [line[:300] for line in (found.stdout + found.stderr).splitlines()]
     assert found.returncode == 0, "\n".join(lines)
     print(*(line for line in lines if " generated, " in line))

@@ -151,9 +151,12 @@ def test_no_second_server(tmp_path: Path) -> None:
                 with pytest.raises(DatabaseError, match="another server uses"):
                     Database(address)
             assert number >= COUNT or before[1] in server.serving()
-        other = subprocess.run(server.command, env=server.environment, capture_output=True, text=True, check=False)
-        assert other.returncode == 1
-        assert "another server uses" in other.stderr
+        at = server.command.index("--port") + 1
+        for port, said in ((server.command[at], "is another server running?"), ("0", "another server uses")):
+            command = [*server.command[:at], port, *server.command[at + 1 :]]
+            other = subprocess.run(command, env=server.environment, capture_output=True, text=True, check=False)
+            assert other.returncode == 1
+            assert said in other.stderr
     Database(address).close()
 
 
