@@ -55,14 +55,16 @@ def has(
     if connection.dialect.name != "sqlite":  # PostgreSQL's index of trigrams serves this
         return and_(*(searched.contains(word, autoescape=True) for word in words))
     long = [word for word in words if len(word) >= TRIGRAM]
-    if not long:  # all are in lower case, and to look for bytes is many times as fast as LIKE
-        return and_(*(func.instr(searched, word) > 0 for word in words))
+    number = shelf.table.c.number
+    if not long:  # one look at all texts, in the order in which they are stored; all are in lower case
+        every = shelf.table.alias()
+        near: Select[Any] = select(every.c.number).where(*(func.instr(every.c[where], word) > 0 for word in words))
+        return among(connection, number, near, is_listed=True) if in_order else number.in_(near)
     quoted = " AND ".join('"{}"'.format(word.replace('"', '""')) for word in long)
     match = text(f"{shelf.index} MATCH :words")
     match = match.bindparams(bindparam("words", f"{where} : ({quoted})", unique=True))
     chosen: Select[Any] = select(column("rowid")).select_from(table(shelf.index)).where(match)
     short = [func.instr(searched, word) > 0 for word in words if len(word) < TRIGRAM]
-    number = shelf.table.c.number
     return and_(among(connection, number, chosen, is_listed=True) if in_order else number.in_(chosen), *short)
 
 

@@ -271,6 +271,24 @@ def test_trees_follow_the_latest_revision(client: TestClient) -> None:
     assert "changing" not in names(client, "uses=pendulum-of-one", "trees")
 
 
+def test_removed_trees_are_nowhere(client: TestClient) -> None:
+    """Neither on pages, which stay full, nor among what may have been meant; the next one counts on."""
+    form = {"gravity": [0, 0, 0], "instances": [{"name": "a", "substructure": "ball"}]}
+    for name in ("gone-a", "gone-b", "gone-c"):
+        assert client.post("/v1/trees", json={"name": name, **form}).status_code == 201
+    for name in ("gone-a", "gone-b"):
+        assert client.delete(f"/v1/trees/{name}").status_code == 204
+    for sort in ("name", "-created", "relevance"):
+        found = client.get(f"/v1/trees?q=gone&sort={sort}&page_size=1").json()
+        assert [each["name"] for each in found["items"]] == ["gone-c"]
+        assert found["next_page_token"] is None
+    assert "gone-c" in client.get("/v1/trees/gone-d").json()["detail"]
+    assert "'gone-a'" not in client.get("/v1/trees/gone-aa").json()["detail"]
+    assert client.delete("/v1/trees/gone-a").status_code == 404
+    assert client.post("/v1/trees", json={"name": "gone-a", **form}).json()["revision"] == 2
+    assert len(client.get("/v1/trees?q=gone").json()["items"]) == 2
+
+
 def test_only_what_is_seen_is_found(store: Store, client: TestClient) -> None:
     with store.database.write() as connection:
         mine, other = (keys.create(connection, owner, ["read", "write"], None, owner=owner) for owner in ("a", "b"))
@@ -328,21 +346,3 @@ def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -
 def rows_of(connection: sa.Connection, table: sa.Table) -> list[Any]:
     columns = [column for column in table.columns if column.name != "number"]
     return sorted(map(tuple, connection.execute(sa.select(*columns))), key=str)
-
-
-def test_removed_trees_are_nowhere(client: TestClient) -> None:
-    """Neither on pages, which stay full, nor among what may have been meant; the next one counts on."""
-    form = {"gravity": [0, 0, 0], "instances": [{"name": "a", "substructure": "ball"}]}
-    for name in ("gone-a", "gone-b", "gone-c"):
-        assert client.post("/v1/trees", json={"name": name, **form}).status_code == 201
-    for name in ("gone-a", "gone-b"):
-        assert client.delete(f"/v1/trees/{name}").status_code == 204
-    for sort in ("name", "-created", "relevance"):
-        found = client.get(f"/v1/trees?q=gone&sort={sort}&page_size=1").json()
-        assert [each["name"] for each in found["items"]] == ["gone-c"]
-        assert found["next_page_token"] is None
-    assert "gone-c" in client.get("/v1/trees/gone-d").json()["detail"]
-    assert "'gone-a'" not in client.get("/v1/trees/gone-aa").json()["detail"]
-    assert client.delete("/v1/trees/gone-a").status_code == 404
-    assert client.post("/v1/trees", json={"name": "gone-a", **form}).json()["revision"] == 2
-    assert len(client.get("/v1/trees?q=gone").json()["items"]) == 2
