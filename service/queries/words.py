@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Any
 
-from sqlalchemy import Connection, Select, Table, and_, bindparam, column, func, or_, select, table, text
+from sqlalchemy import Connection, Select, Table, and_, bindparam, column, or_, select, table, text
 
 from service.database.tables import substructures, tree_names
 from service.queries.membership import Condition, among
@@ -52,19 +52,16 @@ def has(
     """All words are in the text, that of the column ``where`` if it is given; ``in_order``: for rows in an order."""
     where = where or shelf.words
     searched = shelf.table.c[where]
-    if connection.dialect.name != "sqlite":  # PostgreSQL's index of trigrams serves this
-        return and_(*(searched.contains(word, autoescape=True) for word in words))
+    conditions = [searched.contains(word, autoescape=True) for word in words]
     long = [word for word in words if len(word) >= TRIGRAM]
-    number = shelf.table.c.number
-    if not long:  # one look at all texts, in the order in which they are stored; all are in lower case
-        every = shelf.table.alias()
-        near: Select[Any] = select(every.c.number).where(*(func.instr(every.c[where], word) > 0 for word in words))
-        return among(connection, number, near, is_listed=True) if in_order else number.in_(near)
+    if not long or connection.dialect.name != "sqlite":  # PostgreSQL's index serves the same condition
+        return and_(*conditions)
     quoted = " AND ".join('"{}"'.format(word.replace('"', '""')) for word in long)
     match = text(f"{shelf.index} MATCH :words")
     match = match.bindparams(bindparam("words", f"{where} : ({quoted})", unique=True))
     chosen: Select[Any] = select(column("rowid")).select_from(table(shelf.index)).where(match)
-    short = [func.instr(searched, word) > 0 for word in words if len(word) < TRIGRAM]
+    short = [searched.contains(word, autoescape=True) for word in words if len(word) < TRIGRAM]
+    number = shelf.table.c.number
     return and_(among(connection, number, chosen, is_listed=True) if in_order else number.in_(chosen), *short)
 
 
