@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from substructures.mechanics.composite_form import JointMomentum
+from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import INTERFACE, Link
-from substructures.mechanics.linear3 import Scalar, cross, dot, scale
+from substructures.mechanics.linear3 import Scalar, dot, scale
 from substructures.mechanics.newton_euler import BodyMotion, Wrench
 
 
@@ -35,10 +35,10 @@ def velocity_forces(
         # one by one: a . p of a root is the gravity force, which may be known as a longer formula
         for x, p in zip(motion.a, momentum.p, strict=True):
             total = total + x * p
-        result[a] = total + dot(motion.alpha, momentum.H) - dot(motion.omega, momentum.moment(motion.omega))
+        of_mass, own = (_sliding if link.s else _turning)(momentum.composite, motion, rates[a])
+        result[a] = total + of_mass
         if link.parent != INTERFACE:
-            needed = wrenches[a] + _wrench(momentum, motion, rates[a])
-            wrenches[link.parent] += needed.before(link.Z, link.rotation)
+            wrenches[link.parent] += (wrenches[a] + own).before(link.Z, link.rotation)
     return result
 
 
@@ -50,13 +50,36 @@ def _motions_before(
     after: list[BodyMotion] = []
     for k, link in enumerate(chain):
         outer = start.get(k, BodyMotion()) if link.parent == INTERFACE else after[link.parent]
-        before.append(outer.at(link.Z, link.rotation))
+        before.append(outer.at_joint(link, link.Z))
         after.append(before[k].moved(link.s, rates[k], 0))
     return before
 
 
-def _wrench(momentum: JointMomentum, before: BodyMotion, rate: Scalar) -> Wrench:
-    """About O_c: F_c = q'_c (w x p_c), N_c = q'_c K_c w, w = 2 omega + q'_c Omega_cc with omega before joint c."""
-    x, y, z = scale(2, before.omega)
-    w = (x, y, z) if momentum.s else (x, y, z + rate)
-    return Wrench(scale(rate, cross(w, momentum.p)), scale(rate, momentum.moment(w)))
+def _turning(carried: Inertia, before: BodyMotion, rate: Scalar) -> tuple[Scalar, Wrench]:
+    """Of a revolute joint c: H . alpha - omega . K omega, and F_c = q' (w x p), N_c = q' K w with w = 2 omega + q' e3.
+
+    ``before``: the motion of what the joint is fixed to.
+    """
+    x, y, z = before.omega
+    u, v, _ = before.third_column()
+    xx, yy, _, xy, xz, yz = carried.J
+    # (i, j, .) = J (omega_1, omega_2, 0)
+    i, j = x * xx + y * xy, x * xy + y * yy
+    # H . alpha - omega . K omega is the third component of axial(A J)
+    n = (v * xz - u * yz) + (y * i - x * j) + before.alpha[2] * carried.about_third_axis
+    # q' w = (2 q' omega_1, 2 q' omega_2, h)
+    twice, h = 2 * rate, rate * (2 * z + rate)
+    sx, sy, _ = carried.s
+    force = -(h * sx), -(h * sy), twice * (x * sx + y * sy)
+    return n, Wrench(force, (twice * j + h * yz, -(twice * i + h * xz), 0))
+
+
+def _sliding(carried: Inertia, before: BodyMotion, rate: Scalar) -> tuple[Scalar, Wrench]:
+    """The same of a prismatic joint c: w = 2 omega."""
+    x, y, _ = before.omega
+    sx, sy, sz = carried.s
+    twice = 2 * rate
+    p = twice * carried.m
+    # H . alpha - omega . K omega = (A s)_3
+    f = dot(before.field()[2], carried.s)
+    return f, Wrench((p * y, -(p * x), 0), scale(twice, (x * sz, y * sz, -(x * sx + y * sy))))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, from_body
-from substructures.mechanics.linear3 import Scalar, negate
+from substructures.mechanics.linear3 import Scalar, exactly, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
 from substructures.tree.mounted_part import WORLD, PlacedPart
 
@@ -60,9 +60,10 @@ def body_motions(
         for c, link in enumerate(here.links):
             a = here.first + c
             # from the body frame of the parent to O_c, then by the joint's own motion to the body frame of c
-            before = own[link.parent].at(from_body(here.links, link), link.rotation)
             second = 0 if accelerations is None else accelerations[a]
-            own[c] = before.moved(link.s, rates[a], link.tau, second)
+            before = own[link.parent].at_joint(link, from_body(here.links, link))
+            J = here.evaluated.inertias.get(c, Inertia()).J
+            own[c] = before.moved(link.s, rates[a], link.tau, second, not exactly(J[4], 0))
         motions.append(own)
     return motions
 

@@ -65,7 +65,7 @@ def per_state(model: Model, *names: str) -> int:
 
 @pytest.mark.parametrize(
     ("rows", "bias", "both", "forward"),
-    [(RX90, 518, 609, 781), (IIWA, 615, 741, 998), (SIX14, 810, 1121, 1288), (SIX, 924, 1303, 1490)],
+    [(RX90, 478, 569, 741), (IIWA, 574, 700, 957), (SIX14, 763, 1072, 1239), (SIX, 875, 1252, 1439)],
     ids=["rx90", "iiwa", "6r with 14 parameters", "6r"],
 )
 def test_operations_per_state(rows: list[Plain], bias: int, both: int, forward: int) -> None:
