@@ -58,8 +58,9 @@ def free_threads(rounds: int) -> float:
 
 def parameters(robot: Robot, figures: dict[str, float], rounds: int) -> None:
     """Free parameters (one set, then a set for every state) beside numbers folded into the program."""
-    exact = {n: Fraction(robot.numbers[n]) for n in robot.model.parameters}
-    folded = compile_program(bind(robot.model.program, exact), EVERYTHING)
+    program = robot.model.program
+    exact = {s.name: Fraction(robot.numbers[s.name]) for s in program.symbols if s.name in robot.model.parameters}
+    folded = compile_program(bind(program, exact), EVERYTHING)
     kernel = robot.kernel(EVERYTHING)
     rest = {n: v for n, v in robot.numbers.items() if n not in exact}
     columns = [(robot.model.coordinates, robot.q)]

@@ -47,5 +47,5 @@ def compile_program(
 
 
 def _compiled(program: Program, names: Sequence[str], width: int) -> tuple[Recipe, bytes]:
-    lowered = lower(program, names)
+    lowered = lower(program, names, fused=target.host().fused)
     return Recipe.of(lowered, program), target.assemble(assembly(lowered, program.operations, width))

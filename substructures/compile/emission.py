@@ -75,13 +75,33 @@ class _Emitter:
     def _operation(self, i: int) -> None:
         operation = self.ops[i]
         op, result = operation[0], f"%v{i}"
-        if op in BINARY:
-            a, b = self._value(operation[1]), self._value(operation[2])
-            flag = " contract" if op in CONTRACTED and i not in self.lowered.sharp else ""
-            self.lines.append(f"{result} = {BINARY[op]}{flag} {self.kind} {a}, {b}")
+        if op == "neg" and operation[1] in self.lowered.minus:
+            result = self._value(operation[1])
+        elif op in BINARY:
+            self._binary(result, i, *operation)
         else:
             self.special[op](result, self._value(operation[1]), operation)
         self.name[i] = result
+
+    def _binary(self, result: str, i: int, op: str, x: int, y: int) -> None:
+        """One instruction, where operands or result may be kept as negatives; and one more where a sign remains."""
+        first, second, whole = (k in self.lowered.minus for k in (x, y, i))
+        flag = " contract" if op in CONTRACTED and i not in self.lowered.sharp else ""
+        a, b = self._value(x), self._value(y)
+        if op not in ("add", "sub"):
+            product = f"{result}.p" if first ^ second ^ whole else result
+            self.lines.append(f"{product} = {BINARY[op]}{flag} {self.kind} {a}, {b}")
+            if product != result:
+                self._neg(result, product, ())
+            return
+        first, second = first ^ whole, second ^ whole ^ (op == "sub")
+        if first and not second:
+            a, b, first, second = b, a, second, first
+        if first:
+            # -a - b: where a or b is a product, the compiler takes the sign into it
+            self._neg(f"{result}.n", a, ())
+            a = f"{result}.n"
+        self.lines.append(f"{result} = {BINARY['sub' if second else 'add']}{flag} {self.kind} {a}, {b}")
 
     def _neg(self, result: str, x: str, _: Operation) -> None:
         self.lines.append(f"{result} = fneg {self.kind} {x}")

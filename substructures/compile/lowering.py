@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from substructures.compile.order import REGIONS, depth_first, sharp, stage_of
+from substructures.compile.signs import negatives
 from substructures.expr.exact import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
@@ -73,17 +74,21 @@ class Stage:
 class Lowered:
     """Stages, and the functions of all. The stages' results are at the places 1, 2, ... of the region "o".
 
-    ``sharp``: operations of which nothing may be contracted.
+    ``sharp``: operations of which nothing may be contracted; ``minus``: those that are kept as their negatives.
     """
 
     stages: tuple[Stage, ...]
     parts: list[StageFunction]
     literals: dict[int, float]
     sharp: set[int]
+    minus: set[int]
 
 
-def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
-    """Stages of the named outputs. Raises KeyError for an unknown name."""
+def lower(program: Program, names: Sequence[str], part: int = PART, fused: bool = True) -> Lowered:
+    """Stages of the named outputs; ``fused``: for machines where a product and a sum are one instruction.
+
+    Raises KeyError for an unknown name.
+    """
     ops = program.operations
     entries = {e for name in names for e in program.outputs[name].entries}
     needed = depth_first(ops, sorted(entries))
@@ -100,7 +105,8 @@ def lower(program: Program, names: Sequence[str], part: int = PART) -> Lowered:
         builder.build(mine, kept, {i: ("o", number + j) for j, i in enumerate(found)}, part)
         stages.append(builder.stage)
         place, number = builder.place, number + len(found)
-    return Lowered(tuple(stages), parts, literals, sharp(ops, needed))
+    exact = sharp(ops, needed)
+    return Lowered(tuple(stages), parts, literals, exact, negatives(ops, needed, entries | exact, fused))
 
 
 def batch_name(operation: Operation) -> str | None:

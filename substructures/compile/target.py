@@ -43,6 +43,11 @@ class Host:
         words = (self.triple, self.cpu, self.features, self.compiler, str(self.width))
         return "\n".join(words if self.contraction else (*words, "no contraction"))
 
+    @property
+    def fused(self) -> bool:
+        """Whether a product and a sum are one instruction: among x86 those with wide vectors have it."""
+        return self.contraction and (self.width > 2 or not self.triple.startswith(("x86", "i686")))
+
 
 @cache
 def host() -> Host:
