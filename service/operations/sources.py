@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from service.cache import Cache
 from service.integrity import reading
 from service.operations.trees import parts_of
 from service.queries import trees
@@ -19,17 +23,19 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
 
+Derived = TypeVar("Derived", PowerModel, ReactionModel, RegressorModel)
+
 
 def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     """What quantities of a tree are computed from."""
     return Sources(
         model,
         store.derived,
-        lambda: _regressor(store, tree),
+        lambda: _derived(store, tree, store.caches.regressors, regressor),
         lambda: plausibility_of(store, tree, model),
         lambda values, names, states: _numeric(store, tree).answer(values, names, states),
-        lambda: _reactions(store, tree),
-        powers=lambda: _powers(store, tree),
+        lambda: _derived(store, tree, store.caches.reactions, reactions),
+        powers=lambda: _derived(store, tree, store.caches.powers, powers),
     )
 
 
@@ -81,28 +87,16 @@ def grouped_model(store: Store, tree: Tree) -> Model:
     return couple(*tree_parts(store, tree), store.settings.limits.program_nodes, group=True)
 
 
-def _reactions(store: Store, tree: Tree) -> ReactionModel:
+def _derived(
+    store: Store,
+    tree: Tree,
+    cache: Cache[Derived],
+    derive: Callable[[TreeSpec, Mapping[str, Part], int], Derived],
+) -> Derived:
+    """What is derived of the parts of a tree beside its model. Raises TooLarge."""
     key = tree.digest, part_programs(store, tree)
-    found = store.caches.reactions.get(key)
+    found = cache.get(key)
     if found is None:
-        found = reactions(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.caches.reactions.put(key, found)
-    return found
-
-
-def _powers(store: Store, tree: Tree) -> PowerModel:
-    key = tree.digest, part_programs(store, tree)
-    found = store.caches.powers.get(key)
-    if found is None:
-        found = powers(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.caches.powers.put(key, found)
-    return found
-
-
-def _regressor(store: Store, tree: Tree) -> RegressorModel:
-    key = tree.digest, part_programs(store, tree)
-    found = store.caches.regressors.get(key)
-    if found is None:
-        found = regressor(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        store.caches.regressors.put(key, found)
+        found = derive(*tree_parts(store, tree), store.settings.limits.program_nodes)
+        cache.put(key, found)
     return found

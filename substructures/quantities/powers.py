@@ -11,22 +11,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.certificate.compare import compare
 from substructures.certificate.powers import OUTPUT, power_outputs
-from substructures.certificate.states import states_needed
-from substructures.certificate.tree_outputs import tree_symbols
-from substructures.errors import TooLarge, VerificationFailed
+from substructures.errors import TooLarge
 from substructures.expr.graph import Expr
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
-from substructures.part.certificate import defaults_of
-from substructures.part.certificate import plain as plain_document
 from substructures.part.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.pairs import wrench_forces
 from substructures.part.part import MAX_NODES, Part
 from substructures.tree.applied_wrenches import part_symbols
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.certificate import certify_rows
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.loads import loads_apart
@@ -66,26 +62,9 @@ def powers(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES
     result = program(graph, {OUTPUT: array((len(rows),), lambda k: watts[k])}, assembly.scope.symbols)
     if len(result) > max_nodes:
         raise TooLarge("the powers (in operations)", len(result), max_nodes)
-    _certify(spec, parts, result, rows)
+    definitions = {name: part.definition for name, part in parts.items()}
+    certify_rows("powers", spec, definitions, result, rows, power_outputs)
     return PowerModel(result, rows, assembly.parameters)
-
-
-def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, rows: Sequence[str]) -> None:
-    tree = plain_document(spec)
-    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
-    defaults = defaults_of(tree)
-    for name, definition in definitions.items():
-        defaults |= defaults_of(definition, f"{name}.")
-    try:
-        compare(
-            result,
-            tree_symbols(tree, definitions),
-            lambda values: power_outputs(tree, definitions, rows, values),
-            defaults,
-            states_needed(result.operations, [tree, *definitions.values()]),
-        )
-    except VerificationFailed as error:
-        raise VerificationFailed(f"powers: {error}") from None
 
 
 def _rows(assembly: Assembly, rates: Sequence[Expr]) -> Iterator[Row]:

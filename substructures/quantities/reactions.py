@@ -19,24 +19,20 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from substructures.certificate.compare import compare
 from substructures.certificate.reactions import reaction_outputs
-from substructures.certificate.states import states_needed
-from substructures.certificate.tree_outputs import tree_symbols
-from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
+from substructures.errors import InvalidArgument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
 from substructures.mechanics.newton_euler import Wrench, inertial_load
-from substructures.part.certificate import defaults_of
-from substructures.part.certificate import plain as plain_document
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.regressor import DYNAMIC, bare
 from substructures.tree.applied_wrenches import applied_wrenches
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.certificate import certify_rows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
@@ -121,27 +117,10 @@ def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
     if len(result) > max_nodes:
         raise TooLarge("the reactions (in operations)", len(result), max_nodes)
-    _certify(spec, parts, result, rows)
+    multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
+    definitions = {name: part.definition for name, part in parts.items()}
+    certify_rows("reactions", spec, definitions, result, rows, reaction_outputs, multipliers)
     return ReactionModel(result, rows, assembly.parameters)
-
-
-def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, rows: Sequence[str]) -> None:
-    tree = plain_document(spec)
-    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
-    defaults = defaults_of(tree)
-    for name, definition in definitions.items():
-        defaults |= defaults_of(definition, f"{name}.")
-    kinds = tree_symbols(tree, definitions) | {s.name: s.kind for s in result.symbols if s.name.startswith("lambda.")}
-    try:
-        compare(
-            result,
-            kinds,
-            lambda values: reaction_outputs(tree, definitions, rows, values),
-            defaults,
-            states_needed(result.operations, [tree, *definitions.values()]),
-        )
-    except VerificationFailed as error:
-        raise VerificationFailed(f"reactions: {error}") from None
 
 
 def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:

@@ -21,19 +21,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from substructures.certificate.compare import compare
 from substructures.certificate.regressed import regressor_outputs
-from substructures.certificate.states import states_needed
-from substructures.certificate.tree_outputs import tree_symbols
-from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
+from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import Inertia, pairing
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
-from substructures.part.certificate import defaults_of
-from substructures.part.certificate import plain as plain_document
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
@@ -41,6 +36,7 @@ from substructures.quantities.regrouping import named_frames, relations
 from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
 from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.certificate import certify_rows
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
@@ -148,7 +144,8 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     if len(result) > max_nodes:
         raise TooLarge("the regressor (in operations)", len(result), max_nodes)
     named = [pair for link in links for pair in inertia_names(link.name)]
-    _certify(spec, parts, result, [name for name, _ in named])
+    definitions = {name: part.definition for name, part in parts.items()}
+    certify_rows("regressor", spec, definitions, result, [name for name, _ in named], regressor_outputs)
     used = {symbol.name for symbol in result.symbols}
     return RegressorModel(
         result,
@@ -160,25 +157,6 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         _regrouping(assemble(spec, parts)),
         tuple(cut.rows for cut in assembly.cuts),
     )
-
-
-def _certify(spec: TreeSpec, parts: Mapping[str, Part], result: Program, names: Sequence[str]) -> None:
-    """Raise VerificationFailed unless every element is what the documents say."""
-    tree = plain_document(spec)
-    definitions = {name: plain_document(part.definition) for name, part in parts.items()}
-    defaults = defaults_of(tree)
-    for name, definition in definitions.items():
-        defaults |= defaults_of(definition, f"{name}.")
-    try:
-        compare(
-            result,
-            tree_symbols(tree, definitions),
-            lambda values: regressor_outputs(tree, definitions, names, values),
-            defaults,
-            states_needed(result.operations, [tree, *definitions.values()]),
-        )
-    except VerificationFailed as error:
-        raise VerificationFailed(f"regressor: {error}") from None
 
 
 def _regrouping(assembly: Assembly) -> Program:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
-from substructures.certificate.compare import compare
+from substructures.certificate.compare import Compared, Expected, compare
+from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.states import states_needed
 from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
@@ -15,6 +16,9 @@ from substructures.expr.program import Program
 from substructures.part.certificate import HOW, defaults_of, plain, told
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
+
+#: outputs out of the documents of a tree and of its parts, names of rows, and values of symbols
+RowsExpected = Callable[[Plain, Mapping[str, Plain], Sequence[str], Mapping[str, Any]], Outputs]
 
 
 def certify_tree(
@@ -38,18 +42,49 @@ def certify_tree(
             continue
         if summary.get(name, []) != said:
             raise VerificationFailed(f"the {name} of the model are not those of the documents: {said}")
-    kinds = tree_symbols(tree, parts)
-    defaults = defaults_of(tree)
-    for name, part in parts.items():
-        defaults |= defaults_of(part, f"{name}.")
 
     def expected(values: Mapping[str, Any]) -> Outputs:
         """All that a model of its version has."""
         outputs = tree_outputs(tree, parts, values, result.outputs)
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
-    states = states_needed(result.operations, [tree, *parts.values()])
-    compared = compare(result, kinds, expected, defaults, states)
+    states, compared = _compared(tree, parts, result, expected)
     certificate: dict[str, Any] = {**HOW, "states": states, "direct_form": told(compared)}
     certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
     return certificate
+
+
+def certify_rows(
+    what: str,
+    spec: TreeSpec,
+    definitions: Mapping[str, Definition],
+    result: Program,
+    rows: Sequence[str],
+    outputs: RowsExpected,
+    more: Mapping[str, str] | None = None,
+) -> None:
+    """Compare formulas with named rows, which are derived beside those of a model, with what ``outputs`` makes of the
+    documents of the tree and of its parts at a state.
+
+    ``more``: kinds of symbols beside those of the tree. Raises VerificationFailed, which says ``what`` is wrong.
+    """
+    tree, parts = plain(spec), {name: plain(definition) for name, definition in definitions.items()}
+    try:
+        _compared(tree, parts, result, lambda values: outputs(tree, parts, rows, values), more)
+    except VerificationFailed as error:
+        raise VerificationFailed(f"{what}: {error}") from None
+
+
+def _compared(
+    tree: Plain,
+    parts: Mapping[str, Plain],
+    result: Program,
+    expected: Expected,
+    more: Mapping[str, str] | None = None,
+) -> tuple[int, Compared]:
+    """At how many states, and what was found."""
+    defaults = defaults_of(tree)
+    for name, part in parts.items():
+        defaults |= defaults_of(part, f"{name}.")
+    states = states_needed(result.operations, [tree, *parts.values()])
+    return states, compare(result, tree_symbols(tree, parts) | dict(more or {}), expected, defaults, states)

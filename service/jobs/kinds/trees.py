@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 from service.analyses.source import Source
 from service.cache import Cache
@@ -14,6 +15,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.part.definition import Definition
+from substructures.part.part import Part
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.powers import PowerModel, powers
 from substructures.quantities.reactions import ReactionModel, reactions
@@ -21,6 +23,8 @@ from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
+
+Found = TypeVar("Found", PowerModel, ReactionModel, RegressorModel)
 
 CAPACITY = 2_000_000  # operations
 
@@ -67,46 +71,29 @@ def _definition(instance: Instance, blobs: Blobs) -> Definition:
 
 def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
     """What quantities of the tree of an item are computed from. Raises InvalidProgram."""
-    regressor = (lambda: regressor_of(item, blobs)) if "parts" in item else None
-    plausibility = (lambda: plausibility_of(item, blobs)) if "spec" in item else None
-    transmitted = (lambda: reactions_of(item, blobs)) if "parts" in item else None
-    by_load = (lambda: powers_of(item, blobs)) if "parts" in item else None
-    model = model_of(item, blobs)
-    return Sources(model, regressor=regressor, plausibility=plausibility, reactions=transmitted, powers=by_load)
+    has_parts = "parts" in item
+    return Sources(
+        model_of(item, blobs),
+        regressor=(lambda: _derived(item, blobs, _regressors, regressor)) if has_parts else None,
+        plausibility=(lambda: plausibility_of(item, blobs)) if "spec" in item else None,
+        reactions=(lambda: _derived(item, blobs, _reactions, reactions)) if has_parts else None,
+        powers=(lambda: _derived(item, blobs, _powers, powers)) if has_parts else None,
+    )
 
 
-def powers_of(item: ItemDocument, blobs: Blobs) -> PowerModel:
-    """The powers of loads and joints of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
-    found = _powers.get(_key(item))
+def _derived(
+    item: ItemDocument,
+    blobs: Blobs,
+    cache: Cache[Found],
+    derive: Callable[[TreeSpec, Mapping[str, Part], int], Found],
+) -> Found:
+    """What is derived of the parts of a tree beside its model. Raises InvalidDocument, TooLarge."""
+    parts: ItemDocument = item["parts"]
+    key = item["tree"], *sorted(parts["programs"].values())
+    found = cache.get(key)
     if found is None:
-        parts = item["parts"]
-        found = powers(*tree_parts(parts, blobs), parts["nodes"])
-        _powers.put(_key(item), found)
-    return found
-
-
-def reactions_of(item: ItemDocument, blobs: Blobs) -> ReactionModel:
-    """The reactions of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
-    found = _reactions.get(_key(item))
-    if found is None:
-        parts = item["parts"]
-        found = reactions(*tree_parts(parts, blobs), parts["nodes"])
-        _reactions.put(_key(item), found)
-    return found
-
-
-def _key(item: ItemDocument) -> tuple[str, ...]:
-    """What the parts of a tree give depends on: its document, and their programs."""
-    return item["tree"], *sorted(item["parts"]["programs"].values())
-
-
-def regressor_of(item: ItemDocument, blobs: Blobs) -> RegressorModel:
-    """The regressor of the tree of an item with parts. Raises InvalidDocument, TooLarge."""
-    found = _regressors.get(_key(item))
-    if found is None:
-        parts = item["parts"]
-        found = regressor(*tree_parts(parts, blobs), parts["nodes"])
-        _regressors.put(_key(item), found)
+        found = derive(*tree_parts(parts, blobs), parts["nodes"])
+        cache.put(key, found)
     return found
 
 
@@ -118,7 +105,7 @@ def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> So
     return Source(
         sources.model,
         digest,
-        lambda: regressor_of(item, blobs),
+        lambda: _derived(item, blobs, _regressors, regressor),
         Limits(**limits),
         plausibility=judge,
         reactions=sources.reactions,
