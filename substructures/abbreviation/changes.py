@@ -14,7 +14,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.hoist import hoisted
+from substructures.expr.hoist import hoisted, uses_of
 from substructures.expr.program import ARITHMETIC, Formulas, Operation, Program, operands, program
 from substructures.expr.walk import build
 
@@ -82,7 +82,7 @@ def _built(source: Program, graph: Graph, operation: Operation, found: Sequence[
 
 def possible(source: Program, values: Mapping[int, Array]) -> Iterator[Change]:
     """All changes that save operations; ``values``: of the operations at some states."""
-    uses = _uses(source)
+    uses = uses_of(source)
     for i, operation in enumerate(source.operations):
         op = operation[0]
         if i not in values or op in ("int", "rat", "sym"):
@@ -102,17 +102,6 @@ def _middle(x: Array) -> Fraction:
     if not np.isfinite(middle) or high - low > 2 * WIDE * abs(middle):
         return Fraction(0)
     return Fraction(f"{middle:.{DIGITS}g}")
-
-
-def _uses(source: Program) -> list[int]:
-    found = [0] * len(source)
-    for operation in source.operations:
-        for x in operands(operation):
-            found[x] += 1
-    for output in source.outputs.values():
-        for x in output.entries:
-            found[x] += 1
-    return found
 
 
 def _freed(source: Program, uses: Sequence[int], unused: Iterable[int]) -> int:

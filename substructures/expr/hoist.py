@@ -26,7 +26,7 @@ from substructures.expr.program import Program, operands, renumbered
 def hoisted(source: Program) -> Program:
     """The same functions, up to rounding, with no more operations, and fewer of them for each state."""
     operations, varies = source.operations, source.of_state
-    uses = _uses(source)
+    uses = uses_of(source)
     write = _Writer()
     waiting, symbols = write.waiting, {k: k for k in range(len(source.symbols))}
     for i, operation in enumerate(operations):
@@ -92,7 +92,8 @@ def _operation(x: Fraction) -> Operation:
     return ("int", str(x.numerator)) if x.denominator == 1 else ("rat", str(x.numerator), str(x.denominator))
 
 
-def _uses(source: Program) -> list[int]:
+def uses_of(source: Program) -> list[int]:
+    """How often each operation is an operand or an entry of an output."""
     found = [0] * len(source)
     for operation in source.operations:
         for x in operands(operation):
