@@ -42,7 +42,10 @@ def _write(value: Any, path: list[str | int], out: list[str]) -> None:
     elif isinstance(value, dict):
         _write_mapping(value, path, out)
     else:
-        raise InvalidDocument.at(_pointer(path), "type", f"{type(value).__name__} is not plain data")
+        message = (
+            f"{type(value).__name__} is not plain data: numbers, texts, lists, objects; of a client also NumPy's arrays"
+        )
+        raise InvalidDocument.at(_pointer(path), "type", message)
 
 
 def _write_list(value: Sequence[Any], path: list[str | int], out: list[str]) -> None:

@@ -48,7 +48,7 @@ class OwnNames:
         """A body or port; a fault, and None, where there is none."""
         frames = {**self.m.bodies, **self.m.ports}
         if name not in frames:
-            message = f"no body or port '{name}'{meant(name, frames)}; there are {', '.join(frames)}"
+            message = f"no body or port '{name}'; there are {', '.join(frames)}{meant(name, frames)}"
             self.m.scope.fault(pointer, "unknown-frame", message)
         return frames.get(name)
 

@@ -8,7 +8,7 @@ from decimal import Decimal
 from typing import Any
 
 from substructures.documents.fields import in_si, unit_advice
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import SOUGHT, Fault, InvalidDocument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse, parse_terms
@@ -71,6 +71,8 @@ class Scope:
         except ExpressionError as error:
             code = "unknown-name" if error.name is not None else "bad-expression"
             advice = "; measures of frames stand in loads" if measured(error.name or "") else unit_advice(str(value))
+            if error.name is not None and lookup is None and len(self.faults) < SOUGHT:
+                advice = advice or meant(error.name, self.names)
             self.fault(pointer, code, str(error) + advice)
         except (ValueError, ArithmeticError) as error:
             self.fault(pointer, "bad-number", str(error))

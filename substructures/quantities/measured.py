@@ -16,6 +16,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.documents import escape
+from substructures.documents.fields import unit_advice
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import InvalidArgument
 from substructures.expr.dimensions import Dimensioned
@@ -125,4 +126,6 @@ def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
 
 
 def _shown(given: Any) -> str:
-    return "null, as MATLAB writes NaN" if given is None else repr(given)[:40]
+    if given is None:
+        return "null, as MATLAB writes NaN"
+    return repr(given)[:40] + (unit_advice(given) if isinstance(given, str) else "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from substructures.errors import InvalidDocument, meant
+from substructures.errors import InvalidDocument, among
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.syntax import RESERVED
@@ -19,7 +19,7 @@ from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.part.scope import Scope, no_names
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
-from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.load_document import TreeFriction
 from substructures.tree.mounted_part import WORLD, MountedPart
 
@@ -64,7 +64,7 @@ def tree_name(instance: str, symbol: str) -> str:
 def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     """Read a tree. Raises InvalidDocument with a pointer to every fault."""
     scope = Scope(Graph())
-    order = _order(spec, scope)
+    order = _order(spec, parts, scope)
     _name_faults(spec, scope)
     scope.finish()
     parameters = _parameters(spec, parts, scope)
@@ -103,8 +103,8 @@ def _name_faults(spec: TreeSpec, scope: Scope) -> None:
             scope.fault(f"/inputs/{name}", "duplicate-name", f"'{name}' is a parameter or an instance, too")
 
 
-def _order(spec: TreeSpec, scope: Scope) -> list[int]:
-    """Indices of the instances, hosts first and otherwise as given; faults for names, unknown hosts and cycles."""
+def _indices(spec: TreeSpec, scope: Scope) -> dict[str, int]:
+    """Indices of the instances by name; faults for names."""
     index: dict[str, int] = {}
     for i, instance in enumerate(spec.instances):
         pointer = f"/instances/{i}/name"
@@ -113,16 +113,22 @@ def _order(spec: TreeSpec, scope: Scope) -> list[int]:
         if instance.name in ("world", "tau") or instance.name in spec.parameters:
             scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
         index[instance.name] = i
+    return index
+
+
+def _order(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> list[int]:
+    """Indices of the instances, hosts first and otherwise as given; faults for names, unknown hosts and cycles."""
+    index = _indices(spec, scope)
     waiting: dict[int, list[int]] = {}
-    ready, names = [], [each.name for each in spec.instances]
+    ready, frames = list[int](), {each.name: parts[each.name].frames for each in spec.instances}
     for i, instance in enumerate(spec.instances):
-        host = instance.at.partition(".")[0]
+        host, dot, _ = instance.at.partition(".")
         if instance.at == "world":
             ready.append(i)
-        elif host in index:
+        elif dot and host in index:
             waiting.setdefault(index[host], []).append(i)
-        else:
-            scope.fault(f"/instances/{i}/at", "unknown-instance", f"unknown instance '{host}'{meant(host, names)}")
+        elif found := misplaced(instance.at, frames):
+            scope.fault(f"/instances/{i}/at", *found)
     order: list[int] = []
     while ready:
         i = min(ready)
@@ -187,7 +193,7 @@ class _Bindings:
                     self.given[f"{instance.name}.{name}"] = (value, pointer)
                 else:
                     part = parts[instance.name]
-                    message = f"'{part.name}' has no parameter '{name}'{meant(name, part.parameters)}"
+                    message = f"'{part.name}' has no parameter '{name}'{among(name, part.parameters)}"
                     scope.fault(pointer, "unknown-parameter", message)
 
     def resolve_all(self) -> None:
@@ -240,15 +246,11 @@ class Reading:
         if at == "world":
             return WORLD, 0
         name, frame = at.split(".")
-        if name not in self.place:
-            self.scope.fault(pointer, "unknown-instance", f"unknown instance '{name}'")
-            return WORLD, 0
-        frames = self.parts[name].frames
-        if frame not in frames:
-            known = ", ".join(frames)
-            self.scope.fault(pointer, "unknown-port", f"'{name}' has no port or body '{frame}'; it has {known}")
-            return self.place[name], 0
-        return self.place[name], frames.index(frame)
+        frames = {each: self.parts[each].frames for each in self.place}
+        if found := misplaced(at, frames):
+            self.scope.fault(pointer, *found)
+            return self.place.get(name, WORLD), 0
+        return self.place[name], frames[name].index(frame)
 
     def mounted(self, i: int, first: int) -> MountedPart:
         """An instance of the document; ``first``: index of its first coordinate."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
@@ -11,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from substructures.documents import DocumentPart, read_model
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
 from substructures.documents.schema import PATTERNS
+from substructures.errors import listed, meant
 from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
 from substructures.tree.load_document import AT, TreeLoad
 
@@ -18,11 +20,30 @@ REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
 MAX_INSTANCES = 500
 
-PATTERNS[AT] = lambda text: f"a place is 'instance.port', 'instance.body' or 'world'{_place(text)}"
+PLACE = "a place is 'instance.port', 'instance.body' or 'world'"
+#: a place, or a name alone, which is refused where it is known what ports there are
+MOUNT = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
+
+PATTERNS[AT] = lambda text: f"{PLACE}{_example(text)}"
+PATTERNS[MOUNT] = PATTERNS[AT]
 
 
-def _place(text: str) -> str:
+def _example(text: str) -> str:
     return f"; for example 'arm.{text}', where 'arm' is the instance that has it" if re.fullmatch(NAME, text) else ""
+
+
+def misplaced(at: str, frames: Mapping[str, Collection[str]]) -> tuple[str, str] | None:
+    """Code and message of a place that is none; ``frames``: names of ports and bodies by instance."""
+    host, dot, frame = at.partition(".")
+    if at == "world" or (dot and frame in frames.get(host, ())):
+        return None
+    if not dot:
+        places = [f"{name}.{each}" for name, some in frames.items() for each in some]
+        near = [each for each in places if at in each.split(".")]
+        return "place", f"'{at}' is none: {PLACE}; there are {listed(near or places) or 'no instances'}"
+    if host not in frames:
+        return "unknown-instance", f"unknown instance '{host}'{meant(host, frames)}"
+    return "unknown-port", f"'{host}' has no port or body '{frame}'; it has {', '.join(frames[host])}"
 
 
 class Instance(DocumentPart):
@@ -33,7 +54,7 @@ class Instance(DocumentPart):
         None, description="reference into the library"
     )
     definition: Definition | None = Field(None, description="instead of a reference: a definition of its own")
-    at: Annotated[str, Field(pattern=AT)] = "world"
+    at: Annotated[str, Field(pattern=MOUNT)] = "world"
     placement: Placement = Placement()
     parameters: dict[Name, Number] = Field(
         {}, max_length=5000, description="numbers, or expressions in other parameters"

@@ -18,7 +18,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
-from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.model import couple
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units
@@ -67,6 +67,13 @@ def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Libr
     for k, instance in enumerate(spec.instances):
         if first.setdefault(instance.name, instance) is not instance:
             yield Fault(f"/instances/{k}/name", "duplicate-name", f"duplicate instance '{instance.name}'")
+    definitions = {name: _definition(each, versions, library) for name, each in first.items()}
+    frames = {
+        name: ["base", *(body.name for body in each.bodies), *(port.name for port in each.ports)]
+        for name, each in definitions.items()
+        if each is not None
+    }
+    unread = definitions.keys() - frames.keys()
     for k, instance in enumerate(spec.instances):
         definition = _definition(instance, versions, library)
         if definition is not None:
@@ -74,15 +81,10 @@ def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Libr
                 if name not in definition.parameters:
                     message = f"'{definition.name}' has no parameter '{name}'{meant(name, definition.parameters)}"
                     yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
-        host, _, frame = instance.at.partition(".")
-        if instance.at != WORLD and host not in first:
-            yield Fault(f"/instances/{k}/at", "unknown-instance", f"unknown instance '{host}'{meant(host, first)}")
-        carrier = _definition(first[host], versions, library) if host in first else None
-        if carrier is not None:
-            frames = ["base", *(body.name for body in carrier.bodies), *(port.name for port in carrier.ports)]
-            if frame not in frames:
-                message = f"'{host}' has no port or body '{frame}'; it has {', '.join(frames)}"
-                yield Fault(f"/instances/{k}/at", "unknown-port", message)
+        # of a host that cannot be read this is told elsewhere
+        found = misplaced(instance.at, frames) if instance.at.partition(".")[0] not in unread else None
+        if found is not None:
+            yield Fault(f"/instances/{k}/at", *found)
 
 
 def _definition(instance: Instance, versions: Mapping[str, StoredVersion], library: Library) -> Definition | None:
