@@ -39,6 +39,9 @@ class Formula(str):
         latex = self._repr_latex_()
         return {"text/plain": str(self), **({"text/latex": latex} if latex else {})}
 
+    def _repr_pretty_(self, printer: Any, _cycle: bool) -> None:
+        printer.text(str(self))  # otherwise IPython shows it as any text, in one line between quotes
+
 
 def shown(text: str, format: str, latex: Callable[[], str]) -> Formula:  # noqa: A002 -- the name in the contract
     """A formula in a format: ``text`` and ``latex`` are shown as mathematics, others as they are."""
@@ -60,4 +63,10 @@ class Picture(str):
         return str(self)
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
-        return {"text/plain": f"a picture (SVG, {len(self):,} characters)", "image/svg+xml": str(self)}
+        return {"text/plain": self._words(), "image/svg+xml": str(self)}
+
+    def _repr_pretty_(self, printer: Any, _cycle: bool) -> None:
+        printer.text(self._words())
+
+    def _words(self) -> str:
+        return f"a picture (SVG, {len(self):,} characters)"

@@ -36,6 +36,8 @@ GROUPS = {
     "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
 }
 CHRISTOFFEL = "christoffel"
+#: formats that have a title
+DOCUMENTS = ("latex-document", "mathml")
 #: formats that people read, and outputs that programs judge others by: D_k / |g_kk| and |g_kk|
 TO_READ, JUDGES = ("text", "latex", "latex-document", "mathml"), ("pivots", "inertias")
 #: of what has one beside g_ab = g_ba
@@ -55,6 +57,11 @@ class Style:
     def identity(self) -> tuple[str, ...]:
         """What an ETag depends on beside the content."""
         return self.format, self.form, self.bind, self.name
+
+    def of(self, what: str, quantity: str) -> Style:
+        """Itself; a document that has no other name is entitled with whose quantity it is."""
+        is_untitled = self.format in DOCUMENTS and self.name == NAME
+        return replace(self, name=f"{quantity} of {what}") if is_untitled else self
 
 
 def quantities(name: str) -> tuple[str, ...]:

@@ -16,7 +16,14 @@ from service.refusals import Refused
 
 #: nothing that is served is anything else than it says, or a page that may load something, unless it says so
 GUARDED = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}
-_ID, _GUARDS = b"x-request-id", [(name.lower().encode(), value.encode()) for name, value in GUARDED.items()]
+#: pages of formulas have a style of their own, and nothing of them is loaded or run
+GUARDED_PAGE = GUARDED | {
+    "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
+}
+_ID, _TYPE, _PAGE = b"x-request-id", b"content-type", b"application/xhtml+xml"
+_GUARDS, _GUARDS_OF_PAGE = (
+    [(name.lower().encode(), value.encode()) for name, value in some.items()] for some in (GUARDED, GUARDED_PAGE)
+)
 GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
@@ -48,7 +55,8 @@ class Conventions:
                 status = message["status"]
                 given = [pair for pair in message.get("headers", ()) if pair[0] != _ID]
                 told = {name for name, _ in given}
-                guards = [pair for pair in _GUARDS if pair[0] not in told]
+                is_page = any(name == _TYPE and value.startswith(_PAGE) for name, value in given)
+                guards = [pair for pair in (_GUARDS_OF_PAGE if is_page else _GUARDS) if pair[0] not in told]
                 message["headers"] = [*given, (_ID, identifier.encode()), *guards]
             await send(message)
 

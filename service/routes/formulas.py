@@ -22,6 +22,7 @@ from service.schemas.resources import FormulaIndex
 from service.store import Store
 from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
+from substructures.errors import meant
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
 from substructures.part.parameters import described_inputs
@@ -92,9 +93,15 @@ def _formula(
         part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, chosen.body, chosen.coordinate, chosen.component)
     found = models.part_formulas(part, rows, wanted, first_index(style.format))
+    if found is None and not rows:
+        with store.database.read() as connection:
+            known = sorted({row.quantity for row in index.list_formulas(connection, version.digest)})
+        advice = meant(quantity, known) or "; its index lists all"
+        raise not_found(f"'{ref}' has no formula of '{quantity[:80]}'{advice}", "unknown-formula")
     if found is None:
         raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
     identity = str((chosen.body, chosen.coordinate, chosen.component, chosen.inertia))
+    style = style.of(f"{version.name}, version {version.version}", quantity)
     tag = etag(version.digest, version.program, quantity, identity, *style.identity)
 
     def make() -> Answer:

@@ -167,6 +167,7 @@ def _quantity(
         tree = trees.find(connection, request.state.viewer, ref)
         model = store.model(connection, tree)
     lasting = is_pinned(ref) and tree.is_public
+    style = style.of(f"{tree.name}, revision {tree.revision}", quantity)
     if group:
         if quantity not in QUANTITIES:
             models.check_quantity(model, quantity)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
-from substructures.expr.program import Program
+from substructures.expr.program import Program, Symbol
 from substructures.printers.meanings import Label
 from substructures.printers.numbers import shortest_decimal
 
@@ -61,10 +61,18 @@ class Language(ABC):
     def __init__(self, program: Program) -> None:
         self.program = program
         self._called: dict[int, Label | int] = {}
+        #: numbers of the symbols that are said to occur; None: all of the program
+        self.occurring: frozenset[int] | None = None
 
     @abstractmethod
     def render(self, listing: Listing, name: str) -> str:
         """The whole text."""
+
+    @property
+    def described(self) -> list[tuple[int, Symbol]]:
+        """The symbols that readers are told about, with their numbers."""
+        found = enumerate(self.program.symbols)
+        return [(n, s) for n, s in found if self.occurring is None or n in self.occurring]
 
     def symbol(self, n: int) -> Piece:
         """Symbol number n of the program."""

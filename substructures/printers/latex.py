@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import ClassVar
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
-from substructures.printers.names import comment, latex_names
+from substructures.printers.names import LETTERS, RAISED, comment, latex_names
 from substructures.printers.numbers import decimal_text
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, solid, width
 
-_LETTERS = {"metric": "g", "christoffel": r"\Gamma", "forces": "Q", "coriolis": "C"}
 _NAMED = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
 _NAMED |= {"atan2": r"\operatorname{atan2}", "exp": r"\exp", "log": r"\ln", "sign": r"\operatorname{sgn}"}
+#: how a root ends that is too wide for a root sign
+_ROOT = CLOSING + "^{1/2}"
 _RULES = {
-    "symmetric": "{x}_{{ab}} &= {x}_{{ba}}",
-    "christoffel": r"{x}_{{abc}} &= {x}_{{acb}}, \quad {x}_{{cba}} = -{x}_{{abc}} \quad (b \le a)",
+    "symmetric": "{ab} &= {ba}",
+    "christoffel": r"{abc} &= {acb}, \quad {cba} = -{abc} \quad (b \le a)",
 }
 
 
@@ -77,12 +78,12 @@ class Latex(Language):
         return solid(text)
 
     def number(self, value: Fraction) -> Piece:
-        """A fraction, or a decimal number where that is exact and shorter."""
+        """A simple fraction, otherwise an exact decimal number where there is a short one."""
         if value < 0:
             return Piece("-" + self.number(-value).text, NEGATION)
         if value.denominator == 1:
             return Piece(str(value.numerator))
-        text = decimal_text(value) if value.denominator > 24 else None
+        text = decimal_text(value) if 12 % value.denominator else None
         return Piece(text) if text else Piece(rf"\frac{{{value.numerator}}}{{{value.denominator}}}", PRODUCT)
 
     def abbreviation(self, op: str, digits: str) -> Piece:
@@ -93,12 +94,13 @@ class Latex(Language):
         """mantissa * 10^exponent."""
         if not exponent:
             return Piece(mantissa)
-        return Piece(rf"{mantissa} \cdot 10^{{{exponent}}}", PRODUCT)
+        power = f"10^{{{exponent}}}"
+        return Piece(power, POWER) if mantissa == "1" else Piece(rf"{mantissa} \cdot {power}", PRODUCT)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
         """The exponent stands before the angle, which needs no parentheses as a single name."""
         head = self.functions[op] + (f"^{{{power}}}" if power != 1 else "")
-        text = " " + angle.text if angle.precedence == ATOM else rf"\left({solid(angle.text)}\right)"
+        text = " " + angle.text if angle.precedence == ATOM else _argument(angle.text)
         return Piece(head + text, POWER)
 
     def mul(self, a: Piece, b: Piece) -> Piece:
@@ -111,7 +113,10 @@ class Latex(Language):
         """A fraction; what is too wide for one is multiplied by it."""
         above, below = solid(a.text), solid(b.text)
         if width(below) > LINE - 50:
-            return Piece(f"{self.inside(a, PRODUCT)} \\, {self.parentheses(b.text)}^{{-1}}", PRODUCT)
+            power = f"{self.parentheses(b.text)}^{{-1}}"
+            if b.precedence == POWER and b.text.endswith(_ROOT):
+                power = b.text.removesuffix(_ROOT) + CLOSING + "^{-1/2}"
+            return Piece(power, POWER) if a.text == "1" else Piece(f"{self.inside(a, PRODUCT)} \\, {power}", PRODUCT)
         if width(above) > LINE - 50:
             left = self.inside(a, PRODUCT) if a.precedence != SUM else self.parentheses(a.text)
             return Piece(rf"\frac{{1}}{{{below}}} \, {left}", PRODUCT)
@@ -130,14 +135,16 @@ class Latex(Language):
             return Piece(rf"\sqrt{{{solid(args[0].text)}}}")
         if op == "abs":
             return Piece(rf"\left|{solid(args[0].text)}\right|")
-        return Piece(self.functions[op] + rf"\left({', '.join(solid(a.text) for a in args)}\right)")
+        if op in ("cos", "sin", "tan"):
+            return self.trig(op, args[0], 1)
+        return Piece(self.functions[op] + _argument(", ".join(a.text for a in args)))
 
     def render(self, listing: Listing, name: str) -> str:
         """An ``aligned`` environment; comments say what the symbols are."""
         lines = [f"% {comment(x)}" for x in (name, self.remark, *self.legend) if x]
         lines += [
-            f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {n if n.isascii() else ''}"
-            for n, s in zip(self.names, self.program.symbols, strict=True)
+            f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {x if x.isascii() else ''}"
+            for x, s in ((self.names[n], s) for n, s in self.described)
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
@@ -158,15 +165,32 @@ class Latex(Language):
 
     def rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
         """Rows of an output, its symmetry as the last one."""
-        letter = _LETTERS.get(output) or latex_names([output])[0]
-        letter = letter if letter.isalpha() or output in _LETTERS else f"{{{letter}}}"
+        letter = self.letter_of(output) or latex_names([output])[0]
+        letter = letter if letter.isalpha() or output in LETTERS else f"{{{letter}}}"
         separator = "," if max(array.shape, default=0) > 9 else ""
         rows = []
         for index, text in zip(array.index, texts, strict=True):
-            place = f"_{{{separator.join(str(i + 1) for i in index)}}}" if index else ""
-            rows.append(f"{letter}{place} &= {broken(text)}")
+            place = self._indexed(letter, output, [str(i + 1) for i in index], separator)
+            rows.append(f"{place} &= {broken(text)}")
         if not rows:
             rows.append(f"{letter} &= 0")
         if array.symmetry in _RULES:
-            rows.append(_RULES[array.symmetry].format(x=letter))
+            said = {x: self._indexed(letter, output, list(x), "") for x in ("ab", "ba", "abc", "acb", "cba")}
+            rows.append(_RULES[array.symmetry].format(**said))
         return rows
+
+    def letter_of(self, output: str) -> str | None:
+        """The letter of a quantity, unless a symbol has it."""
+        letter = LETTERS.get(output)
+        return None if letter in self.names and not self.program.outputs[output].shape else letter
+
+    @staticmethod
+    def _indexed(letter: str, output: str, index: Sequence[str], separator: str) -> str:
+        """A letter with indices above and below."""
+        up = RAISED.get(output, 0)
+        above, below = (separator.join(part) for part in (index[:up], index[up:]))
+        return letter + (f"^{{{above}}}" if above else "") + (f"_{{{below}}}" if below else "")
+
+
+def _argument(text: str) -> str:
+    return solid(OPENING + text + CLOSING)

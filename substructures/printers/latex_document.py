@@ -33,7 +33,7 @@ class LatexDocument(Latex):
         """Title, table of symbols, abbreviations, and a section for every output."""
         lines = [HEAD, rf"\section*{{{prose(name)}}}"]
         lines += [line for x in (self.remark, *self.legend) if x for line in (f"{prose(x)}.", "")]
-        if self.program.symbols:
+        if self.described:
             lines += [_TABLE, *self._symbols(), r"\end{longtable}"]
         return "\n".join([*lines, *self.formulas(listing), r"\end{document}"]) + "\n"
 
@@ -47,8 +47,8 @@ class LatexDocument(Latex):
 
     def _symbols(self) -> list[str]:
         return [
-            rf"${written}$ & {prose(s.name[:LONGEST])} & {s.kind} & {prose(s.unit[:LONGEST])} \\"
-            for written, s in zip(map(_shown, self.names), self.program.symbols, strict=True)
+            rf"${_shown(self.names[n])}$ & {prose(s.name[:LONGEST])} & {s.kind} & {prose(s.unit[:LONGEST])} \\"
+            for n, s in self.described
         ]
 
     def _sections(self, listing: Listing) -> list[tuple[str, list[str], list[str]]]:

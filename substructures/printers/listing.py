@@ -13,7 +13,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Operation, Program, operands
 from substructures.expr.replay import replay
 from substructures.expr.walk import reachable
-from substructures.printers.language import Language, Listing, Piece
+from substructures.printers.language import SUM, Language, Listing, Piece
 
 
 def check_size(size: int, limit: int) -> None:
@@ -98,6 +98,10 @@ def _operation(program: Program, language: Language, i: int, pieces: Mapping[int
         return language.number(Fraction(int(operation[1]), int(operation[2]) if op == "rat" else 1))
     if op == "powi":
         return language.power(pieces[operation[1]], operation[2])
+    if op == "neg" and pieces[operation[1]].precedence == SUM and program.operations[operation[1]][0] == "sub":
+        # b - a for -(a - b)
+        _, a, b = program.operations[operation[1]]
+        return language.sub(pieces[b], pieces[a])
     return language.pi() if _is_pi(program, i) else language.write(op, [pieces[x] for x in operation[1:]])
 
 

@@ -1,7 +1,7 @@
 """Presentation MathML in a page of XHTML: one ``<math>`` for every term of a sum, so that lines wrap.
 
 Elements of MathML Core only, which browsers draw without help: math, mrow, mi, mn, mo, mtext, mspace, msub, msup,
-mfrac, msqrt, mover.
+msubsup, mfrac, msqrt, mover.
 """
 
 from __future__ import annotations
@@ -15,13 +15,11 @@ from xml.sax.saxutils import escape
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
-from substructures.printers.names import comment, latex_names, prefix
+from substructures.printers.names import LETTERS, RAISED, comment, latex_names, prefix
 from substructures.printers.numbers import decimal_text
-from substructures.printers.symmetry import symmetry_rule
 
 #: before every term of a sum that stands in no parentheses or fraction
 TERM = "\x1f"
-_LETTERS = {"metric": "g", "christoffel": "&#x393;", "forces": "Q", "coriolis": "C"}
 _NAMED = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "log": "ln", "sign": "sgn"}
 _LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
 _UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
@@ -30,8 +28,10 @@ _CODES += [0x393, 0x394, 0x398, 0x39B, 0x39E, 0x3A0, 0x3A3, 0x3A5, 0x3A6, 0x3A8,
 _GREEK = dict(zip(f"{_LOWER} {_UPPER}".split(" "), (f"&#{code};" for code in _CODES), strict=True))
 _PART = re.compile(r"\\(d+)ot\{|\\math(?:rm|it|tt)\{([^}]*)\}|\\([A-Za-z]+)|([A-Za-z]+|[0-9]+)|(.)", re.DOTALL)
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
-<html xmlns="http://www.w3.org/1999/xhtml"><head><title>{title}</title><style>
-p {{ line-height: 2; }} math {{ font-size: 1.1em; }} td {{ padding-right: 2em; }}
+<html xmlns="http://www.w3.org/1999/xhtml"><head><title>{title}</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"/><style>
+:root {{ color-scheme: light dark; }}
+p {{ line-height: 2; padding-left: 2em; text-indent: -2em; }} math {{ font-size: 1.1em; }} td {{ padding-right: 2em; }}
 </style></head><body><h1>{title}</h1>
 {body}
 </body></html>
@@ -49,7 +49,24 @@ def operator(sign: str, between: bool = False) -> str:
 
 
 MINUS_SIGN = "&#x2212;"
-MINUS, DOT = operator(MINUS_SIGN), operator("&#xB7;")
+MINUS, DOT = f'<mo form="prefix">{MINUS_SIGN}</mo>', operator("&#xB7;")
+_EQUAL, _FOR = operator("="), '<mspace width="1em"/>'
+#: rules of symmetry
+_RULES = {
+    "symmetric": (f"{{ab}}{_EQUAL}{{ba}}",),
+    "christoffel": (
+        f"{{abc}}{_EQUAL}{{acb}}{operator(',')}",
+        f"{{cba}}{_EQUAL}{MINUS}{{abc}}{_FOR}<mi>b</mi>{operator('&#x2264;')}<mi>a</mi>",
+    ),
+}
+#: between factors: a thin space
+TIMES = '<mo lspace="0" rspace="0.17em">&#x2062;</mo>'
+#: parentheses between which lines may end
+OPENING, CLOSING = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
+#: names, numbers and signs of a formula that is broken before the signs of sums wherever they stand
+WIDE = 60
+#: in fractions they are smaller
+IN_FRACTION = 90
 
 
 class MathML(Language):
@@ -91,12 +108,12 @@ class MathML(Language):
         return Piece("<mi>&#x3C0;</mi>")
 
     def number(self, value: Fraction) -> Piece:
-        """An integer, a fraction, or a decimal number where that is exact and shorter."""
+        """An integer, a simple fraction, otherwise an exact decimal number where there is a short one."""
         if value < 0:
             return self.neg(self.number(-value))
         if value.denominator == 1:
             return Piece(f"<mn>{value.numerator}</mn>")
-        text = decimal_text(value) if value.denominator > 24 else None
+        text = decimal_text(value) if 12 % value.denominator else None
         if text:
             return Piece(f"<mn>{text}</mn>")
         return Piece(f"<mfrac><mn>{value.numerator}</mn><mn>{value.denominator}</mn></mfrac>", PRODUCT)
@@ -105,11 +122,16 @@ class MathML(Language):
         """mantissa * 10^exponent."""
         if not exponent:
             return Piece(f"<mn>{mantissa}</mn>")
-        power = f"<msup><mn>10</mn><mn>{exponent}</mn></msup>"
+        shown = f"<mn>{exponent}</mn>" if exponent > 0 else row(MINUS, f"<mn>{-exponent}</mn>")
+        power = f"<msup><mn>10</mn>{shown}</msup>"
+        if mantissa == "1":
+            return Piece(power, POWER)
         return Piece(f"<mn>{mantissa}</mn>{DOT}{power}", PRODUCT)
 
     def parentheses(self, text: str) -> str:
-        """Parentheses that grow with what they hold."""
+        """Parentheses that grow with what they hold, unless lines may end in it."""
+        if _is_wide(text):
+            return OPENING + text + CLOSING
         return row(operator("("), solid(text), operator(")"))
 
     def add(self, a: Piece, b: Piece) -> Piece:
@@ -129,32 +151,51 @@ class MathML(Language):
     def mul(self, a: Piece, b: Piece) -> Piece:
         """A thin space, or a dot before digits."""
         left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
-        sign = DOT if right.startswith(("<mn>", "<mfrac>")) else operator("&#x2062;")
+        sign = DOT if right.startswith(("<mn>", "<mfrac>")) else TIMES
+        # a line may end before what is broken
+        sign += TERM if right.startswith(OPENING) else ""
         return Piece(left + sign + right, PRODUCT)
 
     def div(self, a: Piece, b: Piece) -> Piece:
-        """A fraction."""
-        return Piece(f"<mfrac>{row(solid(a.text), '')}{row(solid(b.text), '')}</mfrac>", PRODUCT)
+        """A fraction; what is too wide for one is multiplied by it."""
+        above, below = row(solid(a.text), ""), row(solid(b.text), "")
+        if _is_wide(below, IN_FRACTION):
+            power = self.power(Piece(b.text, SUM), -1)
+            return power if a.text == self.number(Fraction(1)).text else self.mul(a, power)
+        if _is_wide(above, IN_FRACTION):
+            return self.mul(Piece(f"<mfrac><mn>1</mn>{below}</mfrac>", PRODUCT), a)
+        return Piece(f"<mfrac>{above}{below}</mfrac>", PRODUCT)
 
     def power(self, a: Piece, n: int) -> Piece:
         """An exponent."""
-        exponent = f"<mn>{n}</mn>" if n >= 0 else row(MINUS, f"<mn>{-n}</mn>")
-        return Piece(f"<msup>{row(self.inside(a, ATOM), '')}{exponent}</msup>", POWER)
+        return self._raised(a, f"<mn>{n}</mn>" if n >= 0 else row(MINUS, f"<mn>{-n}</mn>"))
+
+    def _raised(self, a: Piece, exponent: str) -> Piece:
+        """An exponent, at the closing parenthesis of what is broken."""
+        text = self.inside(a, ATOM)
+        if text.endswith(CLOSING):
+            return Piece(f"{text.removesuffix(CLOSING)}<msup>{CLOSING}{exponent}</msup>", POWER)
+        return Piece(f"<msup>{row(solid(text), '')}{exponent}</msup>", POWER)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
         """The exponent stands before the angle, which needs no parentheses as a single name."""
         head = f"<mi>{op}</mi>" if power == 1 else f"<msup><mi>{op}</mi><mn>{power}</mn></msup>"
-        text = '<mspace width="0.17em"/>' + angle.text if angle.precedence == ATOM else self.parentheses(angle.text)
+        text = '<mspace width="0.17em"/>' + angle.text if angle.precedence == ATOM else self._argument(angle.text)
         return Piece(row(head, operator("&#x2061;"), text), POWER)
 
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A root sign, bars of an absolute value, or the function's name."""
+        if op == "sqrt" and _is_wide(args[0].text):
+            return self._raised(Piece(args[0].text, SUM), row("<mn>1</mn>", operator("/"), "<mn>2</mn>"))
         if op == "sqrt":
             return Piece(f"<msqrt>{solid(args[0].text)}</msqrt>")
         if op == "abs":
             return Piece(row(operator("|"), solid(args[0].text), operator("|")))
         inner = operator(",").join(solid(a.text) for a in args)
-        return Piece(row(f"<mi>{self.functions.get(op, op)}</mi>", operator("&#x2061;"), self.parentheses(inner)))
+        return Piece(row(f"<mi>{self.functions.get(op, op)}</mi>", operator("&#x2061;"), self._argument(inner)))
+
+    def _argument(self, text: str) -> str:
+        return row(operator("("), solid(text), operator(")"))
 
     def finished(self, text: str) -> str:
         """A formula as one element."""
@@ -163,7 +204,8 @@ class MathML(Language):
     def render(self, listing: Listing, name: str) -> str:
         """A page: what the symbols are, then a paragraph for every element."""
         lines = [f"<p>{escape(comment(x))}</p>" for x in (self.remark, *self.legend) if x]
-        lines += ["<table>", *map(self._described, range(len(self.names))), "</table>"] if self.names else []
+        described = [self._described(n) for n, _ in self.described]
+        lines += ["<table>", *described, "</table>"] if described else []
         return PAGE.format(title=escape(comment(name)), body="\n".join([*lines, *self.formulas(listing)]))
 
     def formulas(self, listing: Listing) -> list[str]:
@@ -184,20 +226,43 @@ class MathML(Language):
         return f"<tr><td>{self.finished(self.names[n])}</td>{words}</tr>"
 
     def _output(self, output: str, array: Output, texts: Sequence[str]) -> list[str]:
-        letter = f"<mi>{_LETTERS[output]}</mi>" if output in _LETTERS else f"<mtext>{escape(comment(output))}</mtext>"
-        said = f"Indices from 1; {symmetry_rule(array.symmetry, comment(output))}." if array.shape else ""
-        lines = [f"<h2>{escape(comment(output))}</h2><p>{escape(said)}</p>"]
+        latex = LETTERS.get(output) or latex_names([output])[0]
+        letter = f"<mtext>{escape(comment(output))}</mtext>" if latex.startswith(r"\mathtt") else named(latex)
+        lines = [f"<h2>{escape(comment(output))}</h2>"]
+        lines += ["<p>Indices from 1; elements that are not listed are 0.</p>"] if array.shape else []
         separator = "," if max(array.shape, default=0) > 9 else ""
         for index, text in zip(array.index, texts, strict=True):
-            place = separator.join(str(i + 1) for i in index)
-            lines.append(self._line(f"<msub>{letter}<mn>{place}</mn></msub>" if place else letter, text))
-        return lines if texts else [*lines, self._line(letter, "<mn>0</mn>")]
+            lines.append(self._line(_indexed(letter, output, [f"<mn>{i + 1}</mn>" for i in index], separator), text))
+        lines += [] if texts else [self._line(letter, "<mn>0</mn>")]
+        rules = [self.finished(rule.format(**_indices(letter, output))) for rule in _RULES.get(array.symmetry, ())]
+        return [*lines, f"<p>{'<wbr/>'.join(rules)}</p>"] if rules else lines
 
     def _line(self, left: str, text: str) -> str:
         """One element; every term is a formula of its own."""
         first, *others = text.split(TERM)
         terms = [left + operator("=") + first, *others]
-        return "<p>" + "\n".join(self.finished(term) for term in terms) + "</p>"
+        return "<p>" + "<wbr/>".join(self.finished(term) for term in terms) + "</p>"
+
+
+def _indexed(letter: str, output: str, index: Sequence[str], separator: str = "") -> str:
+    """A letter with indices above and below."""
+    up, between = RAISED.get(output, 0), operator(separator) if separator else ""
+    above, below = (row(between.join(part), "") if part else "" for part in (index[:up], index[up:]))
+    if above and below:
+        return f"<msubsup>{letter}{below}{above}</msubsup>"
+    tag = "msup" if above else "msub"
+    return f"<{tag}>{letter}{above or below}</{tag}>" if index else letter
+
+
+def _indices(letter: str, output: str) -> dict[str, str]:
+    """A quantity with letters for indices."""
+    found = ("ab", "ba", "abc", "acb", "cba")
+    return {x: _indexed(letter, output, [f"<mi>{i}</mi>" for i in x]) for x in found}
+
+
+def _is_wide(text: str, limit: int = WIDE) -> bool:
+    found = text.count("<mi") + text.count("<mn") + text.count("<mo")
+    return found - text.count(TIMES) - text.count("&#x2061;") > limit
 
 
 def solid(text: str) -> str:
@@ -221,8 +286,10 @@ def _pieces(latex: str) -> list[str]:
     """Letters, numbers and signs of a name."""
     found = []
     for _, upright, command, plain, sign in _PART.findall(latex):
-        word = upright or _GREEK.get(command, command) or plain
-        if word:
+        word = upright or _GREEK.get(command, command)
+        if plain:
+            found += [f"<mi>{c}</mi>" for c in plain] if plain.isalpha() else [f"<mn>{plain}</mn>"]
+        elif word:
             found.append(f"<mn>{word}</mn>" if word.isdigit() else f"<mi>{word}</mi>")
         elif sign in ",":
             found.append(operator(","))

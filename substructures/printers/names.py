@@ -15,8 +15,26 @@ _PIECE = re.compile(r"([A-Za-z]+)([0-9]*)((?:_[A-Za-z0-9]+)*)", re.ASCII)
 _INDEX = re.compile(r"[a-zA-Z]{0,2}[0-9]*", re.ASCII)
 _LOWER = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi"
 _UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
-#: first parts of the names of quantities that belong to coordinates: forces and momenta
-_OF_COORDINATES = ("tau", "p")
+#: first parts of the names of quantities that belong to coordinates, forces and momenta, and their letters
+_OF_COORDINATES = {"tau": "tau", "p": "p", "momentum": "p"}
+#: those of quantities that belong to axes
+_OF_AXES = {"linear_momentum": "p", "angular_momentum": "L"}
+#: letters of quantities in LaTeX
+LETTERS = {
+    "metric": "g",
+    "christoffel": r"\Gamma",
+    "forces": "Q",
+    "coriolis": "C",
+    "forward_dynamics": r"\ddot{q}",
+    "inverse_metric": "g",
+    "christoffel_second": r"\Gamma",
+    "riemann": "R",
+    "ricci": "R",
+    "scalar_curvature": "R",
+    "energy": "E",
+}
+#: how many of the first indices stand above
+RAISED = {"inverse_metric": 2, "christoffel_second": 1}
 GREEK = frozenset(_LOWER.split()) | frozenset(_UPPER.split())
 MAX_COMMENT = 200
 
@@ -101,7 +119,9 @@ def _latex_name(name: str) -> str:
     if len(owners) > 1 and owners[0] in _OF_COORDINATES:
         # a force is no coordinate: tau_{arm,1}, not q_{tau,arm,1}
         quantity, *owners = owners
-        base, digits = _base(quantity), digits if letters == "q" and digits else letters + digits
+        base, digits = _base(_OF_COORDINATES[quantity]), digits if letters == "q" and digits else letters + digits
+    elif len(owners) == 1 and owners[0] in _OF_AXES and not primes:
+        base, digits, owners = _OF_AXES[owners[0]], letters + digits, []
     inner = [digits] if _INDEX.fullmatch(digits) else [_subscript(digits)]
     subscripts = [*map(_subscript, owners), *filter(None, inner), *map(_subscript, rest.split("_")[1:])]
     return f"{base}_{{{','.join(subscripts)}}}" if subscripts else base

@@ -15,15 +15,31 @@ BREAK, OPENING, CLOSING = "\x1f", "\x1e", "\x1d"
 LINE = 365.0
 
 _SIGN = re.compile(r"\\[A-Za-z]+|\\.|.", re.DOTALL)
-_FACTOR, _SIGNS = re.compile(r"\\[A-Za-z]+|\\.|[{}]", re.DOTALL), (r"\,", r"\cdot")
+_FACTOR, _SIGNS = re.compile(r"\\[A-Za-z]+|\\.|[{}()]", re.DOTALL), (r"\,", r"\cdot")
+_MARKS = re.compile(f"([{OPENING}{CLOSING}])")
 _COMMANDS = {r"\,": 1.7, r"\cdot": 7.2, r"\quad": 10.0, r"\\": 0.0, r"\ ": 4.0, r"\_": 5.0}
-_SILENT = "left right bigl bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
+_SILENT = "left right bigl bigr Bigl Bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
 _INVISIBLE = frozenset("\\" + name for name in _SILENT.split(" "))
 
 
 def solid(text: str) -> str:
     """A formula on one line."""
-    return text.replace(BREAK, " ").replace(OPENING, r"\left(").replace(CLOSING, r"\right)")
+    return sized(text.replace(BREAK, " "), r"\left(", r"\right)")
+
+
+def sized(text: str, opening: str = r"\Bigl(", closing: str = r"\Bigr)") -> str:
+    """Parentheses instead of their marks: somewhat larger around others, and those given around what is high."""
+    parts, starts = list[str](), list[int]()
+    for part in _MARKS.split(text):
+        if part == OPENING:
+            starts.append(len(parts))
+        if part == CLOSING and starts:
+            start = starts.pop()
+            inner = "".join(parts[start + 1 :])
+            pair = (r"\bigl(", r"\bigr)") if "(" in inner else ("(", ")")
+            parts[start], part = (opening, closing) if r"\frac" in inner or r"\sqrt" in inner else pair
+        parts.append(part)
+    return "".join(parts)
 
 
 def broken(text: str) -> str:
@@ -41,8 +57,7 @@ def broken(text: str) -> str:
                 at = _end(lines[-1])
                 lines[-1:] = [lines[-1][:at], lines[-1][at:]]
     # parentheses that grow cannot be broken
-    whole = " \\\\\n&\\quad ".join(map(_joined, lines))
-    return whole.replace(OPENING, r"\bigl(").replace(CLOSING, r"\bigr)")
+    return sized(" \\\\\n&\\quad ".join(map(_joined, lines)))
 
 
 class _Piece(NamedTuple):
@@ -69,17 +84,17 @@ def _factors(text: str) -> list[tuple[str, str]]:
     for match in _FACTOR.finditer(text):
         token = match.group()
         if token in _SIGNS and depth == 0:
-            found.append((sign, text[start : match.start()].strip()))
+            found.append((sign, text[start : match.start()].strip(" ")))
             sign, start = token, match.end()
-        depth += (token in ("{", r"\left")) - (token in ("}", r"\right"))
-    return [*found, (sign, text[start:].strip())]
+        depth += (token in ("{", "(")) - (token in ("}", ")"))
+    return [*found, (sign, text[start:].strip(" "))]
 
 
 def _end(line: list[_Piece]) -> int:
     """Which piece of a line that is too long begins the next one: inside of few parentheses, and late."""
     best, filled = len(line) - 1, 0.0
     for n, piece in enumerate(line):
-        if n and filled > LINE * 0.4 and (*_cost(piece), -n) < (*_cost(line[best]), -best):
+        if n and filled > LINE * 0.15 and (*_cost(piece), -n) < (*_cost(line[best]), -best):
             best = n
         filled += piece.width
     return best
@@ -117,4 +132,5 @@ def _glyph(sign: str) -> float:
         return 12.5
     if sign.isupper() or sign in "mw":
         return 8.5
-    return 0.0 if sign.isspace() else 4.6 if sign in OPENING + CLOSING + "(),." else 5.5
+    # marks are white space to Python
+    return 4.6 if sign in OPENING + CLOSING + "(),." else 0.0 if sign.isspace() else 5.5

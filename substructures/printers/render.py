@@ -93,7 +93,8 @@ def name_steps(language: Language, glossary: Program | None) -> None:
     """Let the language call quantities what they are, and say what the letters mean."""
     if glossary is None or not language.is_for_people or len(language.program.reachable()) < NAMED:
         return
-    taken = {symbol.name for symbol in language.program.symbols}
+    # c2 of an instance is not c2 = cos(q2), either
+    taken = {name for s in language.program.symbols for name in (s.name, s.name.rpartition(".")[2])}
     found = {i: label for i, label in meanings(language.program, glossary).items() if label.text not in taken}
     language.meanings = found
     used = {label.letter for label in found.values()}
@@ -136,6 +137,7 @@ class _Said:
         """The listing with what symbols stand for, in the names of the language. Raises TooLarge."""
         if not self.own or not self.own.program.outputs:
             return listing
+        language.occurring = None
         spoken = language.program.symbols
         names = {s.name: other.name for s, other in zip(self.program.symbols, spoken, strict=True)}
         found = defined(replace(self.defining, symbols=spoken), names, language, self.limit)

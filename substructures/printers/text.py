@@ -10,9 +10,6 @@ from substructures.printers.names import comment, formula_name, prefix
 from substructures.printers.numbers import decimal_text
 from substructures.printers.symmetry import symmetry_rule
 
-#: denominators up to this one are written as fractions, larger ones as decimals where these are exact and short
-_FRACTIONS = 24
-
 
 class Text(Language):
     """Text. Indices count from 1."""
@@ -34,8 +31,8 @@ class Text(Language):
         return Piece(f"{self.prefix}{n}")
 
     def number(self, value: Fraction) -> Piece:
-        """A fraction of small numbers, otherwise an exact decimal number where there is a short one."""
-        if value > 0 and value.denominator > _FRACTIONS:
+        """A simple fraction, otherwise an exact decimal number where there is a short one."""
+        if value > 0 and 12 % value.denominator:
             text = decimal_text(value)
             if text is not None:
                 return Piece(text)
@@ -44,9 +41,7 @@ class Text(Language):
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
         lines = [f"# {comment(x)}" for x in (name, self.remark, *self.legend) if x]
-        lines += [
-            f"# {n} is {s.kind} [{comment(s.unit)}]" for n, s in zip(self.names, self.program.symbols, strict=True)
-        ]
+        lines += [f"# {self.names[n]} is {s.kind} [{comment(s.unit)}]" for n, s in self.described]
         for name, text, note in listing.definitions:
             lines += [f"# {name} stands for {comment(note)}"] if note else []
             lines.append(f"{name} = {text}")

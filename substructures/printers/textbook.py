@@ -13,10 +13,14 @@ from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.listing import check_size
 from substructures.textbook import LIMITS, Limits, Reading, Sum, Term, Trig, read
-from substructures.textbook.forms import leaves
+from substructures.textbook.forms import atoms_of, leaves
 
-#: cosines and sines beyond which c12 is written for cos(q1 + q2)
-SPELLED_OUT = 24
+#: so many angles q1, q2, ..., and c12 is written for cos(q1 + q2); parameters decide nothing, so that one more of them
+#: leaves the other lines as they are
+ABBREVIATED = 4
+#: factors and numbers of a function that has a name where it is used more than once
+REPEATED = 6
+_ANGLE = re.compile(r"q([0-9])", re.ASCII)
 
 
 def textbook(program: Program, language: Language, limit: int, limits: Limits = LIMITS) -> Listing:
@@ -33,14 +37,17 @@ class TextbookTerms:
         """Raises TooLarge, and ZeroDivisionError."""
         self.reading = read(program, limits)
         check_size(self.reading.size, limit)
-        self._short = _abbreviations(program, self.reading) if abbreviates else {}
-        self._writer = TextbookWriter(program, language, self.reading)
-        named = tuple(
-            (language.abbreviation(t.op, n).text, self._writer.trig(t, 1).text) for t, n in self._short.items()
-        )
-        self._writer.short = self._short
+        short = _abbreviations(program, self.reading) if abbreviates else {}
+        repeated = _repeated(self.reading) if abbreviates else []
+        named = {f: language.temporary(n) for n, f in enumerate(repeated, 1)}
+        self._writer = TextbookWriter(program, language, self.reading, short, named)
+        before = [(language.abbreviation(t.op, n).text, self._writer.spelled_out(t)) for t, n in short.items()]
+        before += [(piece.text, self._writer.formulas[f].text) for f, piece in named.items()]
         entries = {name: tuple(self._writer.sum(f).text for f in some) for name, some in self.reading.outputs.items()}
-        self.listing = Listing((), entries, named)
+        self.listing = Listing((), entries, tuple(before))
+        # symbols that cancelled are in none of the forms
+        symbols = {str(a.value) for a in atoms_of(self.reading.forms) if a.op == "sym"}
+        language.occurring = frozenset(n for n, s in enumerate(program.symbols) if s.name in symbols)
 
     def text(self, term: Term) -> str:
         """A term with its sign, in the names of the listing."""
@@ -54,10 +61,10 @@ def textbook_inlined(program: Program, language: Language, limit: int) -> Listin
 
 def _abbreviations(program: Program, reading: Reading) -> dict[Trig, str]:
     """Digits of the names of cosines and sines, c12 for cos(q1 + q2); none where a symbol has such a name."""
-    counts = Counter(leaf for form in reading.forms for leaf in leaves(form) if isinstance(leaf, Trig))
-    if sum(counts.values()) <= SPELLED_OUT:
+    if sum(s.kind == "coordinate" and _ANGLE.fullmatch(s.name) is not None for s in program.symbols) < ABBREVIATED:
         return {}
-    digits = {t: d for t, n in counts.items() if n > 1 and (d := _digits(t)) is not None}
+    used = {leaf for form in reading.forms for leaf in leaves(form) if isinstance(leaf, Trig)}
+    digits = {t: d for t in used if (d := _digits(t)) is not None}
     names = {t.op[0] + d for t, d in digits.items()}
     if names & {s.name for s in program.symbols} or len(names) < len(digits):
         return {}
@@ -66,20 +73,38 @@ def _abbreviations(program: Program, reading: Reading) -> dict[Trig, str]:
 
 def _digits(trig: Trig) -> str | None:
     """The digits of a sum of coordinates q1, q2, ..."""
-    found = [re.fullmatch(r"q([0-9])", str(a.value), re.ASCII) if c == 1 else None for a, c in trig.angle]
+    found = [_ANGLE.fullmatch(str(a.value)) if c == 1 else None for a, c in trig.angle]
     return "".join(m.group(1) for m in found if m) if all(found) else None
 
 
-class TextbookWriter:
-    """Writes textbook forms; ``short`` are the cosines and sines that have names."""
+def _repeated(reading: Reading) -> list[Expr]:
+    """Functions of long sums that are used more than once: a length that forces are divided by."""
+    counts = Counter(leaf for form in reading.forms for leaf in leaves(form) if isinstance(leaf, Expr))
+    return [f for f in reading.inside_out if counts[f] > 1 and sum(map(len, reading.functions[f])) >= REPEATED]
 
-    def __init__(self, program: Program, language: Language, reading: Reading) -> None:
-        self.language, self.reading = language, reading
+
+class TextbookWriter:
+    """Writes textbook forms; ``short`` are the cosines and sines that have names, ``named`` the functions.
+
+    ``formulas``: of all functions.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        language: Language,
+        reading: Reading,
+        short: Mapping[Trig, str],
+        named: Mapping[Expr, Piece],
+    ) -> None:
+        self.language, self.reading, self.short = language, reading, short
         self.number = {s.name: n for n, s in enumerate(program.symbols)}
-        self.short: Mapping[Trig, str] = {}
         self.atoms: dict[Expr, Piece] = {}
+        self.formulas: dict[Expr, Piece] = {}
         for function in reading.inside_out:
-            self.atoms[function] = language.write(function.op, [self.sum(f) for f in reading.functions[function]])
+            written = language.write(function.op, [self.sum(f) for f in reading.functions[function]])
+            self.formulas[function] = written
+            self.atoms[function] = named.get(function, written)
 
     def _atom(self, node: Expr) -> Piece:
         if node.op == "sym":
@@ -124,9 +149,16 @@ class TextbookWriter:
 
     def trig(self, trig: Trig, n: int) -> Piece:
         """A power of a cosine or sine, by its short name if it has one."""
-        if trig in self.short:
-            piece = self.language.abbreviation(trig.op, self.short[trig])
-            return piece if n == 1 else self.language.power(piece, n)
+        if trig not in self.short:
+            return self._called(trig, n)
+        piece = self.language.abbreviation(trig.op, self.short[trig])
+        return piece if n == 1 else self.language.power(piece, n)
+
+    def spelled_out(self, trig: Trig) -> str:
+        """A cosine or sine without its short name."""
+        return self._called(trig, 1).text
+
+    def _called(self, trig: Trig, n: int) -> Piece:
         angle = self._signed((c < 0, self._multiple(abs(c), a)) for a, c in trig.angle)
         return self.language.trig(trig.op, angle, n)
 

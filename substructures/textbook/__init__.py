@@ -8,7 +8,8 @@ follows from the function alone, never from how it was computed:
    angles, of what every monomial of parameters is multiplied by;
 3. :mod:`~substructures.textbook.collect` gathers parameters: masses by what they are multiplied with;
 4. :mod:`~substructures.textbook.layout` puts both together, and :mod:`~substructures.textbook.quotients` factors what
-   is divided;
+   is divided, with numbers as they were given (:mod:`~substructures.textbook.scales`), and leaves
+   determinants as products but for one term (:mod:`~substructures.textbook.products`);
 5. :mod:`~substructures.textbook.reading` does it for all outputs of a program.
 
 A form equals the stored formula wherever both have values: common factors of numerator and denominator are gone.

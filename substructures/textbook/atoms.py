@@ -51,6 +51,11 @@ class Atoms:
             return NUMBER
         return MOVING if MOVING in ranks else PARAMETER
 
+    def is_rate(self, atom: Expr) -> bool:
+        """Whether it changes with velocities, accelerations or time, or is a function of what moves."""
+        is_place = atom.op == "sym" and self.symbols[str(atom.value)].kind == "coordinate"
+        return self.ranks[self.place[atom]] == MOVING and not is_place
+
     def split(self, monomial: Monomial) -> tuple[Monomial, Monomial]:
         """What is constant, and what moves."""
         at_rest = tuple((i, n) for i, n in monomial if self.ranks[i] != MOVING)
@@ -87,7 +92,7 @@ def _name(expr: Expr) -> Any:
     if expr.op == "sym":
         name = str(expr.value)
         return 0, natural(name.rpartition(".")[2]), natural(name)
-    return 1, natural(expr.op), tuple(_name(e) for e in reachable([expr]) if e.op == "sym"), expr.index
+    return 1, natural(expr.op), tuple(sorted(_name(e) for e in reachable([expr]) if e.op == "sym")), expr.index
 
 
 def monomial_key(monomial: Monomial) -> tuple[Any, ...]:

@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
+from math import isqrt
 from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from substructures.textbook.collect import is_fraction
 from substructures.textbook.exponentials import Complex, harmonics_of, spread, tangent
 from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest
 
@@ -43,9 +45,21 @@ def factors(waves: Waves) -> Factors:
             scale = form[0][0] if len({abs(c) for c, _ in form}) == 1 else Fraction(-1 if form[0][0] < 0 else 1)
             value *= scale ** int(n)
             found.append((tuple((c / scale, some) for c, some in form), int(n)))
+    if not all(is_fraction(c / waves[0][0]) for c, _ in waves):
+        # numbers as given: 0.2*cos(q) + 0.1*sin(q), not a tenth of 2*cos(q) + sin(q)
+        root = _root(value, found[0][1]) if len(found) == 1 else None
+        if root is None:
+            return whole
+        value, found = Fraction(1), [(tuple((c * root, some) for c, some in found[0][0]), found[0][1])]
     if any(degrees) or sum(3 + cost(form) for form, _ in found) >= 3 + cost(waves):
         return whole
     return value, tuple(sorted(found, key=lambda item: (cost(item[0]), item)))
+
+
+def _root(value: Fraction, n: int) -> Fraction | None:
+    """The square root of a number, where it has one."""
+    above, below = isqrt(max(value.numerator, 0)), isqrt(value.denominator)
+    return Fraction(above, below) if n == 2 and value == Fraction(above**2, below**2) else None
 
 
 def _polynomial(waves: Waves, angles: Sequence[Mode], degrees: Sequence[int]) -> Any:

@@ -8,22 +8,24 @@ whichever is shorter.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 from substructures.expr.graph import Expr
-from substructures.textbook.atoms import Atoms, Monomial, monomial_key, times
-from substructures.textbook.collect import Collector, common_number, factored
+from substructures.textbook.atoms import INPUT, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
+from substructures.textbook.collect import Collector, common_number, content, factored, is_fraction, length
 from substructures.textbook.factors import factors
-from substructures.textbook.forms import Factor, Sum, Term, Trig, product
-from substructures.textbook.harmonics import Harmonics, Mode, Wave, Waves, normal, shortest, wave_key
+from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
+from substructures.textbook.harmonics import Harmonics, Mode, Wave, Waves, angle_key, normal, shortest, wave_key
 
 #: monomial of all atoms -> harmonics of the angles
 Content = Mapping[Monomial, Harmonics]
 #: what moves: powers of moving atoms, and of cosines and sines
 Motion = tuple[Monomial, tuple[Wave, ...]]
+#: by monomial of what is constant the sum that it is multiplied by
+Functions = dict[Monomial, dict[Motion, Fraction]]
 
 
 @lru_cache(maxsize=20_000)
@@ -39,14 +41,128 @@ class Layout:
         self.collect = Collector(atoms)
 
     def __call__(self, found: Content) -> Sum:
-        """The textbook form of a sum."""
-        functions: dict[Monomial, dict[Motion, Fraction]] = {}
+        """The textbook form of a sum, over a common divisor if that is shorter: (a + b)/c for a/c + b/c."""
+        form = self._apart(found)
+        below: dict[int, int] = {}
+        for i, n in (item for monomial in found for item in monomial):
+            if n < min(below.get(i, 0), 0) and self.atoms.ranks[i] < INPUT:
+                below[i] = n
+        if not below or len(found) < 2:
+            return form
+        divisor = tuple(sorted(below.items()))
+        whole = self._apart({times(m, divisor, -1): harmonics for m, harmonics in found.items()})
+        return min(form, Sum((product(Fraction(1), [(whole, 1), *self.atoms.factors(divisor)]),)), key=len)
+
+    def _apart(self, found: Content) -> Sum:
+        """What is quadratic in rates is added to the rest; (w + q')^2 stays whole."""
+        slow = {m: h for m, h in found.items() if self._rates(m) < 2}
+        fast = {m: h for m, h in found.items() if m not in slow}
+        if not slow or not fast:
+            return self._gathered(found)
+        apart = Sum((*self._gathered(slow).terms, *self._gathered(fast).terms))
+        if not any(self._rates(m) == 1 for m in slow):
+            return apart
+        whole = self._gathered(found)
+        squares = [f for t in whole.terms for f, n in t.factors if n > 1 and isinstance(f, Sum) and self._is_rate(f)]
+        is_mixed = any(not self._is_rate(Sum((t,))) for square in squares for t in square.terms)
+        return min(whole, apart, key=length) if is_mixed else apart
+
+    def _rates(self, monomial: Monomial) -> int:
+        return sum(n for i, n in monomial if self.atoms.is_rate(self.atoms.exprs[i]))
+
+    def _gathered(self, found: Content) -> Sum:
+        functions: Functions = {}
         for monomial, harmonics in found.items():
             constant, moving = self.atoms.split(monomial)
             for c, waves in _shortest(tuple(sorted(normal(harmonics).items()))):
                 functions.setdefault(constant, {})[moving, waves] = c
-        forms = [self._by_motion(functions), self._by_function(functions)]
-        return min(forms, key=len)
+        return self._with_fractions(self._best(functions))
+
+    def _best(self, functions: Functions) -> Sum:
+        """The shortest of gathered by motion, by functions, by cosines and sines, and by rates."""
+        moving = {i for function in functions.values() for places, _ in function for i, _ in places}
+        # of equal lengths C*(p' + cos(q)*r') with rates, else term by term
+        key = length if any(self.atoms.is_rate(self.atoms.exprs[i]) for i in moving) else len
+        best = min([self._by_motion(functions), self._by_function(functions)], key=key)
+        if moving:
+            best = min([best, self._by_waves(functions), self._by_rates(functions)], key=length)
+        return best
+
+    def _by_rates(self, functions: Functions) -> Sum:
+        """What rates are multiplied by: (I + J*cos(q)^2)*q'."""
+        groups: dict[Monomial, Functions] = {}
+        for constant, function in functions.items():
+            for (moving, waves), c in function.items():
+                rates = tuple((i, n) for i, n in moving if self.atoms.is_rate(self.atoms.exprs[i]))
+                inner = groups.setdefault(rates, {}).setdefault(constant, {})
+                inner[times(moving, rates, -1), waves] = c
+        if len(groups) < 2:
+            return self._by_motion(functions)
+        terms: list[Term] = []
+        for rates, some in sorted(groups.items(), key=lambda item: monomial_key(item[0])):
+            if not rates:
+                terms += self._best(some).terms
+                continue
+            number, common = content({m: common_number(f.values()) for m, f in some.items()})
+            form = self._best({times(m, common, -1): _over_number(f, number) for m, f in some.items()})
+            factors: list[tuple[Factor, int]] = [*self.atoms.factors(common), (form, 1)]
+            terms.append(product(number, [*self.collect.in_order(factors), *self.atoms.factors(rates)]))
+        return Sum(tuple(terms))
+
+    def _with_fractions(self, form: Sum) -> Sum:
+        """A - 1/2*C for 1/2*(2*A - C), in sums of what does not move."""
+        return Sum(tuple(map(self._fraction_inside, form.terms)))
+
+    def _fraction_inside(self, term: Term) -> Term:
+        c, new = term.coefficient, list[tuple[Factor, int]]()
+        for factor, n in term.factors:
+            if isinstance(factor, Sum):
+                below = c.denominator
+                whole = [t.coefficient % below == 0 for t in factor.terms]
+                if below > 1 and is_fraction(c) and n == 1 and any(whole) and not self._moves(factor):
+                    c *= below
+                    factor = Sum(tuple(t.scaled(Fraction(1, below)) for t in factor.terms))
+                factor = self._with_fractions(factor)
+            new.append((factor, n))
+        return Term(c, tuple(new))
+
+    def _moves(self, form: Sum) -> bool:
+        return any(isinstance(x, Trig) or self.atoms.ranks[self.atoms.place[x]] == MOVING for x in leaves(form))
+
+    def _by_waves(self, functions: Mapping[Monomial, Mapping[Motion, Fraction]]) -> Sum:
+        """What cosines and sines are multiplied by is factored as a whole: m*(l + q)^2*cos(p)."""
+        groups: dict[Motion, dict[Monomial, Fraction]] = {}
+        for constant, function in functions.items():
+            for (moving, waves), c in function.items():
+                outside = tuple((i, n) for i, n in moving if self.atoms.exprs[i].args)
+                key = times(times(constant, moving), outside, -1)
+                groups.setdefault((outside, waves), {})[key] = c
+        terms: list[Term] = []
+        for motion, polynomial in sorted(groups.items(), key=lambda item: _motion_key(item[0])):
+            found = self.collect.factored(polynomial)
+            below = found.coefficient.denominator
+            if below > 1 and any(c.denominator != below for c in polynomial.values()):
+                # a*q/3 + a*q^2/2 is no sixth of a sum
+                return self._by_motion(functions)
+            if motion == ((), ()):
+                terms += self.collect(polynomial).terms
+                continue
+            first = [f for f in found.factors if not self._is_rate(f[0])]
+            rates = [f for f in found.factors if self._is_rate(f[0])]
+            terms.append(product(found.coefficient, [*first, *self._moved(motion), *rates]))
+        return Sum(tuple(terms))
+
+    def _is_rate(self, factor: Factor) -> bool:
+        """Whether it is a rate, or a sum with rates."""
+        if isinstance(factor, Sum):
+            return any(map(self._is_rate, leaves(factor)))
+        return not isinstance(factor, Trig) and self.atoms.is_rate(factor)
+
+    def _moved(self, motion: Motion) -> list[tuple[Factor, int]]:
+        """Places, then cosines and sines, then rates: s*cos(q)*s'."""
+        moving = self.atoms.factors(motion[0])
+        places = [f for f in moving if not self._is_rate(f[0])]
+        return [*places, *self._waves(motion[1]), *(f for f in moving if self._is_rate(f[0]))]
 
     def _by_motion(self, functions: Mapping[Monomial, Mapping[Motion, Fraction]]) -> Sum:
         groups: dict[Motion, dict[Monomial, Fraction]] = {}
@@ -80,19 +196,53 @@ class Layout:
         if len(polynomial) == 1 and polynomial.get((), Fraction(0)) in (1, -1) and [n for _, n in inner] == [1]:
             return [t.scaled(polynomial[()]) for t in self._function(function).terms]
         constant = self.collect.factored(polynomial)
-        factors: list[tuple[Factor, int]] = [*constant.factors, *self._waves(waves_), *self.atoms.factors(moving_)]
-        return [product(constant.coefficient * number, [*factors, *inner])]
+        return [product(constant.coefficient * number, [*constant.factors, *self._moved((moving_, waves_)), *inner])]
 
     def _split(self, function: Mapping[Motion, Fraction]) -> tuple[Fraction, list[tuple[Factor, int]]]:
         """A number, and factors of a function with their powers: a polynomial in velocities is factored."""
         if not any(moving for moving, _ in function):
             whole = tuple((c, waves) for (_, waves), c in sorted(function.items(), key=lambda i: _motion_key(i[0])))
             value, found = factors(whole)
-            return value, [(self._function({((), w): c for c, w in part}), n) for part, n in found]
-        if any(waves for _, waves in function):
-            return Fraction(1), [(self._function(function), 1)]
-        number, parts = factored({moving: c for (moving, _), c in function.items()}, Fraction(1))
-        return number, [(self._function({(m, ()): c for m, c in part.items()}), n) for part, n in parts]
+            parts_: list[tuple[Waves, int]] = []
+            for part, n in found:
+                c, simple = _simple(part)
+                value *= c**n
+                parts_.append((simple, n))
+            return value, self._products(parts_)
+        trigs = sorted({(op, k) for _, waves in function for op, k, _ in waves})
+        below = len(self.atoms.exprs)
+        place = {trig: below + n for n, trig in enumerate(trigs)}
+        # cosines and sines as further atoms
+        polynomial = {
+            tuple(sorted((*moving, *((place[op, k], n) for op, k, n in waves)))): c
+            for (moving, waves), c in function.items()
+        }
+        number, parts = factored(polynomial, Fraction(1))
+        return number, [(self._function(dict(self._motions(part, trigs))), n) for part, n in parts]
+
+    def _motions(self, part: Polynomial, trigs: Sequence[tuple[str, Mode]]) -> Iterator[tuple[Motion, Fraction]]:
+        """Terms with cosines and sines behind the other atoms."""
+        below = len(self.atoms.exprs)
+        order = sorted(range(len(trigs)), key=lambda i: (angle_key(trigs[i][1]), trigs[i][0] == "cos"))
+        for monomial, c in part.items():
+            powers = dict(monomial)
+            waves = tuple((*trigs[i], powers[below + i]) for i in order if below + i in powers)
+            yield (tuple((i, n) for i, n in monomial if i < below), waves), c
+
+    def _products(self, parts: Sequence[tuple[Waves, int]]) -> list[tuple[Factor, int]]:
+        """Factors; 1 - x^2 for (1 - x)*(1 + x)."""
+        if [n for _, n in parts] == [1, 1]:
+            one, other = ({w: c for c, w in part} for part, _ in parts)
+            rest = {w: c for w, c in one.items() if w}
+            if one.get(()) == other.get(()) and () in one and other == {(): one[()]} | {w: -c for w, c in rest.items()}:
+                whole = tuple((c, w) for w, c in rest.items())
+                sign, x = _simple(tuple(sorted(whole, key=lambda item: _motion_key(((), item[1])))))
+                square = Term(-(sign**2), ((self._wave_sum(x), 2),))
+                return [(Sum((Term(one[()] ** 2), square)), 1)]
+        return [(self._wave_sum(part), n) for part, n in parts]
+
+    def _wave_sum(self, waves: Waves) -> Sum:
+        return self._function({((), w): c for c, w in waves})
 
     def _common(self, function: Mapping[Motion, Fraction]) -> Motion:
         """The powers that all terms of a function have."""
@@ -106,13 +256,28 @@ class Layout:
 
     def _function(self, function: Mapping[Motion, Fraction]) -> Sum:
         items = sorted(function.items(), key=lambda item: _motion_key(item[0]))
-        return Sum(tuple(Term(c, (*self._waves(waves), *self.atoms.factors(moving))) for (moving, waves), c in items))
+        return Sum(tuple(Term(c, tuple(self._moved(motion))) for motion, c in items))
 
     def _waves(self, waves: Iterable[Wave]) -> list[tuple[Trig, int]]:
         return [(Trig(op, self._angle(k)), n) for op, k, n in waves]
 
     def _angle(self, k: Mode) -> tuple[tuple[Expr, Fraction], ...]:
         return tuple((a, n * u) for a, n, u in zip(self.angles, k, self.units, strict=True) if n)
+
+
+def _simple(waves: Waves) -> tuple[Fraction, Waves]:
+    """A number and a factor that begins with a positive term; cos(2*q) for 1 - 2*sin(q)^2."""
+    first, *others = sorted(waves, key=lambda item: _motion_key(((), item[1])))
+    if not first[1] and len(others) == 1 and len(others[0][1]) == 1:
+        (c, ((op, k, n),)) = others[0]
+        if n == 2 and c == -2 * first[0]:
+            return first[0] * (1 if op == "sin" else -1), ((Fraction(1), (("cos", tuple(2 * m for m in k), 1),)),)
+    sign = Fraction(-1 if first[0] < 0 else 1)
+    return sign, tuple((c * sign, some) for c, some in waves)
+
+
+def _over_number(function: Mapping[Motion, Fraction], number: Fraction) -> dict[Motion, Fraction]:
+    return {motion: c / number for motion, c in function.items()}
 
 
 def _over(motion: Motion, common: Motion) -> Motion:

@@ -7,20 +7,22 @@ without squares of sines or those without squares of cosines, whichever has fewe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
-from substructures.textbook.atoms import MOVING, Atoms, Monomial, times
-from substructures.textbook.collect import is_fraction
+from substructures.textbook.atoms import INPUT, MOVING, Atoms, Monomial, times
+from substructures.textbook.collect import is_fraction, length
 from substructures.textbook.exponentials import Complex, harmonics_of, power, spread, tangent
 from substructures.textbook.field import Field, to_fmpq
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, normal, polynomial_of
 from substructures.textbook.layout import Content, Layout
+from substructures.textbook.products import but_for_one_term
+from substructures.textbook.scales import divisors, primitive
 
 #: terms of a polynomial that is factored
 FACTORED = 400
@@ -41,6 +43,7 @@ class Quotients:
         self.layout = Layout(atoms, self.angles, self.units)
         names = [f"g{i}" for i in range(self.size + 2 * len(self.angles))]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        self._forms: dict[str, Sum] = {}
 
     def __call__(self, expr: Expr) -> Sum:
         """The textbook form of one of the field's expressions."""
@@ -91,45 +94,92 @@ class Quotients:
             ((monomial, waves),) = denominator.items()
             if all(not any(k) for k in waves):
                 return list(self.layout(_divided(numerator, monomial, next(iter(waves.values()))[0])).terms)
-        top, bottom = self._factors(numerator), self._factors(denominator)
-        return [product(top[0] / bottom[0], [*top[1], *((f, -n) for f, n in bottom[1])])]
+        number, above = self._factors(numerator)
+        below_number, below = self._factors(denominator)
+        return [self._product(number / below_number, [*above, *((part, -n) for part, n in below)])]
 
-    def _factors(self, content: Content) -> tuple[Fraction, list[tuple[Factor, int]]]:
-        """A number and factors with their powers."""
-        poly = self._fewest(content)
+    def _factors(self, content: Content) -> tuple[Fraction, list[tuple[Any, int]]]:
+        """A number and polynomials without content, irreducible unless they are large, with their powers."""
+        poly, _ = self._fewest(content)
         if len(poly) > FACTORED:
-            parts = [(poly, 1)]
-            number = Fraction(1)
-        else:
-            c, parts = poly.factor()
-            number = _fraction(c)
-        factors: list[tuple[Factor, int]] = []
-        for part, n in parts:
-            form = self.layout(self._back(part))
-            scale = _scale(form)
-            number *= scale ** int(n)
-            factors.append((Sum(tuple(t.scaled(1 / scale) for t in form.terms)), int(n)))
-        return number, sorted(factors, key=self._key)
+            number = primitive([_fraction(c) for c in poly.coeffs()])
+            return number, [(poly / to_fmpq(number), 1)]
+        c, parts = poly.factor()
+        return _fraction(c), [(part, int(n)) for part, n in parts]
 
-    def _key(self, item: tuple[Factor, int]) -> tuple[int, int, int]:
-        """Single atoms in their order, then sums of parameters, cosines and sines, and other sums by length."""
+    def _product(self, number: Fraction, parts: Sequence[tuple[Any, int]]) -> Term:
+        """A product of powers of polynomials in its order, those below last."""
+        parts = _squares(parts)
+        scales = divisors(number, [([_fraction(c) for c in part.coeffs()], n) for part, n in parts])
+        factors: list[tuple[Factor, int]] = []
+        for (part, n), scale in zip(parts, scales, strict=True):
+            form = self._form(part / to_fmpq(scale))
+            sign = -1 if form.terms[0].coefficient < 0 else 1
+            number *= (sign * scale) ** n
+            factors.append((Sum(tuple(t.scaled(Fraction(sign)) for t in form.terms)), n))
+        return product(number, sorted(factors, key=lambda item: (item[1] < 0, *self._key(item))))
+
+    def _form(self, poly: Any) -> Sum:
+        """The shortest form of an irreducible polynomial: a sum, or a product of sums and a term."""
+        key = str(poly)
+        if key not in self._forms:
+            content = self._back(poly)
+            forms = [self.layout(content)]
+            if all(is_fraction(_fraction(c)) for c in poly.coeffs()) and not self._rates(poly):
+                forms += self._products(content)
+            self._forms[key] = min(forms, key=length)
+        return self._forms[key]
+
+    def _rates(self, poly: Any) -> bool:
+        """Whether something besides cosines and sines moves."""
+        used = [p for p, n in zip(self.places, poly.degrees(), strict=False) if n > 0]
+        return any(self.atoms.ranks[p] == MOVING for p in used)
+
+    def _products(self, content: Content) -> Iterator[Sum]:
+        """The forms that are a product of sums but for one term."""
+        _, sines = self._fewest(content)
+        for i in range(len(self.angles)):
+            others = tuple(n for n in sines if n != i)
+            cosine = self.size + 2 * i
+            for some, square, other in ((others, cosine, cosine + 1), ((*others, i), cosine + 1, cosine)):
+                for number, parts, rest in but_for_one_term(self._polynomial(content, some), square, other):
+                    factors: list[tuple[Factor, int]] = [(self.layout(self._back(part)), n) for part, n in parts]
+                    one = product(_fraction(number), sorted(factors, key=self._key))
+                    yield Sum((one, *self.layout(self._back(rest)).terms))
+
+    def _key(self, item: tuple[Factor, int]) -> tuple[int, int, list[int]]:
+        """Total masses, atoms, sums of atoms, inputs, cosines and sines by their angles, sums with them, rates."""
         form = item[0]
         assert isinstance(form, Sum)  # noqa: S101 -- for the type checker
-        if len(form.terms) > 1 or not form.terms[0].factors:
-            moves = any(isinstance(x, Trig) or self.atoms.ranks[self.atoms.place[x]] == MOVING for x in leaves(form))
-            return (3 if moves else 1), len(form), 0
-        first = form.terms[0].factors[0][0]
-        return (0, 0, self.atoms.place[first]) if isinstance(first, Expr) else (2, 0, 0)
+        found = list(leaves(form))
+        atoms = [x for x in found if isinstance(x, Expr)]
+        places = [self.atoms.place[x] for x in atoms]
+        is_sum = len(form.terms) > 1 or not form.terms[0].factors
+        if any(map(self.atoms.is_rate, atoms)):
+            return 5, len(form) if is_sum else 0, places
+        if len(atoms) < len(found):
+            return (4, len(form), places) if is_sum else (3, 0, self._angle_places(found[0]))
+        if any(self.atoms.ranks[p] == INPUT for p in places):
+            return 2, len(form) if is_sum else 0, places
+        if not is_sum:
+            return 0, 0, places[:1]
+        is_total = bool(places) and all(map(self.layout.collect.is_mass, form.terms))
+        return -1 if is_total else 1, len(form), places
 
-    def _fewest(self, content: Content) -> Any:
-        """The polynomial in atoms, cosines and sines with the fewest terms."""
+    def _angle_places(self, trig: Expr | Trig) -> list[int]:
+        """The order of a cosine or sine: by its first angle, single angles before sums, sines before cosines."""
+        angle = [self.angles.index(a) for a, _ in trig.angle] if isinstance(trig, Trig) else []
+        return [*angle[:1], len(angle), *angle[1:], isinstance(trig, Trig) and trig.op == "cos"]
+
+    def _fewest(self, content: Content) -> tuple[Any, tuple[int, ...]]:
+        """The polynomial in atoms, cosines and sines with the fewest terms, and the angles without cosines squared."""
         best = self._polynomial(content, ())
         sines: tuple[int, ...] = ()
         for i in range(len(self.angles)):
             other = self._polynomial(content, (*sines, i))
             if len(other) < len(best):
                 best, sines = other, (*sines, i)
-        return best
+        return best, sines
 
     def _polynomial(self, content: Content, sines: Sequence[int]) -> Any:
         """The polynomial without squares of cosines of the angles ``sines``, and of sines of the others."""
@@ -158,6 +208,17 @@ class Quotients:
         return tuple(sorted((p, n) for p, n in zip(self.places, exponents, strict=True) if n))
 
 
+def _squares(parts: Sequence[tuple[Any, int]]) -> list[tuple[Any, int]]:
+    """The factors with c^2 - x^2 for (c - x)*(c + x), where x is one term."""
+    found = list(parts)
+    for i, (one, n) in enumerate(parts):
+        for other, m in parts[:i]:
+            twice = next((x for x in (one + other, one - other) if x.is_constant()), None)
+            if n == m and twice is not None and len(one - twice / 2) == 1:
+                found = [item for item in found if item[0] not in (one, other)] + [(one * other, n)]
+    return found
+
+
 def _content(poly: Any, size: int, places: Sequence[int], halves: Sequence[int]) -> Content:
     """A polynomial in tangents over the powers ``halves`` of 1 + t^2, as harmonics."""
     result: dict[Monomial, dict[Mode, Complex]] = {}
@@ -175,16 +236,6 @@ def _divided(content: Content, monomial: Monomial, number: Fraction) -> Content:
     return {
         times(m, monomial, -1): {k: (a / number, b / number) for k, (a, b) in h.items()} for m, h in content.items()
     }
-
-
-def _scale(form: Sum) -> Fraction:
-    """Sign of the first term; a power of ten where coefficients are no simple numbers, so that they are small."""
-    numbers = [abs(t.coefficient) for t in form.terms]
-    sign = -1 if form.terms[0].coefficient < 0 else 1
-    largest = max(numbers)
-    if largest < 1000 and all(is_fraction(n) for n in numbers):
-        return Fraction(sign)
-    return sign * Fraction(10) ** (len(str(int(largest))) - 1)
 
 
 def _fraction(c: Any) -> Fraction:

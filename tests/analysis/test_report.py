@@ -50,7 +50,9 @@ def test_the_double_pendulum_in_words() -> None:
         "On q1 gravity and the input tau_1 act.",
     } <= texts
     assert any(t.startswith("2 of 2 independent Christoffel symbols are not zero; G[a, b, c]") for t in texts)
-    assert any(t.startswith("Energy is constant") for t in texts)
+    assert any(t.startswith("Energy is constant while all inputs are zero: ") for t in texts)
+    # names as in all other statements
+    assert not any("x.q1" in t for t in [*texts, *(each.text for each in told("scara").statements)])
     shown = text_report(found)
     assert "metric[1, 1] = (m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q2)" in shown
     # m2 l2^2 over m2 l2^2 + m2 l1 l2 |cos q2|, with all ones: 1 where cos q2 = 0, and 1/2 where it is 1
@@ -139,6 +141,28 @@ def test_plain_latex_compiles_it_within_the_page(name: str, tmp_path: Path) -> N
     log = done.stdout.decode(errors="replace")
     assert done.returncode == 0, log[-2000:]
     assert "Overfull" not in log
+
+
+def test_documents_and_pages_say_quantities_in_mathematics() -> None:
+    """Lists of elements with their spaces, raised powers of units, and under which condition Gamma is what is said."""
+    found = told("furuta-pendulum")
+    text, page = latex_report(found), page_report(found)
+    assert "q2 changes g[1,1], g[1,2]." in text
+    assert "m/\\allowbreak s$^{2}$" in text
+    assert "mass $m$ and inertia tensor $\\Theta$," in text
+    assert "<sup>2</sup>" in page
+    assert "kg*m" not in page + text
+    assert "inertia tensor Theta" not in page
+    least = "<mi>a</mi><mo>,</mo><mi>b</mi><mo>&#x2264;</mo><mi>c</mi>"
+    assert least in page
+    assert "<mi>k</mi><mo>&#x2265;</mo><mi>c</mi>" in page
+
+
+def test_wide_symbols_are_told() -> None:
+    """In rows of their own, since formulas have them."""
+    text = latex_report(told("humanoid-arm"))
+    assert "ldots" not in text.partition("subsection*{Derivation}")[0]
+    assert r"\multicolumn{6}{@{}l}{$\mathit{shoulder}_{" in text
 
 
 def test_the_body_alone_can_be_included() -> None:

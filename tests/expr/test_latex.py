@@ -23,8 +23,9 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     r"\operatorname{atan2}": math.atan2,
     r"\operatorname{sgn}": lambda x: math.copysign(1, x),
 }
+PARENTHESES = {"(": ")", r"\left(": r"\right)", r"\bigl(": r"\bigr)", r"\Bigl(": r"\Bigr)"}
 TOKEN = re.compile(
-    r"[a-z]_\{[^}]*\{?\w+\}?\}|\\(?:left|right|bigl|bigr)[(|)]|\\operatorname\{\w+\}|\\,|\\[a-z]+|[\d.]+|\S"
+    r"[a-z]_\{[^}]*\{?\w+\}?\}|\\(?:left|right|[bB]igl|[bB]igr)[(|)]|\\operatorname\{\w+\}|\\,|\\[a-z]+|[\d.]+|\S"
 )
 
 
@@ -66,18 +67,17 @@ class Reader:
             return math.sqrt(self.inside("{", "}"))
         if self.tokens[0] == r"\left|":
             return abs(self.inside(r"\left|", r"\right|"))
-        if self.tokens[0] == r"\left(":
-            return self.inside(r"\left(", r"\right)")
-        if self.tokens[0] == r"\bigl(":
-            return self.inside(r"\bigl(", r"\bigr)")
+        if self.tokens[0] in PARENTHESES:
+            return self.inside(self.tokens[0], PARENTHESES[self.tokens[0]])
         if name := self.take(*FUNCTIONS):
             exponent = self.inside("{", "}") if self.take("^") else 1
-            if not self.take(r"\left("):  # the angle is a single name
+            opening = self.take(*PARENTHESES)
+            if not opening:  # the angle is a single name
                 return FUNCTIONS[name](self.atom()) ** exponent
             arguments = [self.sum()]
             while self.take(","):
                 arguments.append(self.sum())
-            assert self.take(r"\right)")
+            assert self.take(PARENTHESES[opening])
             return FUNCTIONS[name](*arguments) ** exponent
         token = self.tokens.pop(0)
         return self.known[token] if token in self.known else float(token)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from mixed_program import POINT, mixed_program
 from random_expressions import collected
 
 from substructures.errors import InvalidDocument, TooLarge
+from substructures.export import Interface
+from substructures.export import render as in_language
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
@@ -99,3 +102,15 @@ def test_long_chains_need_no_recursion() -> None:
     program = collected(g, f=e)
     for format_ in FORMATS:
         assert render(program, format_)
+
+
+@pytest.mark.parametrize("format_", ["text", "c", "python", "matlab", "fortran"])
+def test_differences_are_turned_where_their_sign_is(format_: str) -> None:
+    """b - a for -(a - b), unless the difference has a name."""
+    g = Graph()
+    a, b, c = (g.symbol(name) for name in "abc")
+    program = collected(g, x=-(a * b - c), y=-(a + b), z=-(b - c) + a * (b - c))
+    text = in_language(program, format_, interface=Interface.of_symbols(program.symbols), quantity="x")
+    assert text.count(" - ") == 3
+    assert text.count("-(") == 1
+    assert re.search(r"= [^*\n]+ - [^*\n]+\*", text)  # c - a*b, and not a*b - c

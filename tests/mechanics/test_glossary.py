@@ -13,6 +13,7 @@ from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.expr.hoist import hoisted
 from substructures.part.part import Part
 from substructures.printers import render
+from substructures.quantities.formulas import derived
 from substructures.tree.glossary import glossary
 
 Numbers = dict[str, float]
@@ -108,3 +109,13 @@ def test_what_letters_mean_is_said() -> None:
     assert "H_{21,z} &=" in render(program, "latex", "compact", glossary=names)
     assert "<msub><mi>H</mi>" in render(program, "mathml", "compact", glossary=names)
     assert render(program, "json", "compact", glossary=names) == render(program, "json", "compact")
+
+
+def test_parameters_of_instances_keep_their_names() -> None:
+    """Where arm.c2 is a length nothing else is called c2."""
+    spec, parts = single("scara")
+    program = derived(couple(spec, parts), "forward_dynamics")
+    text = render(program.select(["forward_dynamics"]), "text", "compact", glossary=glossary(spec, parts))
+    assert "arm.m2*arm.c2" in text
+    assert "Theta_2zz = " in text
+    assert "\nc2 = " not in text

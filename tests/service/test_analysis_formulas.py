@@ -128,6 +128,22 @@ def test_formulas_in_grouped_symbols(double: TestClient) -> None:
     assert symbols["hand.sx_rod"] in double.get("/v1/trees/cell/christoffel?group=true&format=text").text
 
 
+def test_pages_of_formulas_may_have_their_style(double: TestClient) -> None:
+    page = double.get("/v1/trees/cell/metric?format=mathml")
+    assert "<style>" in page.text
+    assert page.headers["content-security-policy"].startswith("default-src 'none'; style-src 'unsafe-inline'")
+    assert "style-src" not in double.get("/v1/trees/cell/metric?format=text").headers["content-security-policy"]
+
+
+def test_documents_say_whose_formulas_they_show(double: TestClient) -> None:
+    assert "<h1>metric of cell, revision 2</h1>" in double.get("/v1/trees/cell/metric?format=mathml").text
+    assert "<h1>U of pendulum, version 1</h1>" in double.get("/v1/substructures/pendulum/formulas/U?format=mathml").text
+    document = double.get("/v1/trees/cell/metric?format=latex&document=true").text
+    assert r"\section*{metric of cell, revision 2}" in document
+    assert "<h1>mine</h1>" in double.get("/v1/trees/cell/metric?format=mathml&name=mine").text
+    assert "model_metric" in double.get("/v1/trees/cell/metric?format=python").text
+
+
 @pytest.mark.parametrize("name", ["json", "text", "latex", "latex-document", "mathml"])
 def test_grouped_symbols_are_told_in_all_formats_for_people(double: TestClient, name: str) -> None:
     for quantity in GROUPED:

@@ -18,6 +18,7 @@ from rolling_bodies import BLADE, FORWARD, sleigh
 
 from substructures import Model, Program, catalogue
 from substructures.analysis.equations.curvature import curvature
+from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
 from substructures.expr.direct import ball
@@ -64,7 +65,9 @@ def program(model: str, output: str) -> Program:
         return quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD).program.select([output])
     if model == "top":
         return routh(top()).program.select([output])
-    found = tree({model: catalogue.load(model)})
+    found = top() if model == "symmetric-top" else tree({model: catalogue.load(model)})
+    if output == "energy" or "momentum" in output:
+        return first_integrals(found).program.select([output])
     if output == "scalar_curvature":
         return curvature(found).select([output])
     return derived(found, output).select([output]) if output == "forward_dynamics" else found.program.select([output])
@@ -79,6 +82,9 @@ SPONG = (
 TOP = "H. Goldstein, Classical Mechanics, 2nd ed. 1980, sections 5-7 and 8-3, with A + m l^2 about the fixed point"
 BLOCH = "A. M. Bloch, Nonholonomic Mechanics and Control, 2003, section 1.7"
 PUMA = "sum of the links' moments about axis 2, B. Armstrong, O. Khatib, J. Burdick, ICRA 1986, before abbreviation"
+
+STEINER = "sum of the links' moments, m r^2 each and their own"
+ROPE = "a pendulum on a rope of length l0 + hoist below a trolley"
 
 COORDINATES = [f"q{n}" for n in range(1, 7)]
 
@@ -119,7 +125,7 @@ LINES = [
     Line(
         "acrobot",
         "metric[1, 1]",
-        "Ic1 + Ic2 + m1*lc1^2 + m2*l1^2 + m2*lc2^2 + 2*m2*l1*lc2*cos(q2)",
+        "Ic1 + Ic2 + m1*lc1^2 + m2*(l1^2 + lc2^2) + 2*m2*l1*lc2*cos(q2)",
         "(Ic1 + m1*lc1^2) + (Ic2 + m2*lc2^2) + m2*l1^2 + 2*m2*l1*lc2*cos(q2)",
         TEDRAKE,
     ),
@@ -128,6 +134,20 @@ LINES = [
         "forces[1]",
         "tau_1 - g*(m1*lc1 + m2*l1)*cos(q1) - m2*g*lc2*cos(q1 + q2)",
         "tau_1 - m1*g*lc1*cos(q1) - m2*g*(l1*cos(q1) + lc2*cos(q1 + q2))",
+        TEDRAKE,
+    ),
+    Line(
+        "acrobot",
+        "forward_dynamics[1]",
+        "((Ic2 + m2*lc2^2)*(tau_1 - tau_2) - g*(Ic2*m1*lc1 + Ic2*m2*l1 + m1*m2*lc1*lc2^2)*cos(q1)"
+        " - m2^2*g*l1*lc2^2*sin(q1 + q2)*sin(q2) - m2*l1*lc2*tau_2*cos(q2) + m2*l1*lc2*(Ic2 + m2*lc2^2)*sin(q2)*(q1'"
+        " + q2')^2 + m2^2*l1^2*lc2^2*sin(q2)*cos(q2)*q1'^2)/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + m2*l1^2)"
+        " - m2^2*l1^2*lc2^2*cos(q2)^2)",
+        # Cramer's rule on M q'' + C = Q
+        "((Ic2 + m2*lc2^2)*(tau_1 - g*(m1*lc1 + m2*l1)*cos(q1) - m2*g*lc2*cos(q1 + q2) + m2*l1*lc2*sin(q2)*(2*q1'*q2'"
+        " + q2'^2)) - (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*(tau_2 - m2*g*lc2*cos(q1 + q2) - m2*l1*lc2*sin(q2)*q1'^2))"
+        "/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + Ic2 + m2*lc2^2 + m2*l1^2 + 2*m2*l1*lc2*cos(q2)) - (Ic2 + m2*lc2^2"
+        " + m2*l1*lc2*cos(q2))^2)",
         TEDRAKE,
     ),
     Line(
@@ -153,6 +173,19 @@ LINES = [
         FURUTA,
     ),
     Line(
+        "furuta-pendulum",
+        "forward_dynamics[1]",
+        "((J2 + m2*l2^2)*(tau_1 - b1*q1') - m2*L1*l2*cos(q2)*(tau_2 - b2*q2') + m2^2*L1*g*l2^2*sin(q2)*cos(q2)"
+        " - m2*L1*l2*(J2 + m2*l2^2)*sin(q2)*(cos(q2)^2*q1'^2 - q2'^2) - 2*(J2"
+        " + m2*l2^2)^2*sin(q2)*cos(q2)*q1'*q2')/((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)"
+        " - m2^2*L1^2*l2^2*cos(q2)^2)",
+        # Cramer's rule on M q'' + C = Q
+        "((J2 + m2*l2^2)*(tau_1 - b1*q1' + m2*L1*l2*sin(q2)*q2'^2 - (J2 + m2*l2^2)*sin(2*q2)*q1'*q2')"
+        " - m2*L1*l2*cos(q2)*(tau_2 - b2*q2' - m2*g*l2*sin(q2) + 1/2*(J2 + m2*l2^2)*sin(2*q2)*q1'^2))/((J2"
+        " + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2) - (m2*L1*l2*cos(q2))^2)",
+        FURUTA,
+    ),
+    Line(
         "scara",
         "metric[1, 1]",
         "I1 + I2 + Ia4 + m1*c1^2 + m2*(a1^2 + c2^2) + (m3 + m4)*(a1^2 + a2^2) + 2*a1*(m2*c2 + (m3 + m4)*a2)*cos(q2)",
@@ -174,8 +207,8 @@ LINES = [
     Line(
         "puma560",
         "metric[2, 2]",
-        "Iyy3 + Izz2 + Jm2*G2^2 + m2*(a2^2 + 2*a2*cx2 + cx2^2 + cy2^2) + m3*(a2^2 + a3^2 + 2*a3*cx3 + cx3^2 + cz3^2)"
-        " + m4*(a2^2 + a3^2 + cy4^2 + 2*cy4*d4 + d4^2) + (m5 + m6)*(a2^2 + a3^2 + d4^2)"
+        "Iyy3 + Izz2 + Jm2*G2^2 + m2*((a2 + cx2)^2 + cy2^2) + m3*(a2^2 + (a3 + cx3)^2 + cz3^2)"
+        " + m4*(a2^2 + a3^2 + (cy4 + d4)^2) + (m5 + m6)*(a2^2 + a3^2 + d4^2)"
         " + 2*a2*((m3 + m4 + m5 + m6)*a3 + m3*cx3)*c3 - 2*m6*a2*cz6*(c3*c4*s5 + s3*c5)"
         " - 2*a2*(m3*cz3 + m4*cy4 + (m4 + m5 + m6)*d4)*s3 - 2*m6*a3*cz6*c4*s5 + (Iyy5 + Izz4)*c4^2"
         " + m6*cz6^2*(c4^2 + s4^2*c5^2) + Iyy6*(c4*c6 - s4*c5*s6)^2 + Ixx6*(c4*s6 + s4*c5*c6)^2 + Ixx4*s4^2"
@@ -187,6 +220,132 @@ LINES = [
         " + Ixx6*(s4*c5*c6 + c4*s6)^2 + Iyy6*(s4*c5*s6 - c4*c6)^2 + Izz6*(s4*s5)^2"
         " + m6*((a2 + c3*(a3 - cz6*c4*s5) - s3*(d4 + cz6*c5))^2 + (s3*(a3 - cz6*c4*s5) + c3*(d4 + cz6*c5))^2)",
         PUMA,
+    ),
+    Line("andrews-squeezer", "metric[5, 5]", "I4 + m4*(e - ea)^2", "I4 + m4*(e - ea)^2", STEINER),
+    Line(
+        "planar-3r",
+        "metric[1, 2]",
+        "I2 + I3 + m2*c2^2 + m3*(c3^2 + l2^2) + l1*(m2*c2 + m3*l2)*cos(q2) + m3*c3*l1*cos(q2 + q3)"
+        " + 2*m3*c3*l2*cos(q3)",
+        "I2 + m2*(c2^2 + l1*c2*cos(q2)) + I3 + m3*(l2^2 + c3^2 + 2*l2*c3*cos(q3) + l1*l2*cos(q2) + l1*c3*cos(q2 + q3))",
+        STEINER,
+    ),
+    Line(
+        "four-bar",
+        "metric[1, 1]",
+        "(1/3*m1 + m2)*l1^2 + 1/3*m2*l2^2 + m2*l1*l2*cos(coupler)",
+        "m1*l1^2/3 + m2*(l1^2 + l2^2/4 + l1*l2*cos(coupler)) + m2*l2^2/12",
+        STEINER,
+    ),
+    Line("trolley-crane", "metric[1, 2]", "ml*(l0 + hoist)*cos(swing)", "ml*(l0 + hoist)*cos(swing)", ROPE),
+    Line("trolley-crane", "metric[2, 2]", "ml*(l0 + hoist)^2", "ml*(l0 + hoist)^2", ROPE),
+    Line("trolley-crane", "christoffel[2, 2, 3]", "ml*(l0 + hoist)", "ml*(l0 + hoist)", ROPE),
+    Line(
+        "acrobot",
+        "scalar_curvature",
+        "2*m2*l1*lc2*((Ic1 + m1*lc1^2)*(Ic2 + m2*lc2^2) + Ic2*m2*l1^2)*cos(q2)"
+        "/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + m2*l1^2) - m2^2*l1^2*lc2^2*cos(q2)^2)^2",
+        # 2*d*(a*b - d^2)*cos(q2)/det^2 for the metric a + b + 2*d*cos(q2), b + d*cos(q2), b
+        "2*m2*l1*lc2*((Ic1 + m1*lc1^2 + m2*l1^2)*(Ic2 + m2*lc2^2) - (m2*l1*lc2)^2)*cos(q2)"
+        "/((Ic1 + m1*lc1^2 + m2*l1^2)*(Ic2 + m2*lc2^2) - (m2*l1*lc2*cos(q2))^2)^2",
+        "twice Gauss' curvature by Brioschi's formula",
+    ),
+    Line(
+        "acrobot",
+        "energy",
+        "g*(m1*lc1 + m2*l1)*sin(q1) + m2*g*lc2*sin(q1 + q2) + 1/2*(Ic1 + m1*lc1^2 + m2*l1^2)*q1'^2"
+        " + 1/2*(Ic2 + m2*lc2^2)*(q1' + q2')^2 + m2*l1*lc2*cos(q2)*q1'*(q1' + q2')",
+        "(Ic1 + m1*lc1^2)*q1'^2/2 + (m2*l1^2 + Ic2 + m2*lc2^2 + 2*m2*l1*lc2*cos(q2))*q1'^2/2 + (Ic2 + m2*lc2^2)*q2'^2/2"
+        " + (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*q1'*q2' + m1*g*lc1*sin(q1) + m2*g*(l1*sin(q1) + lc2*sin(q1 + q2))",
+        TEDRAKE + ", from the horizontal",
+    ),
+    Line(
+        "cart-pendulum",
+        "energy",
+        "m1*g*l0*cos(q1) + 1/2*(m0 + m1)*q0'^2 - m1*l0*cos(q1)*q0'*q1' + 1/2*m1*l0^2*q1'^2",
+        "(m0 + m1)*q0'^2/2 - m1*l0*cos(q1)*q0'*q1' + m1*l0^2*q1'^2/2 + m1*g*l0*cos(q1)",
+        TEDRAKE + ", from the upright position",
+    ),
+    Line(
+        "scara",
+        "forward_dynamics[4]",
+        "tau_4/Ia4 + ((I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)*(tau_2 + tau_4)"
+        " - a1*(m2*c2 + (m3 + m4)*a2)*(tau_1 - tau_2)*cos(q2)"
+        " - a1*(I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)*(m2*c2 + (m3 + m4)*a2)*sin(q2)*q1'^2"
+        " - a1^2*(m2*c2 + (m3 + m4)*a2)^2*sin(q2)*cos(q2)*(q1' + q2')^2)"
+        "/((I2 + m2*c2^2 + (m3 + m4)*a2^2)*(I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)"
+        " - a1^2*(m2*c2 + (m3 + m4)*a2)^2*cos(q2)^2)",
+        # q4'' = tau_4/Ia4 + q1'' + q2'', and Cramer's rule on both links with tau_4 on the second
+        "tau_4/Ia4 + ((I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2 + a1*(m2*c2 + (m3 + m4)*a2)*cos(q2))"
+        "*(tau_2 + tau_4 - a1*(m2*c2 + (m3 + m4)*a2)*sin(q2)*q1'^2)"
+        " - a1*(m2*c2 + (m3 + m4)*a2)*cos(q2)"
+        "*(tau_1 + tau_4 + a1*(m2*c2 + (m3 + m4)*a2)*sin(q2)*(2*q1'*q2' + q2'^2)))"
+        "/((I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)*(I2 + m2*c2^2 + (m3 + m4)*a2^2)"
+        " - (a1*(m2*c2 + (m3 + m4)*a2)*cos(q2))^2)",
+        SPONG,
+    ),
+    Line(
+        "symmetric-top",
+        "energy",
+        "m*g*l*cos(theta) + 1/2*C*(phi' + cos(theta)*psi')^2 + 1/2*(A + m*l^2)*(sin(theta)^2*psi'^2 + theta'^2)",
+        "(A + m*l^2)*(theta'^2 + psi'^2*sin(theta)^2)/2 + C*(phi' + psi'*cos(theta))^2/2 + m*g*l*cos(theta)",
+        TOP,
+    ),
+    Line("symmetric-top", "momentum.x.phi", "C*(phi' + cos(theta)*psi')", "C*(phi' + psi'*cos(theta))", TOP),
+    Line(
+        "gimbal-gyroscope",
+        "angular_momentum.z",
+        "(Izo + (Iar + Izi)*cos(nutation)^2 + (Itr + Iyi)*sin(nutation)^2)*precession' + Iar*cos(nutation)*spin'",
+        "(Izo + Izi*cos(nutation)^2 + (Iyi + Itr)*sin(nutation)^2)*precession'"
+        " + Iar*cos(nutation)*(spin' + precession'*cos(nutation))",
+        "moments of both gimbals about the vertical, and of the rotor",
+    ),
+    Line(
+        "trolley-crane",
+        "energy",
+        "-ml*g*(l0 + hoist)*cos(swing) + 1/2*(md + ml)*hoist'^2 + ml*sin(swing)*hoist'*x'"
+        " + 1/2*ml*(l0 + hoist)^2*swing'^2 + ml*(l0 + hoist)*cos(swing)*swing'*x' + 1/2*(ml + mt)*x'^2",
+        "mt*x'^2/2 + md*hoist'^2/2 + ml*((x' + hoist'*sin(swing) + (l0 + hoist)*swing'*cos(swing))^2"
+        " + (hoist'*cos(swing) - (l0 + hoist)*swing'*sin(swing))^2)/2 - ml*g*(l0 + hoist)*cos(swing)",
+        ROPE,
+    ),
+    Line(
+        "free-body",
+        "energy",
+        "m*g*z + 1/2*Iyy*(cos(roll)*pitch' + cos(pitch)*sin(roll)*yaw')^2"
+        " + 1/2*Izz*(sin(roll)*pitch' - cos(pitch)*cos(roll)*yaw')^2 + 1/2*Ixx*(roll' - sin(pitch)*yaw')^2"
+        " + 1/2*m*(x'^2 + y'^2 + z'^2)",
+        "m*(x'^2 + y'^2 + z'^2)/2 + m*g*z + (Ixx*(roll' - yaw'*sin(pitch))^2"
+        " + Iyy*(pitch'*cos(roll) + yaw'*cos(pitch)*sin(roll))^2"
+        " + Izz*(yaw'*cos(pitch)*cos(roll) - pitch'*sin(roll))^2)/2",
+        "yaw, pitch and roll in H. Goldstein, Classical Mechanics, 3rd ed. 2002, appendix A",
+    ),
+    Line(
+        "trolley-crane",
+        "forward_dynamics[3]",
+        "(mt*tau_hoist + ml*mt*g*cos(swing) - ml*sin(swing)*(tau_x - b*x') + ml*tau_hoist*sin(swing)^2"
+        " + ml*mt*(l0 + hoist)*swing'^2)/((md + ml)*mt + md*ml*sin(swing)^2)"
+        " + ml*tau_swing*sin(swing)*cos(swing)/((l0 + hoist)*((md + ml)*mt + md*ml*sin(swing)^2))",
+        # elimination of x'' and swing''
+        "((mt + ml*sin(swing)^2)*(tau_hoist + ml*g*cos(swing) + ml*(l0 + hoist)*swing'^2)"
+        " - ml*sin(swing)*(tau_x - b*x' + ml*(l0 + hoist)*sin(swing)*swing'^2)"
+        " + ml*sin(swing)*cos(swing)*(tau_swing/(l0 + hoist) - ml*g*sin(swing)))/((md + ml)*mt + md*ml*sin(swing)^2)",
+        ROPE,
+    ),
+    Line(
+        "free-body",
+        "christoffel[4, 5, 6]",
+        "-1/2*Ixx*cos(pitch) + 1/2*(Iyy - Izz)*cos(pitch)*cos(2*roll)",
+        "-Ixx*cos(pitch)/2 + (Iyy - Izz)*cos(pitch)*(cos(roll)^2 - sin(roll)^2)/2",
+        "half the derivative of g by roll, pitch and yaw",
+    ),
+    Line(
+        "flyball-governor",
+        "forces[2]",
+        "a*kl*ll*(hv - lift)*sin(right)/t1 + tau_right - (mb*g*l + a*kl*(hv - lift))*sin(right)",
+        "tau_right - mb*g*l*sin(right) - kl*(sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right)) - ll)"
+        "*a*(hv - lift)*sin(right)/sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right))",
+        "a spring between two points at a and hv - lift from the pin, with the law of cosines",
     ),
 ]
 

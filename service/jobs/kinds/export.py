@@ -210,7 +210,7 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     if "target" in item:
         return _exported(item, blobs)
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
-    style = Style(item["format"], item["form"], item["bind"], item["name"])
+    style = Style(item["format"], item["form"], item["bind"], item["name"]).of(item["tree"].partition("@")[0], quantity)
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
     try:
         write = _grouped if item.get("group") else _stored if is_stored else _followed

@@ -19,7 +19,7 @@ from substructures.analysis.report.report import (
 from substructures.analysis.report.words import DERIVATION, REFERENCE
 from substructures.printers.latex_document import LatexDocument
 from substructures.printers.names import latex_names
-from substructures.printers.pages import BREAK, CLOSING, OPENING, width
+from substructures.printers.pages import BREAK, LINE, sized, width
 from substructures.printers.render import LIMIT
 
 HEAD = r"""\documentclass[a4paper]{article}
@@ -60,7 +60,7 @@ def latex_report(found: Report, picture: str = "", document: bool = True, limit:
     lines += [_title("Symbols"), *_symbols(found.symbols)]
     lines += [_title("Derivation")]
     for said, equation, _ in DERIVATION:
-        lines += [words(said), rf"\begin{{equation*}}{equation}\end{{equation*}}"]
+        lines += [_named(said), rf"\begin{{equation*}}{equation}\end{{equation*}}"]
     printed = {name: found.printed(name, LatexDocument, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
         lines += _quantity(found, name, each)
@@ -85,13 +85,23 @@ def _text(text: str) -> str:
     return words(text) + "\n"
 
 
+def _kept(text: str) -> str:
+    """Words with the spaces around them."""
+    return f"{' ' * text.startswith(' ')}{words(text)}{' ' * text.endswith(' ')}"
+
+
+def _named(text: str) -> str:
+    """Words with names of quantities in dollar signs."""
+    return "".join(f"${latex_names([x])[0]}$" if n % 2 else _kept(x) for n, x in enumerate(text.split("$")))
+
+
 def _coordinates(rows: Sequence[Coordinate]) -> list[str]:
     named = latex_names(each.called for each in rows)
     lines = [r"\begin{longtable}[l]{@{}lp{40mm}lll@{}}", r"symbol & name & joint & unit & limits \\ \hline"]
     for written, each in zip(named, rows, strict=True):
         ends = [f"{x:.4g}" if x is not None else r"\ldots" for x in (each.low, each.high)]
         limits = "" if each.low is each.high is None else f"{ends[0]} to {ends[1]}"
-        lines.append(rf"{_symbol(written)} & {_cell(each.name)} & {each.joint} & {each.unit} & {limits} \\")
+        lines.append(rf"{_symbol(written, 5)} & {_cell(each.name)} & {each.joint} & {each.unit} & {limits} \\")
     return [*lines, r"\end{longtable}"]
 
 
@@ -101,19 +111,34 @@ def _symbols(rows: Sequence[SymbolRow]) -> list[str]:
     lines.append(r"symbol & name & kind & unit & value & meaning \\ \hline")
     for written, each in zip(named, rows, strict=True):
         value = "" if each.value is None else f"{each.value:.6g}"
-        cells = (_symbol(written), _cell(each.name), each.kind, _cell(each.unit), value, words(each.description[:90]))
+        cells = (
+            _symbol(written, 6),
+            _cell(each.name),
+            each.kind,
+            _unit(each.unit),
+            value,
+            words(each.description[:90]),
+        )
         lines.append(" & ".join(cells) + r" \\")
     return [*lines, r"\end{longtable}"]
 
 
-def _symbol(written: str) -> str:
-    """What is written for a symbol, unless it is too wide for a table."""
-    return f"${written}$" if width(written) < WIDEST else r"\ldots"
+def _symbol(written: str, columns: int) -> str:
+    """What is written for a symbol, in a row of its own if it is too wide for its column of the table."""
+    if width(written) < WIDEST:
+        return f"${written}$"
+    return rf"\multicolumn{{{columns}}}{{@{{}}l}}{{${written}$}} \\*" + "\n" if width(written) < LINE else r"\ldots"
 
 
 def _cell(text: str) -> str:
     r"""A name in a table, which may end a line behind a sign."""
-    return re.sub(r"(\.|\*|/|\\_)", r"\1\\allowbreak ", words(text[:60]))
+    return re.sub(r"(\.|/|\\_)", r"\1\\allowbreak ", words(text[:60]))
+
+
+def _unit(text: str) -> str:
+    """A unit in a table: kg m^2 with a raised 2, for kg*m^2."""
+    raised = re.sub(r"\\\^\{\}(-?[0-9]+)", r"$^{\1}$", words(text[:60]))
+    return raised.replace("*", " ").replace("/", r"/\allowbreak ")
 
 
 def _quantity(found: Report, name: str, each: Printed) -> list[str]:
@@ -133,8 +158,8 @@ def _statements(found: Report, about: str) -> list[str]:
 
 
 def prose_of(text: str) -> str:
-    """A statement, whose lines may end within lists of elements."""
-    return _text(text).strip().replace("],", r"],\allowbreak ")
+    """A statement."""
+    return words(text)
 
 
 def _sizes(found: Report, metric: Printed) -> list[str]:
@@ -157,5 +182,5 @@ def _sizes(found: Report, metric: Printed) -> list[str]:
 
 def _inline(text: str) -> str:
     """A formula in a paragraph: lines may end before the signs of sums and between factors."""
-    plain = text.replace(BREAK, " ").replace(OPENING, r"\bigl(").replace(CLOSING, r"\bigr)")
+    plain = sized(text.replace(BREAK, " "))
     return plain.replace(r" \, ", r" \, \allowbreak ")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from xml.sax.saxutils import escape
 
@@ -28,7 +29,8 @@ h1, h2, h3 {{ line-height: 1.2; }} h2 {{ margin-top: 2em; border-bottom: 1px sol
 svg {{ max-width: 28em; display: block; margin: auto; }} table {{ border-collapse: collapse; }}
 th {{ text-align: left; border-bottom: 1px solid #889; }} td, th {{ padding: 0.1em 1.2em 0.1em 0; }}
 p {{ overflow-wrap: anywhere; }} math {{ font-size: 1.08em; }} .formulas p {{ line-height: 2; }}
-.formulas h2 {{ display: none; }} .share {{ white-space: nowrap; font-variant-numeric: tabular-nums; }}
+.formulas p {{ padding-left: 2em; text-indent: -2em; }} .formulas h2 {{ display: none; }}
+.share {{ white-space: nowrap; font-variant-numeric: tabular-nums; }}
 .small {{ color: #667; }}
 </style></head><body>
 {body}
@@ -46,7 +48,8 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
     lines += ["<h2>Coordinates</h2>", *_coordinates(found), "<h2>Symbols</h2>", *_symbols(found)]
     lines.append("<h2>Derivation</h2>")
     for words, _, equation in DERIVATION:
-        lines += [f"<p>{_e(words)}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
+        said = "".join(_math(named(latex_names([x])[0])) if n % 2 else _e(x) for n, x in enumerate(words.split("$")))
+        lines += [f"<p>{said}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
     printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
         lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *(f"<p>{_e(x)}.</p>" for x in each.said)]
@@ -96,9 +99,14 @@ def _symbols(found: Report) -> list[str]:
     rows = []
     for latex, each in zip(written, found.symbols, strict=True):
         value = "" if each.value is None else f"{each.value:.6g}"
-        cells = _e(each.name), each.kind, _e(each.unit), value, _e(each.description)
+        cells = _e(each.name), each.kind, _unit(each.unit), value, _e(each.description)
         rows.append((_name(latex, each.called), *cells))
     return _table(("symbol", "name", "kind", "unit", "value", "meaning"), rows)
+
+
+def _unit(text: str) -> str:
+    """A unit: kg m^2 with a raised 2, for kg*m^2."""
+    return re.sub(r"\^(-?[0-9]+)", r"<sup>\1</sup>", _e(text)).replace("*", "\u00a0")
 
 
 def _name(latex: str, called: str) -> str:

@@ -183,9 +183,11 @@ def symmetry_statements(model: Model, names: Names) -> Iterator[Statement]:
             f"Cyclic: {told}; neither the metric nor the forces depend on {'it' if len(found.cyclic) == 1 else 'them'}."
         )
         yield Statement("symmetries", "cyclic", text, coordinates=found.cyclic)
+    has_inputs = any(s.kind == "input" for s in model.program.select(["forces"]).symbols)
     for each in found.integrals:
         words = {"constant": "is constant", "falling": "falls", "balance": "changes by the power fed in"}[each.rule]
-        text = f"{_called(each.name, names)} {words}: {each.reason}."
+        condition = " while all inputs are zero" if has_inputs else ""
+        text = f"{_called(each.name, names)} {words}{condition}: {_in_short(each.reason, model, names)}."
         yield Statement("symmetries", each.kind, text, coordinates=tuple(each.direction))
     if not found.cyclic and not found.integrals:
         yield Statement("symmetries", "none", "No coordinate is cyclic, and no first integral follows from a symmetry.")
@@ -196,6 +198,13 @@ def _called(name: str, names: Names) -> str:
     kind, dot, rest = name.partition(".")
     said = kind.replace("_", " ").capitalize()
     return f"{said} {names.get(rest, rest)}" if dot else said
+
+
+def _in_short(reason: str, model: Model, names: Names) -> str:
+    """A reason with the names of coordinates that the other statements have."""
+    for name in model.coordinates:
+        reason = reason.replace(f"'{name}'", names[name])
+    return reason
 
 
 def _elements(letter: str, index: Iterable[Index]) -> str:

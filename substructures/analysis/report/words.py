@@ -9,40 +9,76 @@ GAMMA_LATEX = (
     r" + \Omega_{kb}^{T} J_k\,(\Omega_{kc}\times\Omega_{ka}) \qquad (a,\,b \le c)"
 )
 FORCES_LATEX = r"Q_{a} = \sum_{k \ge a} K_k\cdot u_{ka} + M_k\cdot\Omega_{ka}"
-#: paragraphs, and the equation behind each in LaTeX and in MathML
+
+
+def _sub(letter: str, index: str) -> str:
+    """A letter with indices in MathML."""
+    return f"<msub><mi>{letter}</mi><mrow>{''.join(f'<mi>{i}</mi>' for i in index)}</mrow></msub>"
+
+
+def _rate(dots: str, index: str) -> str:
+    return f"<msup><mover><mi>q</mi><mo>{dots}</mo></mover><mi>{index}</mi></msup>"
+
+
+def _sum(least: str) -> str:
+    below = f"<mrow><mi>k</mi><mo>&#x2265;</mo><mi>{least}</mi></mrow>"
+    return f"<mo>=</mo><munder><mo>&#x2211;</mo>{below}</munder>"
+
+
+def _cross(one: str, other: str) -> str:
+    return f"<mrow><mo>(</mo>{one}<mo>&#xD7;</mo>{other}<mo>)</mo></mrow>"
+
+
+def _turned(index: str) -> str:
+    """Omega transposed."""
+    inner = "".join(f"<mi>{i}</mi>" for i in index)
+    return f"<msubsup><mi>{_OMEGA}</mi><mrow>{inner}</mrow><mi>T</mi></msubsup>"
+
+
+_OMEGA, _GAMMA, _THETA, _DOT, _PLUS = "&#x3A9;", "&#x393;", "&#x398;", "<mo>&#xB7;</mo>", "<mo>+</mo>"
+_DISTANCE = '<mspace width="2em"/>'
+EQUATION_MATHML = (
+    f"{_sub('g', 'ab')}{_rate('..', 'b')}{_PLUS}{_sub(_GAMMA, 'abc')}{_rate('&#x2D9;', 'b')}{_rate('&#x2D9;', 'c')}"
+    f"<mo>=</mo>{_sub('Q', 'a')}"
+)
+METRIC_MATHML = (
+    f"{_sub('g', 'ac')}{_sum('c')}{_sub('m', 'k')}{_sub('u', 'ka')}{_DOT}{_sub('u', 'kc')}{_PLUS}"
+    f"{_turned('ka')}{_sub(_THETA, 'k')}{_sub(_OMEGA, 'kc')}"
+)
+GAMMA_MATHML = (
+    f"{_sub(_GAMMA, 'abc')}{_sum('c')}{_sub('m', 'k')}{_sub('u', 'ka')}{_DOT}"
+    f"{_cross(_sub(_OMEGA, 'kb'), _sub('u', 'kc'))}{_PLUS}"
+    f"{_turned('kb')}{_sub('J', 'k')}{_cross(_sub(_OMEGA, 'kc'), _sub(_OMEGA, 'ka'))}{_DISTANCE}"
+    "<mrow><mo>(</mo><mi>a</mi><mo>,</mo><mi>b</mi><mo>&#x2264;</mo><mi>c</mi><mo>)</mo></mrow>"
+)
+FORCES_MATHML = (
+    f"{_sub('Q', 'a')}{_sum('a')}{_sub('K', 'k')}{_DOT}{_sub('u', 'ka')}{_PLUS}{_sub('M', 'k')}{_DOT}"
+    f"{_sub(_OMEGA, 'ka')}"
+)
+#: paragraphs, with names of quantities in dollar signs, and the equation behind each in LaTeX and in MathML
 DERIVATION: tuple[tuple[str, str, str], ...] = (
     (
         "With relative joint coordinates on a tree every derivative that the Lagrange equations need is a cross "
         "product: nothing is differentiated (P. Maisser). The equations of motion are",
         EQUATION_LATEX,
-        "<msub><mi>g</mi><mi>ab</mi></msub><mover><mi>q</mi><mo>..</mo></mover><msup><mi></mi><mi>b</mi></msup>"
-        "<mo>+</mo><msub><mi>&#x393;</mi><mi>abc</mi></msub><msup><mover><mi>q</mi><mo>&#x2D9;</mo></mover><mi>b</mi></msup>"
-        "<msup><mover><mi>q</mi><mo>&#x2D9;</mo></mover><mi>c</mi></msup><mo>=</mo><msub><mi>Q</mi><mi>a</mi></msub>",
+        EQUATION_MATHML,
     ),
     (
-        "The partial velocities of the mass centres u and of rotation Omega of every body k follow from those of its "
-        "parent by one recursion. The mass matrix is their quadratic form with mass m and inertia tensor Theta,",
+        "The partial velocities $u$ of the mass centres and $Omega$ of rotation of every body $k$ follow from those of "
+        "its parent by one recursion. The mass matrix is their quadratic form with mass $m$ and inertia tensor "
+        "$Theta$,",
         METRIC_LATEX,
-        "<msub><mi>g</mi><mi>ac</mi></msub><mo>=</mo><munder><mo>&#x2211;</mo><mi>k</mi></munder><msub><mi>m</mi><mi>k</mi></msub>"
-        "<msub><mi>u</mi><mi>ka</mi></msub><mo>&#xB7;</mo><msub><mi>u</mi><mi>kc</mi></msub><mo>+</mo>"
-        "<msub><mi>&#x3A9;</mi><mi>ka</mi></msub><mo>&#xB7;</mo><msub><mi>&#x398;</mi><mi>k</mi></msub>"
-        "<msub><mi>&#x3A9;</mi><mi>kc</mi></msub>",
+        METRIC_MATHML,
     ),
     (
-        "the Christoffel symbols a cubic form of the same functions, with the second moments J,",
+        "the Christoffel symbols a cubic form of the same functions, with the second moments $J$,",
         GAMMA_LATEX,
-        "<msub><mi>&#x393;</mi><mi>abc</mi></msub><mo>=</mo><munder><mo>&#x2211;</mo><mi>k</mi></munder>"
-        "<msub><mi>m</mi><mi>k</mi></msub><msub><mi>u</mi><mi>ka</mi></msub><mo>&#xB7;</mo><mo>(</mo>"
-        "<msub><mi>&#x3A9;</mi><mi>kb</mi></msub><mo>&#xD7;</mo><msub><mi>u</mi><mi>kc</mi></msub><mo>)</mo><mo>+</mo>"
-        "<msub><mi>&#x3A9;</mi><mi>kb</mi></msub><mo>&#xB7;</mo><msub><mi>J</mi><mi>k</mi></msub><mo>(</mo>"
-        "<msub><mi>&#x3A9;</mi><mi>kc</mi></msub><mo>&#xD7;</mo><msub><mi>&#x3A9;</mi><mi>ka</mi></msub><mo>)</mo>",
+        GAMMA_MATHML,
     ),
     (
-        "and the generalised forces linear in them, with the applied forces K and moments M:",
+        "and the generalised forces linear in them, with the applied forces $K$ and moments $M$:",
         FORCES_LATEX,
-        "<msub><mi>Q</mi><mi>a</mi></msub><mo>=</mo><munder><mo>&#x2211;</mo><mi>k</mi></munder><msub><mi>K</mi><mi>k</mi></msub>"
-        "<mo>&#xB7;</mo><msub><mi>u</mi><mi>ka</mi></msub><mo>+</mo><msub><mi>M</mi><mi>k</mi></msub><mo>&#xB7;</mo>"
-        "<msub><mi>&#x3A9;</mi><mi>ka</mi></msub>",
+        FORCES_MATHML,
     ),
 )
 REFERENCE = (
