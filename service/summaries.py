@@ -32,7 +32,6 @@ class PartContent:
 
     program: bytes
     nodes: int
-    tags: Sequence[str]
     row: Mapping[str, Any]
     formulas: Sequence[Sequence[Any]]
 
@@ -48,7 +47,7 @@ class PartContent:
 
     def files(self) -> dict[str, bytes]:
         """As files of an outcome."""
-        members = {"nodes": self.nodes, "tags": self.tags, "row": self.row, "formulas": self.formulas}
+        members = {"nodes": self.nodes, "row": self.row, "formulas": self.formulas}
         return {"program": self.program, "content": write_json(members)}
 
     @classmethod
@@ -56,7 +55,7 @@ class PartContent:
         """Out of the files of an outcome."""
         members = read_json(files[f"{prefix}content"])
         row = {**members["row"], "mass": float_of(members["row"]["mass"])}
-        return cls(files[f"{prefix}program"], **{**members, "row": row})
+        return cls(files[f"{prefix}program"], members["nodes"], row, members["formulas"])
 
 
 def part_content(part: Part) -> PartContent:
@@ -86,8 +85,7 @@ def part_content(part: Part) -> PartContent:
         (k, f.quantity, f.body, f.coordinate, _json(f.shape), f.symmetry, f.operations, f.output, _json(f.index))
         for k, f in enumerate(part.formulas())
     ]
-    tags = tuple(dict.fromkeys(definition.tags))
-    return PartContent(pack(part.program), len(part.program), tags, row, formulas)
+    return PartContent(pack(part.program), len(part.program), row, formulas)
 
 
 def float_of(number: Any) -> float | None:

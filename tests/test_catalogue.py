@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from independent import defaults, value
 
 from substructures import couple, derive
 from substructures.catalogue import load, names
+from substructures.documents import read_yaml
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.quantities.evaluation import evaluate
@@ -34,6 +36,12 @@ def test_enough_entries() -> None:
     assert list(names()) == sorted(names())
     with pytest.raises(KeyError, match="no catalogue entry 'nothing'"):
         load("nothing")
+
+
+@ENTRIES
+def test_both_readers_of_yaml_agree(name: str) -> None:
+    text = (resources.files("substructures.catalogue") / f"{name}.yaml").read_bytes()
+    assert read_yaml(text) == read_yaml(text, is_ours=True) == load(name)
 
 
 @ENTRIES

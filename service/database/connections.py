@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from datetime import UTC, datetime
+from importlib import import_module
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -15,7 +16,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 
 from service.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch
-from service.database.migrate import upgrade
+from service.database.schema import is_newest
 
 READERS = 16
 BUSY_MS = 10_000
@@ -52,7 +53,8 @@ class Database:
             self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)
             opened.callback(self.reader.dispose)
             try:
-                upgrade(self.writer)
+                if not is_newest(self.writer):
+                    import_module("service.database.migrate").upgrade(self.writer)
             except DBAPIError as error:
                 raise DatabaseError(f"cannot use the database {self.url}: {told(error)}") from None
             self._opened = opened.pop_all()

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import logging
 from importlib.resources import as_file, files
 
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, text
 
+from service.database.schema import MigrationError
+
+_log = logging.getLogger(__name__)
+
 ADVISORY_LOCK = 7_305_511  # any constant: servers that start together on PostgreSQL migrate one after the other
-
-
-class MigrationError(Exception):
-    """A database whose schema this version cannot use."""
 
 
 def upgrade(engine: Engine, revision: str = "head") -> None:
@@ -41,6 +43,7 @@ def _run(connection: Connection, revision: str, is_sqlite: bool) -> None:
         configuration.set_main_option("script_location", str(folder).replace("%", "%%"))
         configuration.set_main_option("path_separator", "os")
         before = _revisions(connection)
+        _tell(before, ScriptDirectory.from_config(configuration).get_current_head())
         try:
             command.upgrade(configuration, revision)
         except CommandError as error:
@@ -50,6 +53,12 @@ def _run(connection: Connection, revision: str, is_sqlite: bool) -> None:
         broken = connection.exec_driver_sql("PRAGMA foreign_key_check").fetchall()
         if broken:
             raise MigrationError(f"migration would leave {len(broken)} dangling references; nothing was changed")
+
+
+def _tell(before: tuple[str, ...], newest: str | None) -> None:
+    """Say what takes a while: half a minute of a store of 100,000 parts."""
+    if before and newest not in before:
+        _log.info("bringing the database from schema %s to %s; all of it, or nothing", ", ".join(before), newest)
 
 
 def _revisions(connection: Connection) -> tuple[str, ...]:

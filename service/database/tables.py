@@ -7,8 +7,8 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
 ::
 
     substructures --< versions >-- parts --- programs
-          '--< aliases --< history   |--< tags, part_ports
-                                     '--< part_uses >-- parts
+        |  '--< aliases --< history   '--< part_uses >-- parts
+        '--< search_terms
     tree_names --< trees --< tree_parts >-- parts
                      '------------------- programs
 """
@@ -93,19 +93,13 @@ parts = Table(  # a derived definition: everything that depends on its content a
     ),  # [place in outputs, body, coordinate, entry, operations]
 )
 
-tags = Table(
-    "tags",
+search_terms = Table(  # of the latest version of every name, so that what has one of them is found at once
+    "search_terms",
     metadata,
-    _text("part", ForeignKey("parts.digest"), primary_key=True),
-    _text("tag", primary_key=True),
-    Index("ix_tags_tag", "tag", "part"),
-)
-
-part_ports = Table(
-    "part_ports",
-    metadata,
-    _text("port", primary_key=True),
-    _text("part", ForeignKey("parts.digest"), primary_key=True),
+    _text("kind", primary_key=True),
+    _text("term", primary_key=True),  # tag planar, port tip; start p and start pe of the word pendulum
+    _text("name", primary_key=True),  # of substructures
+    sqlite_with_rowid=False,
 )
 
 #: what a search reads of every name is in each of its indexes on SQLite, so that it reads nothing else
@@ -124,12 +118,14 @@ substructures = Table(  # one row a name; locked while a version number is alloc
     _mass(),
     _text("searchable", nullable=True),
     _text("source", nullable=True),
-    _number("number", nullable=True),  # by which SQLite's index of words knows it
+    _number("number", nullable=True),  # in the order of names that are equally relevant, and of SQLite's index of words
     _default("owner", "local"),
     _default("visibility", "public"),
     Index("ix_substructures_name", "name", *_READ, "digest"),
     Index("ix_substructures_dof", "dof", "name", *(each for each in _READ if each != "dof"), "digest"),
     Index("ix_substructures_created", "created", "name", *_READ, "digest"),
+    Index("ix_substructures_joints", "joints", "name"),
+    Index("ix_substructures_owner", "owner", "name"),
     Index("ix_substructures_number", "number", unique=True),
     Index("ix_substructures_digest", "digest"),
     Index("ix_substructures_seen", "visibility", "owner", "latest"),
@@ -199,7 +195,7 @@ tree_names = Table(
     _number("dof", nullable=True),
     _text("joints", nullable=True),
     _mass(),
-    _number("number", nullable=True),  # by which SQLite's index of words knows it
+    _number("number", nullable=True),  # as those of parts
     _default("owner", "local"),
     _default("visibility", "public"),
     Index("ix_tree_names_name", "name", *_READ),

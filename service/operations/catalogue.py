@@ -74,7 +74,7 @@ def _is_there(connection: Connection, viewer: Viewer, name: str, digest: str) ->
 def store_part(connection: Connection, part: PartContent) -> None:
     """Write a part with its program and formulas; content that is there already stays as it is."""
     content.put_program(connection, part.row["program"], part.program, part.nodes)
-    content.put_part(connection, part.row, part.tags, [FormulaRow(*values) for values in part.formulas])
+    content.put_part(connection, part.row, [FormulaRow(*values) for values in part.formulas])
 
 
 def mend_part(connection: Connection, part: PartContent) -> None:

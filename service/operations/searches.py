@@ -87,8 +87,8 @@ def _found(
 def _page(
     connection: Connection, viewer: Viewer, wanted: Wanted, size: int, token: str | None, read: Read[Wanted, Found]
 ) -> Page[Found]:
-    is_number = wanted.sort.lstrip("-") == "dof" or (wanted.sort == RELEVANCE and bool(wanted.words))
-    after = read_token(wanted, token, int if is_number else str, str)
+    kinds = (int, int) if wanted.is_by_words else (int if wanted.sort.lstrip("-") == "dof" else str, str)
+    after = read_token(wanted, token, *kinds)
     found = read(connection, viewer, wanted, after, size + 1)
-    following = write_token(wanted, found[size - 1][1], found[size - 1][0].name) if len(found) > size else None
+    following = write_token(wanted, *found[size - 1][1]) if len(found) > size else None
     return Page([each for each, _ in found[:size]], following)

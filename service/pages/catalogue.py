@@ -50,7 +50,7 @@ def page(shown: Shown, address: str, with_key: bool) -> bytes:
             EQUATION,
             " of the whole, as formulas or as numbers, with any parameters left open.",
         ),
-        *(() if shown.q else (*_example(shown.page.items, address, with_key), *_upload())),
+        *(() if shown.q else (*_example(shown.page.items, address, with_key), *_upload(address, with_key))),
         *_catalogue(shown),
         *_trees(shown),
         script=SCRIPT,
@@ -75,9 +75,13 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
     return [tag("h2", "Couple two parts"), tag("pre", tag("code", command), tabindex="0"), tag("p", after, ".")]
 
 
-def _upload() -> list[Html]:
+def _upload(address: str, with_key: bool) -> list[Html]:
+    """A form, or for those who are signed in, whose session changes nothing, the command that sends a key."""
     kinds = "URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO"
     label = f"A robot file of yours ({kinds}): it is read, derived and stored, and every remark is told"
+    if with_key:
+        command = f'substructures submit FILE --server {address} --key "$SUBSTRUCTURES_KEY"'
+        return [tag("h2", "Bring a robot"), tag("p", label, "."), tag("pre", tag("code", command), tabindex="0")]
     chosen = tag("input", id="file", type="file", accept=".urdf,.xml,.mjcf,.sdf,.csv,.json,.par", aria_label=label)
     asked = "Links that begin parts of their own, separated by commas (before the file is chosen)"
     cut = tag(

@@ -11,9 +11,9 @@ from collections.abc import Iterable
 from html import escape
 
 #: control characters, and those that turn the direction of the text around them
-_INVISIBLE = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
-)
+_CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff"
+_INVISIBLE = re.compile(f"[{_CONTROLS}]")
+_SPECIAL = re.compile(f"[&<>\"'{_CONTROLS}]")  # few texts have any
 _VOID = frozenset(("img", "input", "link", "meta"))
 
 
@@ -35,7 +35,7 @@ def _one(content: Content) -> str:
     if isinstance(content, Html):
         return content
     if isinstance(content, str):
-        return escape(_INVISIBLE.sub("\ufffd", content))
+        return escape(_INVISIBLE.sub("\ufffd", content)) if _SPECIAL.search(content) else content
     if content is None:
         return ""
     return str(content) if isinstance(content, int) else "".join(map(_one, content))

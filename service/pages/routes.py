@@ -26,9 +26,10 @@ from service.pages.versions import (
     versions_section,
     withdrawn_section,
 )
-from service.queries import aliases, search, uses, versions
+from service.queries import aliases, part_search, uses, versions
 from service.queries import jobs as job_rows
 from service.queries.part_search import CatalogueSearch
+from service.queries.search import RELEVANCE
 from service.queries.tree_search import TreeSearch
 from service.queries.words import words_of
 from service.settings import Settings
@@ -52,10 +53,10 @@ def first_page(
     after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """The catalogue."""
-    wanted = CatalogueSearch(words_of(q), sort=search.RELEVANCE)
+    wanted = CatalogueSearch(words_of(q), sort=RELEVANCE)
     with store.database.read() as connection:
         found = searches.parts(connection, viewer, wanted, CARDS, after)
-        total = search.count(connection, viewer, CatalogueSearch())
+        total = part_search.count(connection, viewer)
         some = searches.trees(connection, viewer, TreeSearch(), TREES, None)
     shown = Shown(found, q, total, some.items, some.next_token is not None)
     with_key = viewer != ANYBODY
@@ -121,7 +122,7 @@ def all_trees(
     after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """Trees by relevance, or by name."""
-    wanted = TreeSearch(words_of(q), sort=search.RELEVANCE)
+    wanted = TreeSearch(words_of(q), sort=RELEVANCE)
     with store.database.read() as connection:
         found = searches.trees(connection, viewer, wanted, TREES, after)
     return answer(request, trees_page(found, q))

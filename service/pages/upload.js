@@ -16,7 +16,7 @@ async function upload() {
   const told = await answer.json();
   report.replaceChildren();
   if (answer.status === 202) return line("became a job: " + told.id, "/jobs/" + told.id);
-  if (!answer.ok) return (told.errors || [{message: told.detail}]).forEach(fault => line(fault.message));
+  if (!answer.ok) return (told.errors?.length ? told.errors : [{message: told.detail}]).forEach(fault => line(fault.message));
   const kind = told.tree ? "/trees/" : "/substructures/";
   line("stored as " + told.stored.name + "@" + told.stored.version, kind + told.stored.name + "@" + told.stored.version);
   told.report.forEach(remark => line(remark.level + ": " + remark.place + ": " + remark.message));

@@ -11,6 +11,7 @@ from service.database.tables import aliases, parts, substructures, tree_names, v
 from service.integrity import missing
 from service.queries.common import now
 from service.queries.owners import reference, seen_by, visible
+from service.queries.terms import Term, exchange, terms_of
 from service.references import Reference
 from service.viewer import PUBLIC, Viewer
 
@@ -117,11 +118,16 @@ def add_version(
 
 
 def _set_latest(connection: Connection, name: str) -> None:
+    before = connection.execute(_SHOWN, {"of_name": name}).scalar_one()
     latest = connection.execute(_OFFERED, {"of_name": name}).scalar()
-    row = connection.execute(_OF_LATEST, {"of_name": name, "of_version": latest}).first()
-    shown = (None,) * len(_NARROW) if row is None else row
+    old, new = (
+        connection.execute(_OF_LATEST, {"of_name": name, "of_version": each}).first() for each in (before, latest)
+    )
+    shown = (None,) * len(_NARROW) if new is None else new[: len(_NARROW)]
     values = {f"its_{column.name}": value for column, value in zip(_NARROW, shown, strict=True)}
     connection.execute(_NEW_LATEST, {"of_name": name, "its_latest": latest, **values})
+    had, has = (set[Term]() if row is None else terms_of(name, *row[len(_NARROW) :]) for row in (old, new))
+    exchange(connection, name, had, has)
 
 
 def yank(
@@ -210,8 +216,9 @@ _OFFERED = (  # from the highest number down: of 10,000 versions one row is read
     .order_by(versions.c.version.desc())
     .limit(1)
 )
+_SHOWN = select(substructures.c.latest).where(substructures.c.name == bindparam("of_name"))
 _OF_LATEST = (
-    select(*_NARROW)
+    select(*_NARROW, parts.c.title, parts.c.tags, parts.c.ports)
     .join(parts, parts.c.digest == versions.c.digest)
     .where(_IS_OF_NAME, versions.c.version == bindparam("of_version"))
 )

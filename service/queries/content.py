@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import orjson
 from sqlalchemy import Connection, bindparam, select, update
 
 from service.database.packed import unpack
-from service.database.tables import part_ports, parts, programs, tags
+from service.database.tables import parts, programs
 from service.integrity import checked, missing, reading
-from service.queries.common import insert_missing, now, put_all
+from service.queries.common import insert_missing, now
 from service.queries.formulas import FormulaRow, packed
 from service.queries.uploads import get_upload
 
@@ -43,14 +42,9 @@ def _unpacked(digest: str, content: bytes) -> bytes:
         return checked("a program", digest, unpack(content))
 
 
-def put_part(
-    connection: Connection, row: Mapping[str, Any], tag_names: Sequence[str], formula_rows: Sequence[FormulaRow]
-) -> None:
-    """Store a part whose program is stored already, with its tags, ports and formulas, unless it is there."""
-    if insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}]):
-        put_all(connection, tags, [{"part": row["digest"], "tag": tag} for tag in tag_names])
-        ports = [{"part": row["digest"], "port": port} for port in dict.fromkeys(orjson.loads(row["ports"]))]
-        put_all(connection, part_ports, ports)
+def put_part(connection: Connection, row: Mapping[str, Any], formula_rows: Sequence[FormulaRow]) -> None:
+    """Store a part whose program is stored already, with its formulas, unless it is there."""
+    insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}])
 
 
 def replace_part(

@@ -2,26 +2,58 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, UnaryExpression, func, select
+from sqlalchemy import ColumnElement, Connection, Select, UnaryExpression, any_, func, select
 from sqlalchemy.sql.operators import custom_op
 
 Condition = ColumnElement[bool]
-#: SQLite: so many others are looked up first, and then sorted; of more a list is made, in which the rows are looked up
-#: as they come in order; of still more each is asked for row by row
-FEW, MANY = 5000, 20_000
+#: so many others are looked up first, and then sorted; of more SQLite makes a list, in which the rows are looked up as
+#: they come in order; of still more each is asked for row by row
+FEW, MANY = 2000, 15_000
 
 
-def among(connection: Connection, key: ColumnElement[Any], others: Select[Any], is_listed: bool = False) -> Condition:
-    """The condition that a key is among those selected; ``is_listed``: asking for one of them takes too long."""
-    if connection.dialect.name != "sqlite":
-        return key.in_(others)
-    some = select(func.count()).select_from(others.limit(MANY + 1).subquery())
-    count = connection.execute(some).scalar_one()
-    if count > MANY and not is_listed:
-        return others.where(others.selected_columns[0] == key).exists()
-    return (key if count <= FEW else without_index(key)).in_(others)
+@dataclass(eq=False)
+class Membership:
+    """``key`` is among ``others``, a query of one column. ``is_listed``: asking for one of them takes too long;
+    ``in_order``: SQLite finds them in their order, each once; ``times``: that many times FEW are few, where no order of
+    results has them together.
+    """
+
+    key: ColumnElement[Any]
+    others: Select[Any]
+    is_listed: bool = False
+    in_order: bool = False
+    times: int = 1
+    _are_counted: dict[int, bool] = field(default_factory=dict)
+
+    def is_common(self, connection: Connection) -> bool:
+        """Whether there are more than are looked up first, and then sorted."""
+        return self._are_more(connection, self.times * FEW)
+
+    def condition(self, connection: Connection) -> Condition:
+        """It, of rows that are wanted in an order."""
+        is_few = not self.is_common(connection)
+        if connection.dialect.name != "sqlite":
+            # PostgreSQL would walk through all rows in their order for the sake of a limit, however few are wanted
+            return self.key == any_(func.array(self.others.scalar_subquery())) if is_few else self.key.in_(self.others)
+        if is_few:
+            return self.key.in_(self.others)
+        if not self.is_listed and self._are_more(connection, MANY):
+            return self.others.where(self.others.selected_columns[0] == self.key).exists()
+        return without_index(self.key).in_(self.others)
+
+    def _are_more(self, connection: Connection, than: int) -> bool:
+        if than not in self._are_counted:
+            counted = select(func.count()).select_from(self.others.limit(than + 1).subquery())
+            self._are_counted[than] = connection.execute(counted).scalar_one() > than
+        return self._are_counted[than]
+
+
+def scanned(connection: Connection, value: ColumnElement[Any]) -> ColumnElement[Any]:
+    """A value that SQLite does better not to look for in an index."""
+    return without_index(value) if connection.dialect.name == "sqlite" else value
 
 
 def without_index(value: ColumnElement[Any]) -> ColumnElement[Any]:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import ColumnElement, Connection, ScalarSelect, Select, func, select
 
-from service.database.tables import part_ports, substructures, tags, versions
+from service.database.tables import search_terms, substructures, versions
 from service.queries.catalogue import COLUMNS, STORED, Version
-from service.queries.membership import Condition, among
-from service.queries.owners import seen_by
-from service.queries.search import Search, in_order, matching, places
-from service.queries.words import PARTS, Shelf, has
-from service.viewer import Viewer
+from service.queries.membership import Membership, scanned
+from service.queries.owners import seen_by, visible
+from service.queries.search import Position, Search, in_order, matching, places
+from service.queries.terms import PORT, TAG, names_with
+from service.queries.words import PARTS, Shelf
+from service.viewer import PRIVATE, PUBLIC, Viewer
 
 _IS_LATEST = substructures.c.latest == versions.c.version
 
@@ -31,33 +33,61 @@ class CatalogueSearch(Search):
 
     shelf: ClassVar[Shelf] = PARTS
 
-    def others(self, connection: Connection) -> Iterator[Condition]:
-        """Tags, ports and words of the source."""
-        for table, column, wanted in ((tags, tags.c.tag, self.tags), (part_ports, part_ports.c.port, self.ports)):
+    @property
+    def texts(self) -> tuple[tuple[Sequence[str], str], ...]:
+        """As of all, and words of the source."""
+        return *super().texts, (self.source, "source")
+
+    def memberships(self) -> Iterator[Membership]:
+        """As of all, and of tags and ports."""
+        yield from super().memberships()
+        for kind, wanted in ((TAG, self.tags), (PORT, self.ports)):
             for each in wanted:
-                yield among(connection, substructures.c.digest, select(table.c.part).where(column == each))
-        if self.source:
-            yield has(connection, PARTS, self.source, "source", in_order=True)
+                yield Membership(substructures.c.name, names_with(kind, each), in_order=True)
 
 
 def page(
-    connection: Connection, viewer: Viewer, search: CatalogueSearch, after: tuple[Any, ...] | None, size: int
-) -> list[tuple[Version, Any]]:
-    """Up to ``size`` versions that follow a position, as :func:`places`, with their sort values."""
+    connection: Connection, viewer: Viewer, search: CatalogueSearch, after: Position | None, size: int
+) -> list[tuple[Version, Position]]:
+    """Up to ``size`` versions that follow a position, as :func:`places`, with their own."""
     rows = places(connection, viewer, search, after, size)
     chosen = substructures.c.name.in_([name for name, _ in rows])
     latest = select(*COLUMNS).select_from(STORED).where(_IS_LATEST, chosen)
     return in_order({row.name: Version(*row) for row in connection.execute(latest, seen_by(viewer))}, rows)
 
 
+def count(connection: Connection, viewer: Viewer) -> int:
+    """How many latest versions a viewer sees."""
+    return connection.execute(_COUNT, seen_by(viewer)).scalar_one()
+
+
 def facets(connection: Connection, viewer: Viewer, search: CatalogueSearch) -> dict[str, dict[str, int]]:
     """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
-    columns = {"tags": tags.c.tag, "joints": substructures.c.joints, "dof": substructures.c.dof}
-    found = {}
-    for name, value in columns.items():
-        query = matching(select(value, func.count()), connection, search)
-        if name == "tags":
-            query = query.join(tags, tags.c.part == substructures.c.digest)
-        rows = connection.execute(query.group_by(value).order_by(value), seen_by(viewer))
-        found[name] = {str(row[0]): row[1] for row in rows}
-    return found
+    joints, name = (scanned(connection, each) for each in (substructures.c.joints, search_terms.c.name))
+    tag = search_terms.c.term
+    of_joints = _counted(connection, viewer, matching(select(joints, func.count()), connection, search), joints)
+    of_dof: Counter[int] = Counter()
+    for each, count in of_joints.items():
+        of_dof[len(each)] += count
+    of_found = name.in_(matching(select(substructures.c.name), connection, search))
+    tags = select(tag, func.count()).where(search_terms.c.kind == TAG, of_found)
+    return {
+        "tags": _counted(connection, viewer, tags, tag),
+        "joints": of_joints,
+        "dof": {str(dof): of_dof[dof] for dof in sorted(of_dof)},
+    }
+
+
+def _counted(connection: Connection, viewer: Viewer, query: Select[Any], by: ColumnElement[Any]) -> dict[str, int]:
+    rows = connection.execute(query.group_by(by).order_by(by), seen_by(viewer))
+    return {str(value): count for value, count in rows}
+
+
+def _number(*conditions: ColumnElement[bool]) -> ScalarSelect[int]:
+    there = substructures.c.latest.is_not(None)
+    return select(func.count()).select_from(substructures).where(there, *conditions).scalar_subquery()
+
+
+# public ones by themselves, which an index counts
+_IS_PUBLIC = substructures.c.visibility == PUBLIC
+_COUNT = select(_number(_IS_PUBLIC) + _number(substructures.c.visibility == PRIVATE, visible(substructures)))

@@ -43,5 +43,5 @@ def load_tree(name: str) -> dict[str, Any]:
 
 
 def _read(*path: str) -> dict[str, Any]:
-    data: dict[str, Any] = read_yaml(resources.files(__name__).joinpath(*path).read_bytes())
+    data: dict[str, Any] = read_yaml(resources.files(__name__).joinpath(*path).read_bytes(), is_ours=True)
     return data

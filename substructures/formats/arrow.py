@@ -10,6 +10,8 @@ import io
 import struct
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.util import find_spec
 from math import prod
 from typing import IO, Any
 
@@ -22,10 +24,15 @@ from substructures.documents import pointer_step
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.formats.arrays import flat
 
-try:
-    import pyarrow as pa
-except ImportError:
-    pa = None
+
+class _Late:
+    """pyarrow, loaded when something of it is used."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module("pyarrow"), name)
+
+
+pa: Any = _Late() if find_spec("pyarrow") else None
 
 MEDIA_TYPE = "application/vnd.apache.arrow.stream"
 END = b"\xff\xff\xff\xff\x00\x00\x00\x00"  # the end-of-stream marker

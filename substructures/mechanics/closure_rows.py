@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import svdvals
 
 from substructures.array import Array
 
@@ -50,7 +50,7 @@ def row_sizes(joints: Sequence[str], q: Array, look: Callable[[Array], tuple[Arr
 
 def rank_of(balanced: Array) -> int:
     """Rank of one G (m, n) with its rows over their reach."""
-    return int(ranks(svdvals(balanced) if balanced.size else np.zeros(0)))
+    return int(ranks(scipy.linalg.svdvals(balanced) if balanced.size else np.zeros(0)))
 
 
 def ranks(sizes: Array) -> NDArray[np.int64]:

@@ -71,6 +71,12 @@ def at_once(call: Callable[[Given], Answer], given: Sequence[Given]) -> list[Ans
         return list(pool.map(call, given))
 
 
+@pytest.fixture(autouse=True)
+def _logs_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A server's command run in this process would write all later log lines to a stderr that ends with its test."""
+    monkeypatch.setattr("service.logs.configure", lambda: None)
+
+
 @pytest.fixture(scope="session")
 def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A database that knows pendulum, slider and the tree cell@1; to be copied."""

@@ -13,7 +13,8 @@ from alembic.migration import MigrationContext
 from alembic.operations import Operations
 
 from service.database.connections import Database, DatabaseError
-from service.database.migrate import MigrationError, upgrade
+from service.database.migrate import upgrade
+from service.database.schema import NEWEST, MigrationError, is_newest
 from service.database.tables import metadata, parts
 from substructures.client import Client
 
@@ -38,7 +39,29 @@ def test_migrated_schema_is_the_one_in_the_code(database: Database) -> None:
 def test_migrating_again_changes_nothing(database: Database) -> None:
     upgrade(database.writer)
     with database.read() as connection:
-        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == ["0012"]
+        assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all() == [NEWEST]
+
+
+def test_what_is_newest_is_known_without_the_migrations(tmp_path: Path) -> None:
+    engine = sa.create_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    assert not is_newest(engine)
+    upgrade(engine, "0012")
+    assert not is_newest(engine)
+    upgrade(engine)
+    assert is_newest(engine)
+    engine.dispose()
+
+
+def test_a_store_that_is_brought_up_to_date_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """A new one is not: there is nothing to wait for."""
+    caplog.set_level("INFO", "service.database.migrate")
+    engine = sa.create_engine(f"sqlite:///{tmp_path / 'x.db'}")
+    upgrade(engine, "0012")
+    assert caplog.messages == []
+    for _ in range(2):
+        upgrade(engine)
+    assert [text for text in caplog.messages if "from schema 0012" in text] == caplog.messages[:1] == caplog.messages
+    engine.dispose()
 
 
 def test_newer_databases_are_refused(tmp_path: Path) -> None:

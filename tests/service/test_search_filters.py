@@ -14,7 +14,7 @@ from service import keys
 from service.app import open_store
 from service.database.connections import Database
 from service.database.migrate import upgrade
-from service.database.tables import metadata
+from service.database.tables import metadata, search_terms
 from service.queries import membership
 from service.settings import Settings
 from service.store import Store
@@ -321,7 +321,7 @@ def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -
         upgrade(engine, "0011")
         tables = [
             metadata.tables[name]
-            for name in ("programs", "parts", "tags", "substructures", "versions", "tree_names", "trees", "tree_parts")
+            for name in ("programs", "parts", "substructures", "versions", "tree_names", "trees", "tree_parts")
         ]
         with new.database.read() as connection, engine.begin() as old:
             for table in tables:
@@ -331,16 +331,21 @@ def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -
                 ]
                 if rows:
                     old.execute(sa.insert(table), rows)
-            expected = {table: rows_of(connection, table) for table in (*tables, metadata.tables["part_ports"])}
+            expected, terms = {table: rows_of(connection, table) for table in tables}, terms_of(connection)
         engine.dispose()
         migrated = Database(address)
         with migrated.read() as connection:
             assert {table: rows_of(connection, table) for table in expected} == expected
+            assert terms_of(connection) == terms != []
         migrated.close()
         with open_store(Settings(database=address, catalogue=False)) as opened:
             client = make_client(opened)
             assert {query: names(client, query) for query in PARTS} == PARTS
             assert {query: names(client, query, "trees") for query in TREES} == TREES
+
+
+def terms_of(connection: sa.Connection) -> list[Any]:
+    return sorted(map(tuple, connection.execute(sa.select(search_terms))))
 
 
 def rows_of(connection: sa.Connection, table: sa.Table) -> list[Any]:

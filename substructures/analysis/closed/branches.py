@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import svd
+import scipy
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.array import Array
@@ -36,7 +36,7 @@ def change(A: Array, B: Array) -> float:
 
 
 def _from(A: Array, difference: Array) -> float:
-    U, S, _ = svd(A, full_matrices=False)
+    U, S, _ = scipy.linalg.svd(A, full_matrices=False)
     if not (len(S) and S[-1] > 0):
         return np.inf if len(S) else 0.0
     return float(np.linalg.norm((U.T @ difference) / S[:, None], 2))

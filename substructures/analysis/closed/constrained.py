@@ -15,8 +15,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import lapack, svdvals
 
 from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.closed.pivoting import pivoted
@@ -186,7 +186,7 @@ class Constrained:
 
     def share(self, rank: int, rows: NDArray[np.int64] | slice = ALL) -> float:
         """The rank-th singular value of (some rows of) the balanced G, over the largest there, or elsewhere."""
-        values = svdvals(self.balanced[rows]) if rank else np.ones(1)
+        values = scipy.linalg.svdvals(self.balanced[rows]) if rank else np.ones(1)
         return 0.0 if len(values) < rank else float(values[rank - 1] / max(values[0], 1.0))
 
     @property
@@ -233,7 +233,7 @@ class Constrained:
         if r:
             G = self.G[rows]
             A[n:, :n], A[:n, n:] = G, G.T
-        lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
+        lu, pivots, info = scipy.linalg.lapack.dgetrf(A, overwrite_a=True)
         if info:
             raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
         return Factor(n, lu, pivots)
@@ -269,7 +269,7 @@ class Factor:
 
     def solve(self, a: Array, b: Array) -> tuple[Array, Array]:
         """x, y with g x + G^T y = a and G x = b."""
-        x, _ = lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
+        x, _ = scipy.linalg.lapack.dgetrs(self.lu, self.pivots, np.concatenate((a, b)))
         return x[: self.n], x[self.n :]
 
 

@@ -14,7 +14,7 @@ where S_p / S_1 is 1e-3. It is found by evaluating both states; no property of t
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import svd
+import scipy
 
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import CLOSED
@@ -51,7 +51,7 @@ def energy_doubt(s: Constrained, rank: int, t: Array, x: Array, ends: Array) -> 
 def _difference(s: Constrained, rank: int, part: float) -> float:
     """The largest difference of T + V between where s is and beside it; ``part``: the share there over the best one."""
     t, q, qd, energy = s.t, s.q, s.qd, sum(s.energies)
-    _, S, W = svd(s.balanced)
+    _, S, W = scipy.linalg.svd(s.balanced)
     # r: of rounding, and what project() leaves open, over the lengths of the rows
     rounding = UNITS * np.finfo(float).eps * max(1.0, float(np.abs(q).max())) * max(1.0, float(S[0]))
     opening = rounding + part**2 * CLOSED / 100 * float((s.width / s.reach).max())
@@ -61,6 +61,6 @@ def _difference(s: Constrained, rank: int, part: float) -> float:
 def _energy(s: Constrained, rank: int, t: float, q: Array, qd: Array) -> float:
     """T + V with the nearest velocities that meet the closures at q."""
     s.move(t, q, qd)
-    U, S, W = svd(s.balanced)
+    U, S, W = scipy.linalg.svd(s.balanced)
     s.move(t, q, qd - W[:rank].T @ ((U[:, :rank].T @ (s.velocity_residual / s.reach)) / S[:rank]))
     return sum(s.energies)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import lstsq, null_space, svd
 
 from substructures.analysis.arguments import real
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
@@ -184,13 +184,13 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
     if not G.size:
         return np.zeros(len(G), dtype=np.bool_)
     # lambda with G^T lambda = 0 can be added to any multipliers
-    free = null_space(G.T, rcond=RANK)
+    free = scipy.linalg.null_space(G.T, rcond=RANK)
     return np.asarray(np.abs(free).max(axis=1, initial=0) > np.sqrt(RANK))
 
 
 def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> bool:
     """Whether the rank is higher at a closed position nearby, in some direction along the closures."""
-    _, _, rows = svd(G) if G.size else (None, None, np.eye(s.n))
+    _, _, rows = scipy.linalg.svd(G) if G.size else (None, None, np.eye(s.n))
     # directions t with G t = 0
     tangent = rows[rank:]
     rng = np.random.default_rng(5)
@@ -210,8 +210,8 @@ def least_multipliers(s: Constrained, qdd: Array) -> Array:
         return np.zeros(0)
     # G^T lambda = g q'' - f, f = Q - Gamma q'q', for multipliers times the reach of their rows
     G, right = s.balanced, s.g @ qdd - s.f
-    found = lstsq(G.T, right, cond=RANK, lapack_driver="gelsd", check_finite=False)[0] / s.reach
-    free = null_space(G.T, rcond=RANK) if rank_of(G) < len(G) else np.zeros((len(G), 0))
+    found = scipy.linalg.lstsq(G.T, right, cond=RANK, lapack_driver="gelsd", check_finite=False)[0] / s.reach
+    free = scipy.linalg.null_space(G.T, rcond=RANK) if rank_of(G) < len(G) else np.zeros((len(G), 0))
     if free.size:
         # less what closures that depend on each other may add: lambda of least norm in N and N m
         basis = np.linalg.qr(free / s.reach[:, None])[0]

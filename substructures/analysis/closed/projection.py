@@ -6,8 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import lstsq
 
 from substructures.analysis.closed.constrained import Constrained, Factor
 from substructures.array import Array
@@ -101,7 +101,9 @@ def _least(s: Constrained, free: NDArray[np.int64], residual: Array) -> Array:
     # rows of G W, as long again as those of G: of small and large mechanisms side by side
     size, before = (np.linalg.norm(x, axis=1) for x in (G * weight, G))
     scale = np.divide(before, size, out=np.ones_like(size), where=size > 0)
-    found = lstsq(G * weight * scale[:, None], -left * scale, cond=RANK, lapack_driver="gelsd", check_finite=False)
+    found = scipy.linalg.lstsq(
+        G * weight * scale[:, None], -left * scale, cond=RANK, lapack_driver="gelsd", check_finite=False
+    )
     return np.asarray(weight * found[0], dtype=np.float64)
 
 

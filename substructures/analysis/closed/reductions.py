@@ -13,8 +13,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import lapack, svdvals
 
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
 from substructures.analysis.closed.pivoting import pivoted
@@ -156,7 +156,7 @@ class Partitioned(Reduction):
         if not self.rank:
             return 1.0
         G = self.s.balanced[self.rows]
-        return float(svdvals(G[:, self.dependent])[-1] / svdvals(G)[-1])
+        return float(scipy.linalg.svdvals(G[:, self.dependent])[-1] / scipy.linalg.svdvals(G)[-1])
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         """(y, y', work) of the independent coordinates."""
@@ -191,7 +191,7 @@ class Partitioned(Reduction):
         """L U of the balanced columns G_d of the dependent coordinates, and the order of its rows."""
         if not self.rank:
             return np.ones((0, 0)), np.zeros(0, dtype=np.int32)
-        lu, order, info = lapack.dgetrf(self.s.balanced[np.ix_(self.rows, self.dependent)])
+        lu, order, info = scipy.linalg.lapack.dgetrf(self.s.balanced[np.ix_(self.rows, self.dependent)])
         if info:
             raise Singular(UNDETERMINED)
         return lu, order
@@ -209,7 +209,7 @@ class Partitioned(Reduction):
         """x with G_d x = b. Raises Singular."""
         if not self.rank:
             return b
-        x, _ = lapack.dgetrs(*factor, b / self.s.reach[self.rows])
+        x, _ = scipy.linalg.lapack.dgetrs(*factor, b / self.s.reach[self.rows])
         if not np.isfinite(x).all():
             raise Singular(UNDETERMINED)
         return np.asarray(x, dtype=np.float64)

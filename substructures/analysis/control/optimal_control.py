@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import Bounds, minimize
+import scipy
 
 from substructures.analysis.arguments import positive
 from substructures.analysis.control.cost_gradient import trajectory
@@ -161,14 +161,14 @@ def _searched(search: ShootingProgram, limit: float, progress: IterationReport |
 
 def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
     """SLSQP; L-BFGS-B without conditions."""
-    wanted, bounds = search.wanted, Bounds(*search.limits())
+    wanted, bounds = search.wanted, scipy.optimize.Bounds(*search.limits())
     common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": note}
     if not search.rows:
         options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance, "gtol": 1e-10}
-        return minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
+        return scipy.optimize.minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
     conditions = {"type": "eq", "fun": search.residual, "jac": search.jacobian}
     options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}
-    return minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
+    return scipy.optimize.minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
 
 
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:

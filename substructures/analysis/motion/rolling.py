@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from scipy.linalg import lapack
+import scipy
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
@@ -109,7 +109,7 @@ class _Rolling:
         out, result = self._out, np.empty(len(y))
         force = out["forces"][0] - out[self.form][0]
         # LAPACK takes no matrix without rows: nothing is left free
-        _, acceleration, info = lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
+        _, acceleration, info = scipy.linalg.lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
         result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
         result[self.n : -1] = acceleration if not info else np.nan
         return result

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
@@ -80,7 +80,7 @@ class ClosedSearch(RestSearch):
         # lambda_0 of least squares: G^T lambda = -Q
         x = np.append(q[moving], np.linalg.lstsq((self.G[0] * force[:, None] / self.unit).T, F, rcond=1e-8)[0])
         with np.errstate(all="ignore"):
-            x = least_squares(
+            x = scipy.optimize.least_squares(
                 lambda x: both(x)[0], x, lambda x: both(x)[1], max_nfev=STEPS, x_scale=length, **TOLERANCES
             ).x
         residual, J = both(x)

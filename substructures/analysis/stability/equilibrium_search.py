@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from substructures.analysis.arguments import positive, real, whole
 from substructures.analysis.equations.kernels import program_kernel
@@ -183,7 +183,7 @@ class RestSearch:
             if not np.isfinite(self.at(q)[1]).all():
                 q[moving] += BESIDE * self.length[moving]
             with np.errstate(all="ignore"):
-                q[moving] = least_squares(
+                q[moving] = scipy.optimize.least_squares(
                     lambda x: both(x)[0],
                     q[moving].copy(),
                     lambda x: both(x)[1],

@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from substructures.analysis.arguments import Numbers, reals
 from substructures.analysis.given import StateArray, numbers
@@ -118,5 +118,5 @@ def _nearest(
 def _followed(before: ComplexArray, roots: ComplexArray) -> ComplexArray:
     """The roots in the order in which they are nearest to the ones before."""
     # the permutation s of least sum |z_i - z'_s(i)|
-    _, order = linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
+    _, order = scipy.optimize.linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
     return roots[order]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import independent_coordinates
@@ -223,7 +223,7 @@ class ClosedSteadySearch(SteadySearch):
 
         z = np.concatenate((start, self.multipliers[0] / force))
         with np.errstate(all="ignore"):
-            z = least_squares(
+            z = scipy.optimize.least_squares(
                 lambda z: both(z)[0], z, lambda z: both(z)[1], max_nfev=STEPS, x_scale=length, **TOLERANCES
             ).x
         residual, J = both(z)

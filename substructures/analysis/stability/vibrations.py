@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-from scipy.linalg import eig, eigh
+import scipy
 
 from substructures.array import Array, ComplexArray
 
@@ -106,7 +106,7 @@ def is_symmetric(K: Array) -> bool:
 
 def _undamped(M: Array, K: Array) -> list[_Doubtful]:
     # K x = w^2 M x
-    squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    squares, shapes = scipy.linalg.eigh((K + K.T) / 2, (M + M.T) / 2)
     floor = 1e-13 * np.abs(squares).max()
     found: list[_Doubtful] = []
     # z = 0 (listed once), +-i w, or +-sqrt(-w^2)
@@ -126,7 +126,7 @@ def _undamped(M: Array, K: Array) -> list[_Doubtful]:
 
 def _general(M: Array, D: Array, K: Array) -> list[_Doubtful]:
     n, A = len(M), first_order(M, D, K)
-    values, left, right = eig(A, left=True, right=True)
+    values, left, right = scipy.linalg.eig(A, left=True, right=True)
     doubts = _doubts(A, values, left, right)
     found: list[_Doubtful] = []
     for value, vector, doubt in zip(values.tolist(), right.T, doubts.tolist(), strict=True):
