@@ -7,6 +7,7 @@ import logging
 import os
 import sqlite3
 import sys
+from collections.abc import Sequence
 from contextlib import closing, suppress
 from pathlib import Path
 from threading import Thread
@@ -110,9 +111,12 @@ class Watch:
             self._known = [_identity(name) for name in self._paths]
             if is_large:
                 self._looker.start()
-        except (sqlite3.Error, DatabaseError) as error:
+        except DatabaseError:
             self._anchor.close()
-            raise DatabaseError(str(error) if isinstance(error, DatabaseError) else f"{path}: {error}") from None
+            raise
+        except sqlite3.Error as error:
+            self._anchor.close()
+            raise self._damaged([str(error)]) if _is_corrupt(error) else DatabaseError(f"{path}: {error}") from None
 
     def check(self) -> None:
         """Raise OperationalError when what is open is damaged, or not what is there: what is written would be lost."""
@@ -124,11 +128,20 @@ class Watch:
                 raise OperationalError(None, None, reason)
 
     def _look(self, connection: sqlite3.Connection) -> None:
-        """Raise DatabaseError for a damaged file."""
-        found = [row[0] for row in connection.execute(f"PRAGMA quick_check({FAULTS})")]
+        """Raise DatabaseError for a damaged file, and sqlite3.Error."""
+        found = []
+        try:
+            found += [row[0] for row in connection.execute(f"PRAGMA quick_check({FAULTS})")]
+        except sqlite3.Error as error:  # so damaged that the check itself ended
+            if not _is_corrupt(error):
+                raise
+            found.append(str(error))
         if found != ["ok"]:
-            told = "; ".join("; ".join(found).splitlines())[:TOLD]
-            raise DatabaseError(f"{self._path} is damaged: {told}; restore a backup")
+            raise self._damaged(found)
+
+    def _damaged(self, faults: Sequence[str]) -> DatabaseError:
+        told = "; ".join("; ".join(faults).splitlines())[:TOLD]
+        return DatabaseError(f"{self._path} is damaged: {told}; restore a backup")
 
     def _look_later(self) -> None:
         """Look while the server answers; from then on it answers no more when there is damage."""
@@ -149,6 +162,11 @@ class Watch:
                     self._reader.interrupt()
             self._looker.join(0.1)
         self._anchor.close()
+
+
+def _is_corrupt(error: sqlite3.Error) -> bool:
+    """Whether this is about what the file has in it; extended codes have the primary one in their last byte."""
+    return getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_CORRUPT
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

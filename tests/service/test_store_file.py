@@ -12,6 +12,7 @@ from pathlib import Path
 from time import sleep
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy.exc import OperationalError
@@ -78,7 +79,24 @@ def test_a_store_that_goes_while_it_is_written(tmp_path: Path) -> None:
         assert found.execute("SELECT count(*) FROM substructures").fetchone() == (0,)
 
 
-def damaged(template: Path, tmp_path: Path) -> tuple[Path, bytes]:
+def random_bytes(page: bytes) -> bytes:
+    return page[:8] + np.random.default_rng(1).bytes(len(page) - 8)
+
+
+def torn_row(page: bytes) -> bytes:
+    """SQLite's own check ends in an error where the header of a row is longer than the row."""
+    start = int.from_bytes(page[8:10])  # of the first row: its length, its id, the length of its header
+    for _ in range(2):
+        while page[start] & 0x80:
+            start += 1
+        start += 1
+    return page[:start] + b"\xff\xff\x7f" + page[start + 3 :]
+
+
+Damage = Callable[[bytes], bytes]
+
+
+def damaged(template: Path, tmp_path: Path, damage: Damage = random_bytes) -> tuple[Path, bytes]:
     path = tmp_path / "store.db"
     shutil.copy(template, path)
     with closing(sqlite3.connect(path)) as connection:
@@ -86,22 +104,25 @@ def damaged(template: Path, tmp_path: Path) -> tuple[Path, bytes]:
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         root = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'parts'").fetchone()[0]
     content = bytearray(path.read_bytes())
-    content[(root - 1) * size + 8 : root * size] = os.urandom(size - 8)
+    place = slice((root - 1) * size, root * size)
+    content[place] = damage(bytes(content[place]))
     path.write_bytes(content)
     return path, bytes(content)
 
 
-def test_damage_is_found_at_the_start(template: Path, tmp_path: Path) -> None:
-    path, content = damaged(template, tmp_path)
+@pytest.mark.parametrize("damage", [random_bytes, torn_row])
+def test_damage_is_found_at_the_start(template: Path, tmp_path: Path, damage: Damage) -> None:
+    path, content = damaged(template, tmp_path, damage)
     with pytest.raises(DatabaseError, match=r"is damaged: .*restore a backup"):
         Database(f"sqlite:///{path}")
     assert path.read_bytes() == content
 
 
+@pytest.mark.parametrize("damage", [random_bytes, torn_row])
 def test_damage_of_a_large_store_is_found_while_it_answers(
-    template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Damage
 ) -> None:
-    path, _ = damaged(template, tmp_path)
+    path, _ = damaged(template, tmp_path, damage)
     monkeypatch.setattr("service.database.file.LARGE", 0)
     with closing(Database(f"sqlite:///{path}")) as database:
         for _ in range(200):  # in ten seconds at most
