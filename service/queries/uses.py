@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from sqlalchemy import BindParameter, ColumnElement, Connection, Select, Table, bindparam, select, tuple_
+from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindparam, select, tuple_
 
 from service.database.tables import part_uses, parts, substructures, tree_names, tree_parts, versions
 from service.queries.owners import private_parts, reference, seen_by, visible
@@ -33,7 +33,7 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """An instance of a tree whose part is withdrawn."""
+    """An instance of a tree whose part is withdrawn; ``cell.arm``: one of the published tree that ``cell`` is."""
 
     instance: str
     name: str
@@ -143,18 +143,22 @@ def _withdrawn(
     ]
 
 
-def _withdrawn_rows(table: Table, used: ColumnElement[str], chosen: ColumnElement[bool]) -> Select[Any]:
+def _withdrawn_rows(instance: ColumnElement[str], used: ColumnElement[str], chosen: ColumnElement[bool]) -> Select[Any]:
+    """Of the parts that are used, and of those that these are built of, as far as it goes: ``arm.wrist``."""
+    direct = select(instance.label("instance"), used.label("part")).where(chosen).cte("used", recursive=True)
+    deeper = select(direct.c.instance + "." + part_uses.c.instance, part_uses.c.used)
+    all_used = direct.union(deeper.join(direct, direct.c.part == part_uses.c.part))
     successor = reference(substructures, versions.c.successor_name, versions.c.successor_version)
-    columns = (table.c.instance, versions.c.name, versions.c.version, versions.c.yank_reason, successor)
-    joined = table.join(versions, versions.c.digest == used)
+    columns = (all_used.c.instance, versions.c.name, versions.c.version, versions.c.yank_reason, successor)
+    joined = all_used.join(versions, versions.c.digest == all_used.c.part)
     joined = joined.join(substructures, substructures.c.name == versions.c.name)
-    query: Select[Any] = select(*columns).select_from(joined).where(chosen, versions.c.yanked.is_not(None))
-    return query.where(visible(substructures)).order_by(table.c.instance)
+    query: Select[Any] = select(*columns).select_from(joined).where(versions.c.yanked.is_not(None))
+    return query.where(visible(substructures)).order_by(all_used.c.instance)
 
 
 _OF_TREE = _withdrawn_rows(
-    tree_parts,
+    tree_parts.c.instance,
     tree_parts.c.part,
     (tree_parts.c.name == bindparam("tree")) & (tree_parts.c.revision == bindparam("revision")),
 )
-_OF_PART = _withdrawn_rows(part_uses, part_uses.c.used, part_uses.c.part == bindparam("digest"))
+_OF_PART = _withdrawn_rows(part_uses.c.instance, part_uses.c.used, part_uses.c.part == bindparam("digest"))

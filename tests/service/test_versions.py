@@ -206,6 +206,21 @@ def test_differences(filled: TestClient) -> None:
     assert "/instances/a/definition/parameters/m/value" in [each["place"] for each in nested["definition"]]
 
 
+def test_a_withdrawn_part_is_told_two_levels_up(filled: TestClient) -> None:
+    stored(filled, TREE, PAIR)
+    stored(filled, f"{TREE}/pair/publish", {"name": "module"})
+    stored(filled, TREE, {"name": "cell2", "instances": [{"name": "m", "substructure": "module"}]})
+    stored(filled, f"{TREE}/cell2/publish", {"name": "cell2-part"})
+    known = filled.get(f"{TREE}/cell2").headers["etag"]
+    stored(filled, f"{PART}/pendulum@1/yank", {"reason": "too light"}, 200)
+    for address in (f"{TREE}/cell2", f"{TREE}/cell2@1", f"{PART}/cell2-part"):
+        gone = filled.get(address, headers={"If-None-Match": known}).json()["withdrawn"]
+        assert [(each["instance"], each["substructure"]) for each in gone] == [
+            ("m.a", "pendulum@1"),
+            ("m.b", "pendulum@1"),
+        ]
+
+
 def test_differences_that_cannot_be_told(filled: TestClient) -> None:
     assert filled.get(f"{PART}/pendulum/difference").status_code == 422
     assert filled.get(f"{PART}/nothing/difference?to=pendulum").status_code == 404
