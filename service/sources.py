@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from urllib.parse import unquote, urlsplit
 
 SCHEMES = ("http", "https")
+#: where the operator lists them
+SETTING = "SUBSTRUCTURES_MIRROR_SOURCES"
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from service.queries.common import is_conflict
 from service.references import Reference, parse_reference
 from service.refusals import Refused, known_refusal
 from service.schemas.entries import PLAIN
-from service.sources import Source
+from service.sources import SETTING, Source
 from service.store import Store
 from service.viewer import PUBLIC, Viewer
 from substructures.client import Client, ProblemError
@@ -35,6 +35,7 @@ LISTED = 100  # parts that a result names, of each outcome
 PAUSES = (0.5, 2.0, 8.0)  # seconds before a request is sent again that was not answered
 ATTEMPTS = 8  # on a part, where others store at the same time
 GONE = (429, 502, 503, 504)  # of a server that may answer later
+DENIED = (401, 403)  # for the key, or for want of one
 
 Told = Callable[[float], None]
 
@@ -73,7 +74,7 @@ class Mirror:
     def __init__(self, store: Store, viewer: Viewer, source: Source, max_nodes: int, told: Told) -> None:
         self._store, self._viewer, self._max_nodes, self._told = store, viewer, max_nodes, told
         self._done = 0  # parts that were looked at
-        self._client = Client(source.address, source.key)
+        self._client, self._has_key = Client(source.address, source.key), source.key is not None
         self._found = Mirrored(source.address)
 
     def run(self) -> dict[str, Any]:
@@ -203,7 +204,11 @@ class Mirror:
         try:
             found = json.loads(self._get(path, params).content)
         except ProblemError as error:
-            raise self._failed(_reason(error)[1]) from None
+            code, why = _reason(error)
+            is_other = error.status == 404 and code == "source-failed"  # an instance has that list, and codes
+            raise self._failed(
+                f"{path} is answered with {why}; is this the address of such a service?" if is_other else why
+            ) from None
         except (ValueError, RecursionError):
             found = None
         if not isinstance(found, dict):
@@ -217,10 +222,12 @@ class Mirror:
             try:
                 answer = self._client.request("GET", path, params=params)
             except httpx2.HTTPError as error:
-                why = f"no answer ({type(error).__name__})"
+                why = _silence(error)
             except (ValueError, LookupError, TypeError, AttributeError):
                 raise self._failed(f"{path} is answered with a problem that cannot be read") from None
             except ProblemError as error:
+                if error.status in DENIED:
+                    raise self._denied(error) from None
                 if error.status not in GONE:
                     raise
                 why = _reason(error)[1]
@@ -233,15 +240,32 @@ class Mirror:
                 sleep(pause)
         raise self._failed(why)
 
+    def _denied(self, error: ProblemError) -> Refused:
+        """502: the source asks for a key, or does not take the one it is sent; who gives it another one."""
+        kept = self._found.source.replace("://", "://KEY@")
+        given = f"in {SETTING}, as {kept}"
+        if not self._has_key:
+            return self._failed(f"it asks for an API key, which the operator of this instance gives {given}")
+        why = f"it does not take the API key that it is sent ({_reason(error)[0]})"
+        return self._failed(f"{why}; the operator of this instance gives another one {given}")
+
     def _failed(self, why: str) -> Refused:
         """502: the source; what was done until then."""
         stored = len(self._found.stored)
-        detail = f"{self._found.source}: {why}; {stored} parts were stored and stay; try the job again for the rest"
+        kept = f"{stored} parts were stored and stay; " if stored else ""
+        detail = f"{self._found.source}: {why}; {kept}try the job again for the rest"
         return Refused(502, "source-failed", detail, stored=stored, same=len(self._found.same))
 
 
 def _reference(version: Version) -> str:
     return f"{version.name}@{version.version}"
+
+
+def _silence(error: httpx2.HTTPError) -> str:
+    """In words, why there is no answer."""
+    if isinstance(error, httpx2.ConnectError):
+        return str(error).partition(";")[0]  # how a server is started is for people at one of their own
+    return "no answer in time" if isinstance(error, httpx2.TimeoutException) else f"no answer ({error})"
 
 
 def _reason(error: InvalidInput | ProblemError | Refused) -> tuple[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -324,6 +325,54 @@ def test_a_source_that_lies(lie: str, liar: str, client: TestClient, store: Stor
     assert LIES[lie][1] in item["problem"]["detail"]
     assert {authorization for _, authorization in Liar.asked} == {f"Bearer {SECRET}"}
     assert "/stolen" not in [path for path, _ in Liar.asked]
+
+
+def said(client: TestClient, store: Store, listed: str, address: str) -> str:
+    """Why a mirror of a source fails."""
+    store.settings = store.settings.model_copy(update={"mirror_sources": (listed,)})
+    with running(store, FakeEngine()):
+        job = submitted(client, mirror(address))
+        assert finished(client, job)["state"] == "failed"
+    problem = items(client, job)[0]["problem"]
+    assert (problem["status"], problem["code"]) == (502, "source-failed")
+    return str(problem["detail"])
+
+
+@pytest.mark.parametrize("path", ["/v1/substructures", "/v1/bundles"])
+@pytest.mark.parametrize(
+    ("status", "code", "is_sent", "words"),
+    [
+        (401, "key-missing", False, "it asks for an API key, which the operator of this instance gives "),
+        (401, "key-revoked", True, "it does not take the API key that it is sent (key-revoked); "),
+        (403, "scope-missing", True, "it does not take the API key that it is sent (scope-missing); "),
+    ],
+)
+def test_a_source_that_wants_another_key(
+    path: str, status: int, code: str, is_sent: bool, words: str, liar: str, client: TestClient, store: Store
+) -> None:
+    """Who gives it is said, and not how a header is written; also where it is revoked in the middle."""
+    page = {"items": [OFFER], "next_page_token": None}
+    Liar.answers = {"/v1/substructures": (200, page)} | {path: (status, {"detail": "no header", "code": code})}
+    told = said(client, store, liar.replace("//", f"//{SECRET}@") if is_sent else liar, liar)
+    given = f"in SUBSTRUCTURES_MIRROR_SOURCES, as {liar.replace('//', '//KEY@')}; try the job again for the rest"
+    assert told.startswith(f"{liar}: {words}")
+    assert told.endswith(given)
+
+
+def test_a_source_that_is_none(liar: str, client: TestClient, store: Store) -> None:
+    Liar.answers = {"/v1/substructures": (404, {})}
+    assert "404: no details; is this the address of such a service?" in said(client, store, liar, liar)
+
+
+def test_a_source_that_is_away(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mirrors, "PAUSES", ())
+    with socket.socket() as taken:  # nobody listens there
+        taken.bind(("127.0.0.1", 0))
+        address = f"http://127.0.0.1:{taken.getsockname()[1]}"
+        told = said(client, store, address, address)
+    assert told.startswith(f"{address}: nothing answers at {address} (")
+    assert "ConnectError" not in told
+    assert "serve" not in told
 
 
 def test_links_of_a_source_are_not_followed(liar: str, client: TestClient, store: Store) -> None:

@@ -14,11 +14,10 @@ from service.jobs.kinds.library import Library
 from service.refusals import Refused
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from service.sources import SCHEMES, read_source
+from service.sources import SCHEMES, SETTING, read_source
 from substructures.errors import InvalidDocument
 
 MIRROR_KIND = "mirror"
-SETTING = "SUBSTRUCTURES_MIRROR_SOURCES"
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
