@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import os
 import pwd
+import re
 import signal
 import subprocess
 import sys
@@ -26,14 +27,16 @@ ENVIRONMENT = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "TMPDIR", "LD_LIBRARY
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 ROOT = Path(__file__).parents[2]
 CHUNK = 2**20
-OUTPUT = 2000  # characters of what a runner printed that are kept
+OUTPUT = 1000  # characters that are kept of what a runner printed, of its beginning and of its end each
 BLOBS = 64 * 2**20  # bytes of blobs that a runner keeps
 ITEMS = 2000  # after so many items a runner is replaced
 #: wall-clock time that an item may take: so much, and so many times its CPU time
 GRACE, SLOWNESS = 60.0, 10.0
 PATIENCE = 0.1  # seconds
-#: Where memory runs out, libraries crash in many ways: a crash of a process that had so much of its budget is that.
+#: Where memory runs out, libraries crash in many ways: a crash of a process that had so much of its budget is that, and
+#: so is one whose last words are about memory (it may have taken the rest since we looked).
 CLOSE = 0.7
+LAST_WORDS = re.compile(r"MemoryError|bad_alloc|memory allocation|\b(allocate|out of|not enough) memory", re.IGNORECASE)
 
 
 def environment() -> dict[str, str]:
@@ -81,7 +84,7 @@ class Process:
         self._outgoing: deque[memoryview] = deque()
         self._blobs: OrderedDict[str, int] = OrderedDict()
         self._printed = ""
-        self._items, self._resident = 0, 0
+        self._items, self._resident, self._most = 0, 0, 0
         self.current: Work | None = None
         self.deadline = float("inf")
         self.is_ready = self.is_last = False
@@ -103,6 +106,7 @@ class Process:
 
     def start(self, work: Work) -> None:
         """Let it compute a work."""
+        self._most = 0
         self.measure()
         self.current, self._printed = replace(work, blobs={}), ""
         self.deadline = time.monotonic() + GRACE + SLOWNESS * work.budget.cpu_seconds
@@ -137,12 +141,12 @@ class Process:
             self._outgoing.clear()
 
     def listen(self) -> bool:
-        """Keep the end of what it printed; False when it closed its output."""
+        """Keep what it printed; False when it closed its output."""
         try:
             data = os.read(self.output, CHUNK)
         except BlockingIOError:
             return True
-        self._printed = (self._printed + data.decode(errors="replace"))[-OUTPUT:]
+        self._printed = _ends(self._printed + data.decode(errors="replace"))
         return bool(data)
 
     def receive(self) -> list[AttemptReport] | None:
@@ -172,14 +176,16 @@ class Process:
 
     @property
     def printed(self) -> str:
-        """The end of what it printed since its work began."""
+        """What it printed since its work began; of much, the beginning and the end."""
         return self._printed.strip()
 
     def measure(self) -> None:
-        """Note how much memory is resident, where the system says so."""
+        """Note how much memory is resident, and the most that the kernel counted towards the budget since the work
+        began (data, resident or not), where the system says so."""
         with contextlib.suppress(OSError, IndexError, ValueError):
-            pages = Path(f"/proc/{self.pid}/statm").read_text().split()[1]
-            self._resident = int(pages) * os.sysconf("SC_PAGE_SIZE")
+            sizes = [int(pages) for pages in Path(f"/proc/{self.pid}/statm").read_text().split()]
+            page = os.sysconf("SC_PAGE_SIZE")
+            self._resident, self._most = sizes[1] * page, max(self._most, sizes[5] * page)
 
     def excess(self) -> AttemptReport | None:
         """The last report about a work that takes more than it may: memory, or far too long."""
@@ -212,7 +218,7 @@ class Process:
         self.listen()
         if code == -signal.SIGPROF:
             return _problem(work, "cpu-limit", f"{work.budget.cpu_seconds:g} s of CPU time")
-        if code != -signal.SIGKILL and self._resident > CLOSE * work.budget.memory_bytes:
+        if code != -signal.SIGKILL and lacked_memory(self._most, work.budget.memory_bytes, self._printed):
             return self._out_of_memory(work)
         what = f"exit code {code}" if code >= 0 else f"killed by signal {-code} ({signal.strsignal(-code)})"
         what = what if self.is_ready else f"{what} before it was ready"
@@ -227,6 +233,16 @@ class Process:
         for stream in (self._input, self._output):
             stream.close()
         os.close(self.reports)
+
+
+def lacked_memory(most: int, budget: int, printed: str) -> bool:
+    """Whether a process that crashed was without memory: by the most it was seen to have, in bytes, or by its words."""
+    return most > CLOSE * budget or LAST_WORDS.search(printed) is not None
+
+
+def _ends(text: str) -> str:
+    """A text, without its middle if it is long."""
+    return text if len(text) <= 2 * OUTPUT else f"{text[:OUTPUT]}{text[-OUTPUT:]}"
 
 
 def _pipe() -> tuple[int, int]:

@@ -16,7 +16,7 @@ import pytest
 from service.jobs.engine import Budget, Work
 from service.jobs.kinds import run
 from service.jobs.local import LocalEngine
-from service.jobs.process import rights_of
+from service.jobs.process import lacked_memory, rights_of
 from service.queue.engines import engine_of
 from service.settings import Settings, SettingsError
 from substructures.documents import write_json
@@ -124,6 +124,26 @@ def test_memory_limit_is_a_problem_of_the_item(pool: LocalEngine, megabytes: int
     assert report.outcome.problem is not None
     assert report.outcome.problem["code"] == "memory-limit"
     assert process_of(pool) != before
+
+
+@pytest.mark.parametrize(
+    "printed",
+    [
+        "Fatal Python error: _PyErr_NormalizeException: Cannot recover from MemoryErrors while normalizing exceptions.",
+        "terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc",
+        "Flint exception (Unable to allocate memory):",
+        "memory allocation of 8388608 bytes failed",
+        "python3: out of memory",
+    ],
+)
+def test_last_words_of_a_crash_tell_that_memory_was_missing(printed: str) -> None:
+    assert lacked_memory(0, 2**30, printed)
+
+
+def test_other_crashes_are_not_taken_for_a_lack_of_memory() -> None:
+    assert not lacked_memory(2**29, 2**30, "free(): invalid pointer")
+    assert not lacked_memory(0, 2**30, "Fatal Python error: Segmentation fault\n  File 'memory.py', line 3 in memory")
+    assert lacked_memory(int(0.71 * 2**30), 2**30, "")
 
 
 def test_killed_runner_is_reported_and_replaced(pool: LocalEngine, library: MemoryLibrary) -> None:

@@ -64,6 +64,7 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             ("/instances/1/name", "duplicate-name"),
         ),
         ("assemble", {"items": [{**TREE, "instances": [HAND]}]}, ("/instances/0/at", "unknown-instance")),
+        ("assemble", {"items": [{**TREE, "instances": [{**HAND, "at": "tip"}]}]}, ("/instances/0/at", "place")),
         ("derive", {"items": [with_body({"mass": "nope"})]}, ("/bodies/0/mass", "unknown-name")),
         ("derive", {"items": [with_body({"com": [0, "l*(", 0]})]}, ("/bodies/0/com/1", "bad-expression")),
         ("derive", {"items": [with_body({"parent": "nobody"})]}, ("/bodies/0/parent", "unknown-parent")),
