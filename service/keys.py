@@ -23,6 +23,7 @@ from service.viewer import ANYBODY, CONSOLE, OPEN, SCOPES, Viewer
 
 PREFIX = "sub"
 OWNER = r"[a-z0-9][a-z0-9-]{0,63}"
+DAYS = 36_500  # that a key may last
 REMEMBERED = 1000  # authorisations in memory
 SESSION = timedelta(hours=12)
 HEADER = "the header 'Authorization: Bearer sub_...'"
@@ -50,6 +51,10 @@ def create(
         raise ValueError(f"unknown scope '{', '.join(unknown)}'; there are {', '.join(SCOPES)}")
     if not re.fullmatch(OWNER, owner):
         raise ValueError(f"'{owner}' is no owner: up to 64 of a to z, 0 to 9 and '-', the first no '-'")
+    if days is not None and not 0 < days <= DAYS:
+        raise ValueError(
+            f"a key expires after more than 0 and at most {DAYS} days; without a number of days it never does"
+        )
     expires = None if days is None else now(timedelta(days=days))
     granted = " ".join(dict.fromkeys(scopes))
     return _add(connection, keys.ApiKey("", "", label, granted, now(), expires, None, owner), "key.create", viewer)

@@ -17,6 +17,7 @@ from service.analyses.printing import NAME
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
+from service.cli import completion
 from service.cli.choices import Form, Format
 from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Server, with_more, with_server
@@ -52,7 +53,12 @@ class _Wanted:
     as_json: bool = False
 
 
-Tree = Annotated[str, typer.Argument(help="Tree document (JSON or YAML), or the name of a tree on a server.")]
+Tree = Annotated[
+    str,
+    typer.Argument(
+        help="Tree document (JSON or YAML), or the name of a tree on a server.", autocompletion=completion.trees
+    ),
+]
 Out = Annotated[
     Path | None,
     typer.Option(
@@ -81,7 +87,11 @@ def analyse(
     server: Server,
     tree: Tree,
     what: Annotated[
-        str, typer.Argument(help=f"Numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...")
+        str,
+        typer.Argument(
+            help=f"Numbers: {', '.join(ANALYSES)}; formulas: {', '.join(QUANTITIES)}, metric, ...",
+            autocompletion=completion.words([*ANALYSES, *QUANTITIES]),
+        ),
     ],
     request: Annotated[
         Path | None, typer.Argument(metavar="REQUEST", help="Of numbers, JSON or YAML.", show_default=False)

@@ -7,15 +7,20 @@ from typing import Annotated
 
 import typer
 
-from service.cli.options import Store, settings
+from service.cli.options import Json, Store, settings
+from service.cli.output import print_json
 from service.database import backup as copies
 
 BackupFile = Annotated[Path, typer.Argument(metavar="FILE")]
 
 
-def backup(file: BackupFile, database: Store = None) -> int:
+def backup(file: BackupFile, database: Store = None, json: Json = False) -> int:
     """Copy the SQLite store to a file, also while a server runs."""
-    print(f"{file}: {copies.backup(settings(database=database).database, file):,} bytes")
+    size = copies.backup(settings(database=database).database, file)
+    if json:
+        print_json({"file": str(file), "bytes": size})
+    else:
+        print(f"{file}: {size:,} bytes")
     return 0
 
 
@@ -23,10 +28,14 @@ def restore(
     file: BackupFile,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace a store that is there.")] = False,
     database: Store = None,
+    json: Json = False,
 ) -> int:
     """Put a backup in the place of the SQLite store."""
     copies.restore(file, settings(database=database).database, overwrite)
-    print(f"{file} restored")
+    if json:
+        print_json({"restored": str(file)})
+    else:
+        print(f"{file} restored")
     return 0
 
 

@@ -6,12 +6,16 @@ Published: P. Corke, Robotics Toolbox for Python, ``tests/test_DHRobot.py``; Pum
 from __future__ import annotations
 
 import math
+import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import nullcontext, redirect_stdout
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from service.cli.options import Json
+from service.cli.output import print_json
 from service.server import background
 from service.settings import Settings
 from substructures.client import Client
@@ -31,19 +35,32 @@ ROUNDING = 0.5e-4 + 1e-9
 EXCERPT, WIDTH = 10, 112
 
 
-def run() -> int:
-    """Do the main job and print what was done; 0 when all numbers agree, 1 when not."""
+def run(as_json: bool = False) -> int:
+    """Do the main job and print what was done; 0 when all numbers agree, 1 when not. What was compared is printed as
+    JSON if it is wanted, and the rest then goes to the stream of errors.
+    """
+    with redirect_stdout(sys.stderr) if as_json else nullcontext():
+        checks = _job()
+    agrees = all(check["agrees"] for check in checks)
+    if as_json:
+        print_json({"agrees": agrees, "checks": checks})
+    return 0 if agrees else 1
+
+
+def _job() -> list[dict[str, Any]]:
+    """What was compared, each with the largest difference and whether it is within the rounding."""
     with tempfile.TemporaryDirectory(prefix="substructures-demo-") as folder:
         settings = Settings(database=f"sqlite:///{Path(folder) / 'demo.db'}")
         start = perf_counter()
         with background(settings) as address, Client(address) as client:
             print(f"Server with the shipped catalogue on {address} ({_ms(start)}, temporary database).\n")
             _show_stored(client)
-            agrees = _check_robot(client)
+            checks = [_check_robot(client)]
             _couple(client)
-            agrees = _check_coupled(client) and agrees
+            checks.append(_check_coupled(client))
+    agrees = all(check["agrees"] for check in checks)
     print("\nAll numbers agree with the published ones." if agrees else "\nThe numbers DISAGREE.")
-    return 0 if agrees else 1
+    return checks
 
 
 def _ms(start: float) -> str:
@@ -63,7 +80,7 @@ def _show_stored(client: Client) -> None:
         )
 
 
-def _check_robot(client: Client) -> bool:
+def _check_robot(client: Client) -> dict[str, Any]:
     start = perf_counter()
     arm = {"name": "arm", "substructure": ROBOT, "at": "world"}
     client.create_tree({"name": "cell", "gravity": [0, 0, "-9.81"], "instances": [arm]})
@@ -75,7 +92,9 @@ def _check_robot(client: Client) -> bool:
     gravity = [-force for force in result["gravity"]]
     print("  gravity (N m), +dV/dq:")
     print("   ", _numbers(gravity), "  |", _numbers(PUBLISHED_GRAVITY))
-    return compare("  largest difference", [*result["metric"], gravity], [*PUBLISHED_METRIC, PUBLISHED_GRAVITY])
+    return compare(
+        "the arm alone, largest difference", [*result["metric"], gravity], [*PUBLISHED_METRIC, PUBLISHED_GRAVITY]
+    )
 
 
 def _couple(client: Client) -> None:
@@ -93,7 +112,7 @@ def _couple(client: Client) -> None:
         print("    " + (line if len(line) <= WIDTH else line[: WIDTH - 3] + "..."))
 
 
-def _check_coupled(client: Client) -> bool:
+def _check_coupled(client: Client) -> dict[str, Any]:
     """With a massless gripper the coupled formulas have to give the published numbers of the arm."""
     parameters = client.substructure(GRIPPER)["parameters"]
     massless = {f"hand.{name}": 0.0 for name, each in parameters.items() if each["unit"] in ("kg", "kg*m^2")}
@@ -103,25 +122,25 @@ def _check_coupled(client: Client) -> bool:
     print(f"\nPOST /v1/trees/cell/evaluations, twice ({_ms(start)}): first row of the metric with the gripper,")
     print("   ", _numbers(real[0]))
     block = [row[: len(STATE)] for row in light[: len(STATE)]]
-    return compare("  with a massless gripper, largest difference to the published arm", block, PUBLISHED_METRIC)
+    return compare("with a massless gripper, largest difference to the published arm", block, PUBLISHED_METRIC)
 
 
 def _numbers(row: Sequence[float]) -> str:
     return " ".join(f"{round(value, 4) + 0.0:8.4f}" for value in row)
 
 
-def compare(title: str, found: Sequence[Sequence[Any]], published: Sequence[Sequence[float]]) -> bool:
-    """Print the largest difference; whether it is within the rounding of the published figures."""
+def compare(title: str, found: Sequence[Sequence[Any]], published: Sequence[Sequence[float]]) -> dict[str, Any]:
+    """Print the largest difference, and answer it with whether it is within the rounding of the published figures."""
     pairs = ((x, y) for a, b in zip(found, published, strict=True) for x, y in zip(a, b, strict=True))
     worst = max(abs(x - y) for x, y in pairs)
     agrees = worst <= ROUNDING
-    print(f"{title}: {worst:.1e} ({'agrees: rounding of the published figures' if agrees else 'DISAGREES'})")
-    return agrees
+    print(f"  {title}: {worst:.1e} ({'agrees: rounding of the published figures' if agrees else 'DISAGREES'})")
+    return {"what": title, "difference": worst, "agrees": agrees}
 
 
-def demo() -> int:
+def demo(json: Json = False) -> int:
     """Couple a gripper onto a Puma 560 over HTTP and compare with published numbers."""
-    return run()
+    return run(json)
 
 
 COMMANDS = {"demo": demo}

@@ -9,10 +9,12 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import IO, Any
 
+from service.schemas.entries import PartEntry
 from substructures.client import ProblemError
 from substructures.documents import places, read_json, read_yaml
 from substructures.documents.tables import with_tables
 from substructures.errors import Fault, InvalidInput
+from substructures.part.definition import Definition
 
 #: endings of documents, in which places are found by line and column
 DOCUMENTS = (".yaml", ".yml", ".json")
@@ -33,6 +35,11 @@ def read_document(path: Path) -> Any:
 def read_from(path: Path, file: IO[bytes]) -> Any:
     """A document in JSON or YAML, by the ending of its name. Raises InvalidDocument."""
     return read_json(file.read()) if path.suffix == ".json" else read_yaml(file.read())
+
+
+def definition_of(document: Any) -> Definition:
+    """The definition in a document, which may say beside it what it is submitted with. Raises InvalidDocument."""
+    return Definition.read(PartEntry.parted(document)[1])
 
 
 @contextmanager

@@ -10,6 +10,7 @@ import numpy as np
 import orjson
 import typer
 
+from service.cli import completion
 from service.cli.analysis import local_source
 from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
@@ -25,8 +26,18 @@ Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the ord
 @with_server
 def evaluate(
     server: Server,
-    tree: Annotated[str, typer.Argument(help="Tree document (JSON or YAML), or the name of a tree on a server.")],
-    quantities: Annotated[list[str], typer.Argument(metavar="QUANTITY...", help=f"{', '.join(QUANTITIES)}.")],
+    tree: Annotated[
+        str,
+        typer.Argument(
+            help="Tree document (JSON or YAML), or the name of a tree on a server.", autocompletion=completion.trees
+        ),
+    ],
+    quantities: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="QUANTITY...", help=f"{', '.join(QUANTITIES)}.", autocompletion=completion.words(QUANTITIES)
+        ),
+    ],
     q: Numbers = None,
     qd: Numbers = None,
     qdd: Numbers = None,
@@ -80,10 +91,13 @@ def _numbers(text: str) -> list[float]:
 
 
 def _by_name(given: Iterable[str] | None) -> dict[str, float]:
-    try:
-        return {name: float(value) for name, value in pairs(given).items()}
-    except ValueError as error:
-        raise typer.BadParameter(f"a number is needed: {error}") from None
+    found = {}
+    for name, value in pairs(given).items():
+        try:
+            found[name] = float(value)
+        except ValueError:
+            raise typer.BadParameter(f"a number in SI units is needed for '{name}', found '{value}'") from None
+    return found
 
 
 def _print(name: str, value: Any, labels: Sequence[str]) -> None:

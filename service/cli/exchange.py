@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +13,9 @@ import typer
 from service.cli.options import Json, Private, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.progress import follow
+from service.viewer import PRIVATE
 from substructures.client import Client
+from substructures.errors import listed
 
 ZIP = "application/zip"
 Other = Annotated[str, typer.Argument(metavar="URL", help="Address of the other server.")]
@@ -20,6 +23,13 @@ OtherKey = Annotated[
     str | None,
     typer.Option(metavar="KEY", envvar="SUBSTRUCTURES_OTHER_KEY", help="API key of the other server."),
 ]
+Visibility = Annotated[
+    bool | None,
+    typer.Option(
+        "--private/--public", help="For the keys of their owner alone, or for all, also parts that were private."
+    ),
+]
+NAMED = 5  # private parts in a message
 References = Annotated[list[str], typer.Argument(metavar="REF...", help="NAME, NAME@2 or NAME@ALIAS.")]
 
 
@@ -29,12 +39,13 @@ def pull(
     url: Other,
     refs: References,
     other_key: OtherKey = None,
-    private: Private = False,
+    private: Visibility = None,
     json: Json = False,
 ) -> int:
     """Copy parts of another server to this one, which verifies them."""
-    with Server(url, other_key).client() as other:
+    with _other(url, other_key).client() as other:
         content = _bundle(other, refs)
+        _require_decision(other, refs, private)
     with server.client() as client:
         return _told(_stored(client, content, private), json)
 
@@ -45,26 +56,36 @@ def push(
     url: Other,
     refs: References,
     other_key: OtherKey = None,
-    private: Private = False,
+    private: Visibility = None,
     json: Json = False,
 ) -> int:
     """Copy parts of this server to another one, which verifies them."""
     with server.client() as client:
         content = _bundle(client, refs)
-    with Server(url, other_key).client() as other:
+        _require_decision(client, refs, private)
+    with _other(url, other_key).client() as other:
         return _told(_stored(other, content, private), json)
 
 
 @with_server
-def save(server: Server, file: Annotated[Path, typer.Argument(metavar="FILE")], refs: References) -> int:
-    """Write parts with their formulas and certificates to a file."""
+def save(
+    server: Server, file: Annotated[Path, typer.Argument(metavar="FILE")], refs: References, json: Json = False
+) -> int:
+    """Write parts with their formulas and certificates to a file, which does not say which of them are private."""
     with server.client() as client:
         content = _bundle(client, refs)
+        hidden = _private(client, refs)
+    if hidden:
+        advice = "whoever loads the file makes them public, unless by 'bundle load --private'"
+        print(f"warning: private: {listed(hidden, NAMED)}; {advice}", file=sys.stderr)
     # never a part of a file under the name
     beside = file.with_name(f".{file.name}.{os.getpid()}")
     beside.write_bytes(content)
     beside.replace(file)
-    print(f"{file}: {len(content)} bytes")
+    if json:
+        print_json({"file": str(file), "bytes": len(content)})
+    else:
+        print(f"{file}: {len(content)} bytes")
     return 0
 
 
@@ -99,7 +120,23 @@ def mirror(
         code = follow(client, job["id"]) if wait else 0
         if json:
             print_json(client.job(job["id"]))
+        elif wait:
+            _tell_mirrored(client, job["id"])
     return code
+
+
+def _tell_mirrored(client: Client, job: str) -> None:
+    """How many parts there were, and what became of them; which were refused, and why."""
+    for item in client.job_items(job, state="succeeded"):
+        found = item["result"]
+        for each in found["refused"]["items"]:
+            print(f"refused: {each['name']}: {each['message']}", file=sys.stderr)
+        counts = ", ".join(f"{found[name]['count']} {name}" for name in ("stored", "same", "refused"))
+        print(f"{found['offered']} parts at {found['source']}: {counts}")
+
+
+def _other(url: str, key: str | None) -> Server:
+    return Server(url, key, key_from="--other-key KEY, or the variable SUBSTRUCTURES_OTHER_KEY")
 
 
 def _bundle(client: Client, refs: Sequence[str]) -> bytes:
@@ -108,8 +145,22 @@ def _bundle(client: Client, refs: Sequence[str]) -> bytes:
     return content
 
 
-def _stored(client: Client, content: bytes, private: bool) -> list[dict[str, Any]]:
-    wanted = {"visibility": "private"} if private else {}
+def _private(client: Client, refs: Sequence[str]) -> list[str]:
+    """The names of those that only their owner sees."""
+    names = dict.fromkeys(ref.strip().partition("@")[0] for text in refs for ref in text.split(",") if ref.strip())
+    return [name for name in names if client.visibility(name)["visibility"] == PRIVATE]
+
+
+def _require_decision(client: Client, refs: Sequence[str], private: bool | None) -> None:
+    """Raise ValueError where private parts would become public, for good, and nobody said so."""
+    hidden = _private(client, refs) if private is None else []
+    if hidden:
+        advice = "--private keeps them so, --public shows them to all, for good"
+        raise ValueError(f"nothing was copied, for there are private parts: {listed(hidden, NAMED)}; {advice}")
+
+
+def _stored(client: Client, content: bytes, private: bool | None) -> list[dict[str, Any]]:
+    wanted = {"visibility": PRIVATE} if private else {}
     with waiting("verifying"):
         answer = client.request("POST", "/v1/bundles", content=content, headers={"Content-Type": ZIP}, params=wanted)
     found: list[dict[str, Any]] = answer.json()["items"]

@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
+from service.cli import completion
 from service.cli.analysis import coupled_source
 from service.cli.choices import one_of
 from service.cli.documents import is_document
-from service.cli.options import Server, with_server
-from service.cli.output import waiting
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, waiting
 from service.cli.robots import part_or_tree
 from service.settings import Limits
 from substructures.client.connection import step
@@ -23,7 +24,11 @@ from substructures.part.part import Part
 def export(
     server: Server,
     tree: Annotated[
-        str, typer.Argument(help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.")
+        str,
+        typer.Argument(
+            help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.",
+            autocompletion=completion.trees,
+        ),
     ],
     target: Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")],
     quantities: Annotated[str, typer.Option(help="name,... (metric, christoffel, forces).")] = "",
@@ -44,6 +49,7 @@ def export(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
     ] = None,
+    json: Json = False,
 ) -> int:
     """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
     names = tuple(text for text in quantities.split(",") if text)
@@ -52,7 +58,10 @@ def export(
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
     path = out or Path(package.name)
     path.write_bytes(package.data)
-    print(f"{path}: {len(package.data)} bytes")
+    if json:
+        print_json({"file": str(path), "bytes": len(package.data)})
+    else:
+        print(f"{path}: {len(package.data)} bytes")
     return 0
 
 

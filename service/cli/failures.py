@@ -6,7 +6,7 @@ import httpx2
 from sqlalchemy.exc import DBAPIError
 
 from service.database.connections import DatabaseError, told
-from service.database.migrate import MigrationError
+from service.database.schema import MigrationError
 from service.refusals import Refused
 from service.settings import SettingsError
 from substructures.client import ProblemError
@@ -25,7 +25,8 @@ def told_of(error: Exception) -> list[str] | None:
         case httpx2.ConnectError():
             url = error.request.url
             address = f"{url.scheme}://{url.netloc.decode()}"
-            return [f"nothing answers at {address}; start it with 'substructures serve', or say --server ADDRESS"]
+            line = f"nothing answers at {address}; start it with 'substructures serve', or say --server ADDRESS"
+            return [line + ("; without TLS an address begins with http://" if url.scheme == "https" else "")]
         case httpx2.HTTPError():
             return [f"no answer from the server: {error}"]
         case OSError():

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from service.cli import completion
 from service.cli.choices import one_of
 from service.cli.documents import named, read_document, read_from
 from service.cli.options import Json, Server, with_server
@@ -94,18 +95,20 @@ def retry(server: Server, id: Id, wait: Wait = False, patience: Patience = PATIE
 
 
 @with_server
-def remove(server: Server, ids: Annotated[list[str], typer.Argument(metavar="ID...")]) -> int:
+def remove(server: Server, ids: Annotated[list[str], typer.Argument(metavar="ID...")], json: Json = False) -> int:
     """Remove jobs that have ended, with their results."""
     with server.client() as client:
         for job in ids:
             client.remove_job(job)
+    if json:
+        print_json({"removed": ids})
     return 0
 
 
 @with_server
 def evaluate(
     server: Server,
-    tree: Annotated[str, typer.Argument(help="Name of a tree.")],
+    tree: Annotated[str, typer.Argument(help="Name of a tree.", autocompletion=completion.trees)],
     file: Annotated[
         Path,
         typer.Argument(metavar="FILE", help="States: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml."),
@@ -147,9 +150,13 @@ def _states(path: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, Any] | It
 def _queued(client: Client, job: Mapping[str, Any], wait: bool, patience: float, as_json: bool) -> int:
     if not as_json:
         print(job["id"], flush=True)
+    skipped = job.get("skipped", ())
+    for each in skipped:
+        for fault in each["errors"]:
+            print(f"skipped: item {each['item']}: {fault['pointer']}: {fault['message']}", file=sys.stderr)
     code = follow(client, job["id"], patience) if wait else 0
     if as_json:
-        print_json(client.job(job["id"]))
+        print_json({**client.job(job["id"]), **({"skipped": skipped} if skipped else {})})
     return code
 
 
@@ -184,18 +191,25 @@ def show(server: Server, id: Id) -> int:  # noqa: A002 -- an argument
 
 
 @with_server
-def cancel(server: Server, id: Id) -> int:  # noqa: A002 -- an argument
+def cancel(server: Server, id: Id, json: Json = False) -> int:  # noqa: A002 -- an argument
     """Cancel what is not finished."""
     with server.client() as client:
-        print(client.cancel_job(id)["state"])
+        job = client.cancel_job(id)
+    if json:
+        print_json(job)
+    else:
+        print(job["state"])
     return 0
 
 
 @with_server
-def watch(server: Server, id: Id, patience: Patience = PATIENCE) -> int:  # noqa: A002 -- an argument
+def watch(server: Server, id: Id, patience: Patience = PATIENCE, json: Json = False) -> int:  # noqa: A002 -- an argument
     """Follow a job until it has ended."""
     with server.client() as client:
-        return follow(client, id, patience)
+        code = follow(client, id, patience)
+        if json:
+            print_json(client.job(id))
+    return code
 
 
 @with_server

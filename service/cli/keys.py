@@ -12,12 +12,18 @@ import typer
 
 from service import keys
 from service.cli.options import Json, Store, settings
-from service.cli.output import print_json
+from service.cli.output import print_json, table
 from service.database.connections import Connection, Database
-from service.queries.keys import list_keys
+from service.queries.common import now
+from service.queries.keys import ApiKey, list_keys
 from service.viewer import OPEN, SCOPES
 
-Id = Annotated[str, typer.Argument(metavar="ID")]
+Id = Annotated[str, typer.Argument(metavar="ID", parser=lambda text: _id(text))]
+
+
+def _id(text: str) -> str:
+    """The id, also of a whole key, whose secret is not for messages."""
+    return text.split("_")[1] if text.startswith(f"{keys.PREFIX}_") else text
 
 
 @contextmanager
@@ -41,11 +47,12 @@ def create(
     scope: Annotated[list[str] | None, typer.Option(help=f"{', '.join(SCOPES)}; may be repeated (read).")] = None,
     days: Annotated[float | None, typer.Option(help="Days until it expires (never).")] = None,
     database: Store = None,
+    json: Json = False,
 ) -> int:
     """Create a key and print it once."""
     with _writing(database) as connection:
         key = keys.create(connection, label, scope or ["read"], days, owner)
-    print(key)
+    _print(key, json)
     return 0
 
 
@@ -56,37 +63,57 @@ def show(database: Store = None, json: Json = False) -> int:
     if json:
         print_json([{name: x for name, x in asdict(key).items() if name != "secret_hash"} for key in found])
         return 0
-    for key in found:
-        state = f"revoked {key.revoked}" if key.revoked else f"expires {key.expires or 'never'}"
-        print(f"{key.id}  {key.owner}  {key.scopes}  created {key.created}  {state}  {key.label}")
+    rows = [(key.id, key.owner, key.scopes, key.created[:10], _state(key), key.label) for key in found]
+    table(("id", "owner", "scopes", "created", "state", "label"), rows)
     return 0
+
+
+def _state(key: ApiKey) -> str:
+    """Until when a key works, or since when it does not, by day."""
+    if key.revoked:
+        return f"revoked {key.revoked[:10]}"
+    if key.expires is None:
+        return "never expires"
+    return f"{'expired' if key.expires <= now() else 'expires'} {key.expires[:10]}"
+
+
+def _print(key: str, as_json: bool) -> None:
+    if as_json:
+        print_json({"id": key.split("_")[1], "key": key})
+    else:
+        print(key)
 
 
 def rotate(
     id: Id,  # noqa: A002 -- name of the argument
     hours: Annotated[float, typer.Option(help="So long the old one still works.")] = 0.0,
     database: Store = None,
+    json: Json = False,
 ) -> int:
     """Put a new key in the place of one, and print it once."""
     with _writing(database) as connection:
         key = keys.rotate(connection, id, hours)
-    print(key)
+    _print(key, json)
     return 0
 
 
-def revoke(id: Id, database: Store = None) -> int:  # noqa: A002 -- name of the argument
+def revoke(id: Id, database: Store = None, json: Json = False) -> int:  # noqa: A002 -- name of the argument
     """Revoke a key."""
     with _writing(database) as connection:
         is_closed = keys.revoke(connection, id)
+    if json:
+        print_json({"revoked": id, "keys_left": is_closed})
     if not is_closed:
         print("that was the last key: on loopback the server is open to all of this machine now", file=sys.stderr)
     return 0
 
 
-def delete(id: Id, database: Store = None) -> int:  # noqa: A002 -- name of the argument
+def delete(id: Id, database: Store = None, json: Json = False) -> int:  # noqa: A002 -- name of the argument
     """Remove a key that is revoked."""
     with _writing(database) as connection:
         keys.delete(connection, id)
+    if json:
+        print_json({"deleted": id})
     return 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from itertools import islice
 from typing import Annotated, Any
 
@@ -53,6 +54,8 @@ def _found(server: Server, is_tree: bool, wanted: dict[str, Any], count: int, as
         found = list(islice(items(client, path, wanted, min(count, 200)), count))
     if as_json:
         print_json(found)
+    elif not found:
+        print(f"no {'tree' if is_tree else 'part'} is found", file=sys.stderr)
     elif is_tree:
         rows = [(f"{x['name']}@{x['revision']}", x["dof"], x["owner"], x["created"][:16]) for x in found]
         table(("tree", "dof", "owner", "changed"), rows)

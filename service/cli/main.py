@@ -5,9 +5,10 @@ A command that is ``kept`` runs in a process of its own, which is started again 
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Annotated, Any
@@ -45,6 +46,7 @@ COMMANDS = (
     Command("versions", "versions", "list the versions of a part, or the revisions of a tree, the newest first", PARTS),
     Command("diff", "versions", "tell how two versions, or two revisions of a tree, differ", PARTS),
     Command("uses", "versions", "list what uses a part", PARTS),
+    Command("withdraw", "versions", "withdraw a version of a part; what uses it goes on and is told", PARTS),
     Command("tree", "trees", "make a tree of a document, or begin one with a first part", TREES),
     Command("couple", "trees", "couple a part onto a tree, which makes a new revision", TREES),
     Command("rm", "trees", "remove trees with all their revisions", TREES),
@@ -75,7 +77,28 @@ COMMANDS = (
 _BY_NAME = {command.name: command for command in COMMANDS}
 
 
-class _Commands(TyperGroup):
+class _Group(TyperGroup):
+    """Commands, before whose names stand no options but its own."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """The arguments; of an option that is one of commands it is said where it stands."""
+        try:
+            return super().parse_args(ctx, list(args))
+        except Exception as error:
+            option = getattr(error, "option_name", "")
+            found = next((path for path in self.having(option, args)), None) if option else None
+            if found:
+                place = f"{ctx.command_path} {found} {option}"
+                ctx.fail(f"No such option: {option} before the command; it stands behind: {place}")
+            raise
+
+    def having(self, option: str, words: Sequence[str]) -> Iterator[str]:
+        """The commands with an option, first those that are among some words."""
+        for name in _first(self.commands, words):
+            yield from _having(self.commands[name], name, option, words)
+
+
+class _Commands(_Group):
     """Commands whose modules are imported when they are called; of the others help has the name and the text."""
 
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 -- of the base class
@@ -89,10 +112,31 @@ class _Commands(TyperGroup):
             return None
         return TyperCommand(found.name, help=found.text, short_help=found.text, rich_help_panel=found.panel)
 
+    def having(self, option: str, words: Sequence[str]) -> Iterator[str]:
+        """As those of a group; they are imported for it."""
+        for name in _first(_BY_NAME, words):
+            yield from _having(loaded(name), name, option, words)
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command itself."""
+        if args and not args[0].startswith("-") and args[0] not in _BY_NAME:
+            from substructures.errors import meant  # noqa: PLC0415 -- of mistakes alone
+
+            ctx.fail(f"No such command '{args[0]}'{meant(args[0], _BY_NAME)}")
         name, stub, rest = super().resolve_command(ctx, args)
         return name, stub if name is None else loaded(name), rest
+
+
+def _first(names: Iterable[str], words: Sequence[str]) -> list[str]:
+    """First those that are among some words, in their order."""
+    return sorted(names, key=lambda name: words.index(name) if name in words else len(words))
+
+
+def _having(command: Any, name: str, option: str, words: Sequence[str]) -> Iterator[str]:
+    if isinstance(command, _Group):
+        yield from (f"{name} {each}" for each in command.having(option, words))
+    elif any(option in each.opts for each in command.params):
+        yield name
 
 
 class _Ended(TyperCommand):
@@ -108,8 +152,12 @@ class _Ended(TyperCommand):
 def loaded(name: str) -> Any:
     """A command, or a group of them, with its arguments."""
     command = _BY_NAME[name]
-    found = import_module(f"service.cli.{command.module}").COMMANDS[name]
-    group = typer.Typer(add_completion=False, no_args_is_help=True, help=command.text)
+    gc.disable()  # what a module defines stays: nothing to collect in a tenth of the time that it takes to start
+    try:
+        found = import_module(f"service.cli.{command.module}").COMMANDS[name]
+    finally:
+        gc.enable()
+    group = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True, help=command.text)
     if isinstance(found, Mapping):
         group.callback()(_group)
         for action, function in found.items():

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Concatenate, ParamSpec
 import typer
 
 from service.settings import Settings, SettingsError, from_environment
-from substructures.client import Client
+from substructures.client import Client, ProblemError
 
 P = ParamSpec("P")
 SERVER = "http://127.0.0.1:8000"
@@ -56,6 +56,7 @@ class Server:
     address: str | None = None
     key: str | None = None
     database: str | None = None
+    key_from: str = "--key KEY, or the variable SUBSTRUCTURES_KEY"
 
     @contextmanager
     def client(self) -> Iterator[Client]:
@@ -70,8 +71,23 @@ class Server:
             return
         known = kept()
         address = self.address or known.get("server") or SERVER
-        with Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client:
+        if "://" not in address:
+            raise SettingsError(f"an address begins with http:// or https://: write http://{address}")
+        with Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client, self._advised():
             yield client
+
+    @contextmanager
+    def _advised(self) -> Iterator[None]:
+        """Say of a key that does not do how one is given. Raises ProblemError."""
+        try:
+            yield
+        except ProblemError as error:
+            if error.status != 401:
+                raise
+            ended = error.problem.get("code") in ("key-expired", "key-revoked")
+            new = "ask whoever runs the server for a new one ('substructures key create') and " if ended else ""
+            detail = f"{error.problem.get('detail')}; {new}give it by {self.key_from}"
+            raise ProblemError(error.status, {**error.problem, "detail": detail}) from None
 
 
 def kept_in() -> Path:

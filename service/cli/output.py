@@ -56,3 +56,12 @@ def waiting(what: str) -> Iterator[None]:
         return
     with console(to_errors=True).status(f"{what} ..."):
         yield
+
+
+def further(detail: str, more: str) -> str:
+    """A message and what is to be said beside it; the message may end with a question.
+
+    >>> further("no part 'cel'; did you mean 'cell'?", "no tree 'cel'")
+    "no part 'cel'; did you mean 'cell'? no tree 'cel'"
+    """
+    return f"{detail}{'' if detail.endswith('?') else ';'} {more}"

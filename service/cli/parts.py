@@ -7,13 +7,12 @@ from typing import Annotated
 import typer
 
 from service.cli.choices import Format
-from service.cli.documents import named
+from service.cli.documents import definition_of, named
 from service.cli.options import File, Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
 from service.cli.robots import read_definition
 from substructures.export import interface_of_part, render
-from substructures.part.definition import Definition
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import Part
 from substructures.part.part import derive as derived
@@ -29,7 +28,7 @@ def derive(
     """Derive and verify a definition here, without a server."""
     document = read_definition(file)
     with named(file), waiting("deriving"):
-        part = derived(Definition.read(document))
+        part = derived(definition_of(document))
     if show:
         print(_shown(part, show, format, name))
     elif json:
@@ -74,7 +73,7 @@ def submit(
             answer = client.request("POST", "/v1/substructures", document)
         version = answer.json()
         if answer.status_code == 202:
-            return became_job(client, version, wait)
+            return became_job(client, version, wait, json)
     if json:
         print_json(version)
         return 0

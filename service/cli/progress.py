@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Mapping
 from itertools import islice
 from time import monotonic
 from typing import Any, TextIO
 
+from service.cli.output import WIDE, print_json
 from substructures.client import Client, ServerLost
 from substructures.client.jobs import PATIENCE
 
@@ -28,6 +30,10 @@ def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
     except ServerLost:
         bar.leave()
         raise
+    except KeyboardInterrupt:
+        bar.leave()
+        sys.stderr.write(f"the job stays: 'substructures jobs watch {job}' waits again, 'jobs cancel {job}' ends it\n")
+        raise
     bar.end(end)
     sys.stderr.write(summary(end) + "\n")
     if end["progress"]["failed"]:
@@ -35,10 +41,14 @@ def follow(client: Client, job: str, patience: float = PATIENCE) -> int:
     return outcome(end)
 
 
-def became_job(client: Client, job: Mapping[str, Any], wait: bool) -> int:
-    """Say that a request takes so long that it is a job now, which is waited for or not."""
-    print(f"became the job {job['id']}", flush=True)
-    return follow(client, str(job["id"])) if wait else 0
+def became_job(client: Client, job: Mapping[str, Any], wait: bool, as_json: bool = False) -> int:
+    """Say that a request takes so long that it is a job now, which is waited for or not; as JSON the job at the end."""
+    if not as_json:
+        print(f"became the job {job['id']}", flush=True)
+    code = follow(client, str(job["id"])) if wait else 0
+    if as_json:
+        print_json(client.job(str(job["id"])))
+    return code
 
 
 def outcome(job: Mapping[str, Any]) -> int:
@@ -76,6 +86,7 @@ class Bar:
     def __init__(self, stream: TextIO) -> None:
         self._stream, self._next, self._width = stream, 0.0, 0
         self._waited: float | None = None
+        self._last = ""
 
     def show(self, job: dict[str, Any]) -> None:
         """Show where a job is."""
@@ -93,17 +104,19 @@ class Bar:
 
     def _put(self, line: str, at_once: bool = False) -> None:
         if self._stream.isatty():
+            line = line[: _columns(self._stream) - 1]  # a line that is broken cannot be written over
             self._stream.write("\r" + line.ljust(self._width))
             self._width = len(line)
         elif at_once or monotonic() >= self._next:
             self._stream.write(line + "\n")
-            self._next = monotonic() + LINES
+            self._next, self._last = monotonic() + LINES, line
         self._stream.flush()
 
     def end(self, job: dict[str, Any]) -> None:
-        """Leave the last line."""
-        self._next = 0.0
-        self.show(job)
+        """Leave the last line, which is not written twice."""
+        if self._last != text(job):
+            self._next = 0.0
+            self.show(job)
         self.leave()
 
     def leave(self) -> None:
@@ -111,6 +124,14 @@ class Bar:
         self._next, self._width = 0.0, 0
         if self._stream.isatty():
             self._stream.write("\n")
+
+
+def _columns(terminal: TextIO) -> int:
+    """Of a terminal, which may have another width by now; many where it does not tell."""
+    try:
+        return os.get_terminal_size(terminal.fileno()).columns or WIDE
+    except OSError:
+        return WIDE
 
 
 def text(job: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from service.cli.choices import one_of
-from service.cli.documents import named, read_document
+from service.cli.documents import definition_of, named, read_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings
 from service.cli.tree_files import parts_beside
@@ -20,7 +20,6 @@ from substructures.interchange.equivalence import Equivalence, equivalence
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS, is_foreign
 from substructures.interchange.sides import Parts, sides
-from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import TreeSpec
 
@@ -86,6 +85,7 @@ def read(
         Path | None, typer.Option(metavar="FILE", help="Write the definition (or tree) to this JSON file.")
     ] = None,
     submit: Annotated[bool, typer.Option("--submit", help="Derive and store it on the server.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON: also the report, and what was stored.")] = False,
 ) -> int:
     """Read a robot file as a definition, with a report of what became of everything in it."""
     chosen = Options(parameters, fixed, base)
@@ -96,14 +96,20 @@ def read(
         print(line, file=sys.stderr)
     if out:
         out.write_bytes(write_json(document) + b"\n")
-    elif not submit:
-        print(write_json(document).decode())
-    if submit:
-        path = "/v1/substructures" if found.tree is None else "/v1/trees"
-        with server.client() as client:
-            answer = client.request("POST", path, document).json()
+    answer = _submitted(server, found.tree is None, document) if submit else None
+    if json:
+        print(write_json({**found.plain(), "stored": answer}).decode())
+    elif answer:
         print(f"{answer['name']} {answer.get('digest', answer.get('id'))}")
+    elif not out:
+        print(write_json(document).decode())
     return 0
+
+
+def _submitted(server: Server, is_part: bool, document: Any) -> dict[str, Any]:
+    with server.client() as client:
+        found: dict[str, Any] = client.request("POST", "/v1/substructures" if is_part else "/v1/trees", document).json()
+    return found
 
 
 def _warnings(found: Imported) -> list[dict[str, str]]:
@@ -169,7 +175,7 @@ def part_or_tree(path: Path) -> Part | Parts:
         if isinstance(document, dict) and "instances" in document:
             spec = TreeSpec.read(document)
             return spec, parts_beside(spec, path.parent)
-        return derive(Definition.read(document))
+        return derive(definition_of(document))
 
 
 COMMANDS = {"import": read, "same": same}

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from service.cli import completion
 from service.cli.choices import Form, Format
 from service.cli.drawing import drawn_part, drawn_tree
 from service.cli.options import Json, Server, with_server
-from service.cli.output import console, print_json, table, tell_warnings
+from service.cli.output import console, further, print_json, table, tell_warnings
 from substructures.client import Client, ProblemError
 from substructures.client.connection import step
 from substructures.printers import FORMS
@@ -20,7 +22,10 @@ from substructures.printers import FORMS
 @with_server
 def show(
     server: Server,
-    name: Annotated[str, typer.Argument(help="Of a part, or else of a tree; also NAME@2.")],
+    name: Annotated[
+        str,
+        typer.Argument(help="Of a part, or else of a tree; also NAME@2.", autocompletion=completion.parts_and_trees),
+    ],
     quantity: Annotated[str, typer.Argument(help="A formula of it: metric, christoffel, forces, ...")] = "",
     tree: Annotated[bool, typer.Option("--tree", help="The tree, where there is a part of this name, too.")] = False,
     drawing: Annotated[bool, typer.Option("--drawing", help="Its structure, drawn in text.")] = False,
@@ -65,7 +70,7 @@ def _found(client: Client, name: str, is_tree: bool) -> tuple[str, dict[str, Any
             return tree, client.request("GET", tree).json()
         except ProblemError as error:
             if error.status == 404:
-                raise ValueError(f"{unknown.problem['detail']}; {error.problem['detail']}") from None
+                raise ValueError(further(unknown.problem["detail"], error.problem["detail"])) from None
             raise
 
 
@@ -74,6 +79,7 @@ def _tell(found: Mapping[str, Any]) -> None:
     print(f"{found['name']}@{found['revision' if is_tree else 'version']}", found.get("title") or "", sep="  ")
     facts = {"owner": f"{found['owner']} ({found['visibility']})", "created": found["created"][:16]}
     facts |= {"note": found["note"]} if found["note"] else {}
+    facts |= {"WITHDRAWN": _instead(found["yank_reason"], found["successor"])} if found.get("yanked") else {}
     facts["coordinates"] = f"{found['dof']} ({found['joints'] or 'none'}): {', '.join(found['coordinates'])}"
     if is_tree:
         facts["instances"] = ", ".join(f"{i['name']} at {i.get('at', 'world')}" for i in found["instances"])
@@ -90,7 +96,14 @@ def _tell(found: Mapping[str, Any]) -> None:
         print("  parameters:")
         rows = [(f"    {name}", *_value(given), given["description"]) for name, given in found["parameters"].items()]
         table(("", "value", "unit", ""), rows)
+    for part in found["withdrawn"]:
+        told = _instead(part["reason"], part["successor"])
+        print(f"warning: {part['instance']}: {part['substructure']} is withdrawn: {told}", file=sys.stderr)
     tell_warnings(found)
+
+
+def _instead(reason: str, successor: str | None) -> str:
+    return (reason or "no reason given") + (f"; take {successor}" if successor else "")
 
 
 def _value(given: Mapping[str, Any]) -> tuple[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from service.cli.documents import DOCUMENTS, named, read_document
+from service.cli.documents import DOCUMENTS, definition_of, named, read_document
 from substructures import catalogue
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
@@ -25,7 +25,7 @@ def _part(index: int, instance: Instance, folder: Path) -> Part:
     if files:
         document = read_document(files[0])
         with named(files[0]):
-            return derive(Definition.read(document))
+            return derive(definition_of(document))
     if name not in catalogue.names():
         message = f"'{name}' is neither a file beside the tree nor in the shipped catalogue"
         raise InvalidDocument.at(f"/instances/{index}/substructure", "unknown-substructure", message)

@@ -9,13 +9,14 @@ from typing import Annotated, Any
 
 import typer
 
+from service.cli import completion
 from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
 from substructures.client.connection import step
 
-Name = Annotated[str, typer.Argument(metavar="TREE")]
+Name = Annotated[str, typer.Argument(metavar="TREE", autocompletion=completion.trees)]
 Several = list[str] | None
 Set = Annotated[Several, typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the part; may be repeated.")]
 Vector = Annotated[str | None, typer.Option(metavar="X,Y,Z")]
@@ -53,7 +54,9 @@ def tree(
 def couple(
     server: Server,
     tree: Name,
-    part: Annotated[str, typer.Argument(metavar="PART", help="Name in the catalogue; also NAME@2.")],
+    part: Annotated[
+        str, typer.Argument(metavar="PART", help="Name in the catalogue; also NAME@2.", autocompletion=completion.parts)
+    ],
     at: Annotated[str, typer.Option(metavar="INSTANCE.PORT", help="Where it is mounted.")] = "world",
     name: Annotated[str | None, typer.Option(help="Of the instance (that of the part).")] = None,
     set: Set = None,  # noqa: A002 -- name of the option
@@ -71,11 +74,17 @@ def couple(
 
 
 @with_server
-def remove(server: Server, trees: Annotated[list[str], typer.Argument(metavar="TREE...", help="Names.")]) -> int:
+def remove(
+    server: Server,
+    trees: Annotated[list[str], typer.Argument(metavar="TREE...", help="Names.", autocompletion=completion.trees)],
+    json: Json = False,
+) -> int:
     """Remove trees with all their revisions; the parts stay."""
     with server.client() as client:
         for name in trees:
             client.request("DELETE", f"/v1/trees/{step(name)}")
+    if json:
+        print_json({"removed": trees})
     return 0
 
 
@@ -85,7 +94,7 @@ def _changed(server: Server, method: str, path: str, body: Any, wait: bool, as_j
             answer = client.request(method, path, body)
         found = answer.json()
         if answer.status_code == 202:
-            return became_job(client, found, wait)
+            return became_job(client, found, wait, as_json)
     if as_json:
         print_json(found)
         return 0

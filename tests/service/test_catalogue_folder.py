@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -86,3 +87,47 @@ def test_every_shipped_part_is_written_and_read_back_exactly(name: str) -> None:
     definition = Definition.read(catalogue.load(name))
     text = write_yaml(definition.model_dump(exclude_defaults=True, by_alias=True))
     assert Definition.read(read_yaml(text)).digest == definition.digest
+
+
+def test_what_is_private_stays_so(one: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "parts"
+    with Client(one) as client:
+        client.submit({**PENDULUM, "name": "secret", "visibility": "private"})
+    code, out, _ = call(capsys, "export", folder, one)
+    told = ["private: 1; their files say so, and 'catalogue import' keeps them so", "4 new, 0 changed, 0 same"]
+    assert (code, out.splitlines()[-2:]) == (0, told)
+    assert json.loads(call(capsys, "export", folder, one, "--json")[1])["private"] == 1
+    assert (folder / "secret.yaml").read_text().startswith("name: secret\nvisibility: private\n")
+    assert "visibility" not in (folder / "slider.yaml").read_text()
+    assert call(capsys, "import", folder, other)[1].splitlines()[-1] == "3 new, 0 changed, 1 same, 0 gone, 0 refused"
+    with Client(other) as client:
+        assert client.visibility("secret")["visibility"] == "private"
+        assert client.visibility("slider")["visibility"] == "public"
+    assert main(["derive", str(folder / "secret.yaml")]) == 0  # and all else that reads files
+    assert main(["same", str(folder / "secret.yaml"), str(folder / "pendulum.yaml")]) == 0
+    (folder / "cell.json").write_text('{"name": "cell", "instances": [{"name": "a", "substructure": "secret"}]}')
+    assert main(["evaluate", str(folder / "cell.json"), "metric"]) == 0
+
+
+def test_a_whole_folder_that_is_private(
+    one: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the files say or not; and what is public there already does not get a version that all see."""
+    folder = tmp_path / "parts"
+    call(capsys, "export", folder, one)
+    slider = folder / "slider.yaml"
+    slider.write_text(slider.read_text().replace("name: slider\n", "name: slider\nvisibility: public\n"))
+    pendulum = folder / "pendulum.yaml"
+    code, out, _ = call(capsys, "import", folder, other, "--private")
+    assert (code, out.splitlines()[-1]) == (0, "2 new, 0 changed, 1 same, 0 gone, 0 refused")
+    pendulum.write_text(pendulum.read_text().replace("name: pendulum\n", "name: pendulum\ndescription: changed\n"))
+    slider.write_text(slider.read_text() + "description: changed\n")
+    code, out, err = call(capsys, "import", folder, other, "--private")
+    assert (code, out.splitlines()[-1]) == (1, "0 new, 1 changed, 1 same, 0 gone, 1 refused")
+    assert "'pendulum' is public already: what was public stays public" in err
+    with Client(other) as client:
+        assert {name: client.visibility(name)["visibility"] for name in ("pendulum", "slider", "scara")} == {
+            **dict.fromkeys(("slider", "scara"), "private"),
+            "pendulum": "public",
+        }
+        assert client.substructure("pendulum")["version"] == 1

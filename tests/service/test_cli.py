@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -32,9 +34,19 @@ def test_demo_does_the_main_job(capsys: pytest.CaptureFixture[str]) -> None:
     assert "All numbers agree" in shown
 
 
+def test_demo_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["demo", "--json"]) == 0
+    shown = capsys.readouterr()
+    told = json.loads(shown.out)
+    assert told["agrees"] is True
+    assert [check["agrees"] for check in told["checks"]] == [True, True]
+    assert max(check["difference"] for check in told["checks"]) <= demo.ROUNDING
+    assert "All numbers agree" in shown.err
+
+
 def test_demo_notices_wrong_numbers(capsys: pytest.CaptureFixture[str]) -> None:
-    assert demo.compare("first", [[1.00004, 2]], [[1, 2]])
-    assert not demo.compare("second", [[1.0001, 2]], [[1, 2]])
+    assert demo.compare("first", [[1.00004, 2]], [[1, 2]])["agrees"]
+    assert not demo.compare("second", [[1.0001, 2]], [[1, 2]])["agrees"]
     assert "DISAGREES" in capsys.readouterr().out
 
 
@@ -89,7 +101,6 @@ def test_errors_name_the_place(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_errors_of_the_surroundings(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("service.logs.configure", lambda: None)
     assert main(["derive", str(tmp_path / "nothing.json")]) == 1
     assert "nothing.json: No such file" in capsys.readouterr().err
     (tmp_path / "a.json").write_text("{}")
@@ -128,10 +139,49 @@ def test_keys(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["key", "list", *database]) == 0
     listed = capsys.readouterr().out
     assert "read write" in listed
+    assert re.search(r"  expires \d{4}-\d\d-\d\d  robot\n", listed)
     assert key.split("_", 2)[2] not in listed
     assert main(["key", "revoke", key.split("_")[1], *database]) == 0
+    assert main(["key", "delete", key, "--json", *database]) == 0  # a whole one, whose secret is not told
+    assert json.loads(capsys.readouterr().out) == {"deleted": key.split("_")[1]}
+    for action in ("revoke", "rotate", "delete"):
+        assert main(["key", action, key, *database]) == 1
+        shown = capsys.readouterr()
+        assert f"there is no key '{key.split('_')[1]}'" in shown.err
+        assert key.split("_", 2)[2] not in shown.err + shown.out
     assert main(["key", "revoke", "nothing", *database]) == 1
     assert "there is no key" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("days", ["-3", "0", "nan", "inf", "1e9"])
+def test_no_key_is_made_that_never_worked(tmp_path: Path, capsys: pytest.CaptureFixture[str], days: str) -> None:
+    database = ["--database", f"sqlite:///{tmp_path / 'x.db'}"]
+    assert main(["key", "create", "--days", days, *database]) == 1
+    assert "more than 0 and at most 36500 days" in capsys.readouterr().err
+    assert main(["key", "list", *database]) == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_keys_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rest = ["--json", "--database", f"sqlite:///{tmp_path / 'x.db'}"]
+
+    def told(*words: str) -> Any:
+        """What a command prints, as JSON."""
+        assert main(["key", *words, *rest]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    first = told("create")
+    assert first["key"].startswith(f"sub_{first['id']}_")
+    second = told("rotate", first["id"])
+    assert second["id"] != first["id"]
+    assert told("delete", first["id"]) == {"deleted": first["id"]}
+    assert told("revoke", second["id"]) == {"revoked": second["id"], "keys_left": False}
+    assert [each["id"] for each in told("list")] == [second["id"]]
+
+
+def test_a_command_that_is_not_there_is_guessed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serch", "arm"]) == 2
+    assert "did you mean 'search'?" in capsys.readouterr().err
 
 
 def test_openapi(capsys: pytest.CaptureFixture[str]) -> None:

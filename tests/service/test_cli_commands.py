@@ -54,7 +54,9 @@ def test_list_search_and_show(run: Runner) -> None:
     assert run("list") == "pendulum@1  1  R  local  Pendulum\n"
     assert run("list", "--tree").startswith("cell@1  1  local  20")
     assert run("search", "pendulun") == run("list")
-    assert run("search", "--joints", "P") == ""
+    assert main(["search", "--joints", "P"]) == 0
+    assert run.capsys.readouterr() == ("", "no part is found\n")
+    assert run("search", "--joints", "P", "--json") == "[]\n"
     assert json.loads(run("search", "pendulum", "--json"))[0]["name"] == "pendulum"
     assert run("search", "--tree", "--uses", "pendulum").startswith("cell@1")
     assert "bodies: rod" in run("show", "pendulum")
@@ -73,6 +75,19 @@ def test_pictures_go_to_files(run: Runner, tmp_path: Path) -> None:
     assert (tmp_path / "cell.svg").read_text().startswith("<svg")
 
 
+def test_commands_that_change_answer_programs(run: Runner, tmp_path: Path) -> None:
+    run("tree", "gone", "--part", "a=pendulum")
+    assert json.loads(run("rm", "gone", "--json")) == {"removed": ["gone"]}
+    file = tmp_path / "x.zip"
+    told = json.loads(run("bundle", "save", str(file), "pendulum", "--json"))
+    assert told == {"file": str(file), "bytes": file.stat().st_size}
+
+
+def test_a_parameter_that_is_no_number(run: Runner) -> None:
+    told = run("evaluate", "cell", "metric", "--set", "arm.m=500 g", code=2)
+    assert "a number in SI units is needed for 'arm.m', found '500 g'" in told
+
+
 def test_a_tree_grows_and_goes(run: Runner) -> None:
     assert (
         run("tree", "grown", "--part", "a=pendulum", "--gravity", "0,0,-9.81")
@@ -83,6 +98,7 @@ def test_a_tree_grows_and_goes(run: Runner) -> None:
     made = json.loads(run(*words, "--json"))
     assert (made["revision"], made["instances"][1]["placement"]["position"]) == (2, ["0", "0", "0.1"])
     assert "/at: 'a' has no port or body 'tap'" in run("couple", "grown", "pendulum", "--at", "a.tap", code=1)
+    assert "has no parameter 'foo'; there are " in run("couple", "grown", "pendulum", "--set", "foo=1", code=1)
     assert "NAME=VALUE is needed, found 'l'" in run("couple", "grown", "pendulum", "--set", "l", code=2)
     assert "X,Y,Z is needed" in run("couple", "grown", "pendulum", "--rpy", "1,2", code=2)
     run("rm", "grown")
@@ -175,8 +191,100 @@ def test_parts_between_servers(run: Runner, address: str, tmp_path: Path) -> Non
         (tmp_path / "parts.zip").write_bytes(content.replace(b'"pendulum"', b'"pendulun"'))
         assert "422: " in run("bundle", "load", str(tmp_path / "parts.zip"), "--server", target, code=1)
         assert "there is no substructure 'nothing'" in run("pull", address, "nothing", "--server", target, code=1)
-        run("mirror", address, "--wait", "--server", target)
+        counts = run("mirror", address, "--wait", "--server", target).splitlines()[-1]
+        assert counts == f"1 parts at {address}: 0 stored, 1 same, 0 refused"
+        assert "progress" in json.loads(run("mirror", address, "--wait", "--json", "--server", target))
         assert "SUBSTRUCTURES_MIRROR_SOURCES" in run("mirror", "http://127.0.0.1:10", "--server", target, code=1)
+
+
+def test_what_a_mirror_may_not_store_is_named(run: Runner, address: str, tmp_path: Path) -> None:
+    other = Settings(
+        database=f"sqlite:///{tmp_path / 'other.db'}",
+        catalogue=False,
+        workers=1,
+        key_seconds=0,
+        mirror_sources=(address,),
+    )
+    with background(other) as target:
+        with Client(target) as client:
+            client.submit({**PENDULUM, "title": "Another"})
+        database = Database(other.database, exclusive=False)
+        with database.write() as connection:
+            key = keys.create(connection, "", ("read", "write", "jobs"), None, "bolt")
+        database.close()
+        assert main(["mirror", address, "--wait", "--server", target, "--key", key]) == 0
+        shown = run.capsys.readouterr()
+    assert shown.out.splitlines()[-1] == f"1 parts at {address}: 0 stored, 0 same, 1 refused"
+    assert "refused: pendulum: the name 'pendulum' of a substructure belongs to 'local'" in shown.err
+
+
+def test_private_parts_become_public_only_on_purpose(run: Runner, tmp_path: Path) -> None:
+    names = [f"secret-{k}" for k in range(7)]
+    told = "secret-0, secret-1, secret-2, secret-3, secret-4, ... (7 in all); "
+    ours, theirs = (Settings(database=f"sqlite:///{tmp_path / name}.db", catalogue=False, workers=1) for name in "ab")
+    with background(ours) as one, background(theirs) as other, Client(one) as client, Client(other) as receiver:
+        for name in names:
+            client.submit({**PENDULUM, "name": name, "visibility": "private"})
+        client.submit(PENDULUM)
+        for words in (("pull", one, "--server", other), ("push", other, "--server", one)):
+            shown = run(*words, "pendulum", *names, code=1)
+            assert f"private parts: {told}--private keeps them so, --public shows" in shown
+        assert list(receiver.substructures()) == []
+        run("pull", one, "secret-0@1,secret-1@1", "--private", "--server", other)
+        run("push", other, "secret-2", "--public", "--server", one)
+        assert [receiver.visibility(name)["visibility"] for name in names[:3]] == ["private", "private", "public"]
+        assert main(["bundle", "save", str(tmp_path / "parts.zip"), *names, "--server", one]) == 0
+        assert f"warning: private: {told}whoever loads the file makes them public" in run.capsys.readouterr().err
+        assert main(["bundle", "save", str(tmp_path / "parts.zip"), "pendulum", "--server", one]) == 0
+        assert run.capsys.readouterr().err == ""
+
+
+def test_keys_that_do_not_do_come_with_a_remedy(run: Runner, tmp_path: Path) -> None:
+    settings = Settings(database=f"sqlite:///{tmp_path / 'keyed.db'}", catalogue=False, workers=1)
+    with background(settings) as address:
+        database = Database(settings.database, exclusive=False)
+        with database.write() as connection:
+            keys.create(connection, "", ["read"])
+            old = keys.create(connection, "", ["read"])
+            keys.revoke(connection, old.split("_")[1])
+        database.close()
+        told = run("list", "--server", address, code=1)
+        assert "; give it by --key KEY, or the variable SUBSTRUCTURES_KEY" in told
+        told = run("list", "--server", address, "--key", old, code=1)
+        assert "ask whoever runs the server for a new one ('substructures key create') and give it by --key" in told
+        told = run("pull", address, "pendulum", code=1)
+        assert "; give it by --other-key KEY, or the variable SUBSTRUCTURES_OTHER_KEY" in told
+
+
+def test_addresses_that_do_not_do_come_with_a_remedy(run: Runner, address: str) -> None:
+    plain = address.removeprefix("http://")
+    assert f"begins with http:// or https://: write {address} " in run("list", "--server", plain, code=1)
+    assert f"write {address} " in run("pull", plain, "pendulum", code=1)
+    told = run("list", "--server", f"https://{plain}", code=1)
+    assert f"nothing answers at https://{plain}; " in told
+    assert "without TLS an address begins with http://" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            ["--server", "http://127.0.0.1:9", "list"],
+            "--server before the command; it stands behind: substructures list",
+        ),
+        (["--json", "jobs", "list"], "it stands behind: substructures jobs list --json"),
+        (["jobs", "--key=x", "show"], "it stands behind: substructures jobs show --key"),
+        (["--database", "sqlite:///x.db", "key", "list"], "it stands behind: substructures key list --database"),
+        (["--json"], "it stands behind: substructures list --json"),
+        (["--set", "a=1"], "it stands behind: substructures couple --set"),
+        (["--nothing", "list"], "No such option: --nothing "),
+        (["list", "--nothing"], "No such option: --nothing "),
+    ],
+)
+def test_options_before_the_command(run: Runner, words: list[str], expected: str) -> None:
+    told = run(*words, code=2)
+    assert expected in told
+    assert ("behind" in told) == ("behind" in expected)
 
 
 def test_upgrade(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -189,8 +297,7 @@ def test_upgrade(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     assert json.loads(run("upgrade", "--database", url, "--json"))[0]["what"] == "substructure pendulum@1"
 
 
-def test_a_port_in_use_makes_no_store(tmp_path: Path, run: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.logs.configure", lambda: None)
+def test_a_port_in_use_makes_no_store(tmp_path: Path, run: Runner) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         told = run("serve", "--port", port, "--database", f"sqlite:///{tmp_path / 'new.db'}", code=1)

@@ -26,6 +26,13 @@ def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
     assert not HEAVY & set(err.split())
 
 
+def test_a_server_starts_without_what_few_requests_need() -> None:
+    late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
+    program = "import sys, service.cli.server; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not late & set(done.stdout.split())
+
+
 @pytest.mark.parametrize("name", [command.name for command in COMMANDS])
 def test_every_command_has_its_arguments(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([name, "--help"]) == 0

@@ -201,7 +201,10 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert '"packed"' in Path("swing_interface.json").read_text()
     assert main(["export", "swing.yaml", "--target", "maxima", "--out", "model.mac"]) == 0
     assert "swing_metric(q, p) :=" in Path("model.mac").read_text()
-    assert main(["export", "swing.yaml", "--target", "urdf"]) == 0
+    capsys.readouterr()
+    assert main(["export", "swing.yaml", "--target", "urdf", "--json"]) == 0
+    size = Path("swing.urdf").stat().st_size
+    assert json.loads(capsys.readouterr().out) == {"file": "swing.urdf", "bytes": size}
     assert main(["export", "swing.urdf", "--target", "interface"]) == 0
     assert "arm_q1" in Path("swing_interface.json").read_text()
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import fcntl
 import io
 import json
+import os
+import struct
+import termios
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +61,7 @@ def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
     with zipfile.ZipFile(tmp_path / "all.zip") as archive:
         assert "2/item.json" in archive.namelist()
     assert main(["jobs", "watch", job, *server]) == 0
+    assert capsys.readouterr().err.count("3 of 3\n") == 1  # where the bar ends
     assert main(["jobs", "cancel", job, *server]) == 0
     assert "succeeded" in capsys.readouterr().out
     assert main(["jobs", "show", "none", *server]) == 1
@@ -63,6 +69,17 @@ def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
     file.write_text(json.dumps({**CELLS, "kind": "fly"}))
     assert main(["jobs", "submit", str(file), *server]) == 1
     assert "/kind:" in capsys.readouterr().err
+
+
+def test_what_was_skipped_is_told(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "some.json"
+    file.write_text(json.dumps({**CELLS, "choices": {"a": ["pendulum", "pendulun"]}, "on_invalid": "skip"}))
+    assert main(["jobs", "submit", str(file), "--server", address]) == 0
+    told = capsys.readouterr().err
+    assert told.startswith("skipped: item 1: ")
+    assert "there is no substructure 'pendulun'" in told
+    assert main(["jobs", "submit", str(file), "--json", "--wait", "--server", address]) == 0
+    assert [each["item"] for each in json.loads(capsys.readouterr().out)["skipped"]] == [1]
 
 
 def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -215,6 +232,39 @@ def test_bar() -> None:
         bar.end({**job, "state": "failed"})
         assert stream.getvalue().endswith("\n")
         assert "failed" in stream.getvalue()
+
+
+def test_who_stops_to_wait_is_told_how_to_go_on(
+    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Client, "wait", interrupted)
+    (tmp_path / "job.json").write_text(json.dumps(CELLS))
+    assert main(["jobs", "submit", str(tmp_path / "job.json"), "--wait", "--server", address]) == 130
+    shown = capsys.readouterr()
+    assert f"'substructures jobs watch {shown.out.strip()}' waits again" in shown.err
+
+
+def test_bar_of_a_narrow_terminal() -> None:
+    """What is longer than a line of it could not be written over."""
+    progress = {"done": 9, "total": 20000, "failed": 3, "fraction": 0.1, "rate": 120.0, "eta_seconds": 3670.0}
+    keeper, terminal = os.openpty()
+    try:
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 60, 0, 0))
+        with os.fdopen(terminal, "w") as stream:
+            bar = Bar(stream)
+            bar.show({"state": "running", "progress": progress})
+            bar.lost(3, 60, "Connection refused")
+        shown = b""
+        with suppress(OSError):  # as Linux tells the end
+            while some := os.read(keeper, 10_000):
+                shown += some
+    finally:
+        os.close(keeper)
+    assert shown.count(b"\r") == 2
+    assert max(len(line) for line in shown.split(b"\r")) == 59
 
 
 @pytest.mark.parametrize("identifier", ["", ".", "..", "../trees/cell", "none?x=1"])

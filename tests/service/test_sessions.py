@@ -56,6 +56,16 @@ def test_signing_in_and_out(filled: TestClient, store: Store) -> None:
     assert filled.get("/", headers={"Cookie": f"{SESSION}={value}"}).status_code == 401
 
 
+def test_a_session_is_shown_the_command_in_place_of_a_form_that_it_cannot_send(
+    filled: TestClient, store: Store
+) -> None:
+    assert ("id", "file") in read(filled, "/").attributes
+    sign_in(filled, token(store, "read", "write"))
+    page = read(filled, "/")
+    assert ("id", "file") not in page.attributes
+    assert 'substructures submit FILE --server http://localhost --key "$SUBSTRUCTURES_KEY"' in page.text
+
+
 def test_the_cookie_is_no_key(filled: TestClient, store: Store) -> None:
     """What is stored of it does not let anybody in, and it changes nothing."""
     sign_in(filled, token(store, "read", "write"))

@@ -1,4 +1,4 @@
-"""The commands ``versions``, ``diff``, ``uses`` and ``publish``, against a server."""
+"""The commands ``versions``, ``diff``, ``uses``, ``withdraw`` and ``publish``, against a server."""
 
 from __future__ import annotations
 
@@ -47,6 +47,39 @@ def test_versions_and_their_difference(address: str, capsys: pytest.CaptureFixtu
         "  parameter m 2 -> 2.1 kg: changes 1 of 1 entries of M, at most 5 %",
     ]
     assert "did you mean 'pendulum'" in run(address, capsys, "diff", "pendulum", "pendulun", code=1)
+    for words in (("versions", "cell"), ("diff", "cell@1", "cell")):
+        assert "; for trees there is --tree\n" in run(address, capsys, *words, code=1)
+    assert "--tree" not in run(address, capsys, "versions", "cel", "--tree", code=1)
+
+
+def test_nothing_uses_a_part(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with Client(address) as client:
+        client.submit({**PENDULUM, "name": "lone"})
+    assert main(["uses", "lone", "--server", address]) == 0
+    assert capsys.readouterr() == ("", "nothing uses lone\n")
+    assert run(address, capsys, "uses", "lone", "--json") == "[]\n"
+
+
+def test_what_is_withdrawn_is_shown_where_it_is_used(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "\n  WITHDRAWN: light; take pendulum@2\n" in run(address, capsys, "show", "pendulum@1")
+    assert "WITHDRAWN" not in run(address, capsys, "show", "pendulum@2")
+    assert main(["show", "cell", "--server", address]) == 0
+    assert capsys.readouterr().err == "warning: arm: pendulum@1 is withdrawn: light; take pendulum@2\n"
+
+
+def test_a_version_is_withdrawn(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    old, new = {**PENDULUM, "name": "old"}, {**PENDULUM, "name": "new"}
+    with Client(address) as client:
+        client.submit(old)
+        client.submit(new)
+        client.create_tree({**TREE, "name": "with-old", "instances": [{"name": "arm", "substructure": "old"}]})
+    assert "none such" in run(address, capsys, "withdraw", "old@1", "--instead", "none such", code=1)
+    told = run(address, capsys, "withdraw", "old@1", "--reason", "too light", "--instead", "new")
+    assert told == "old@1 is withdrawn: too light; take new@1\n"
+    assert "WITHDRAWN (too light, take new@1)" in run(address, capsys, "versions", "old")
+    assert main(["show", "with-old", "--server", address]) == 0
+    assert "old@1 is withdrawn: too light; take new@1" in capsys.readouterr().err
+    assert json.loads(run(address, capsys, "withdraw", "new@1", "--json"))["yanked"] is True
 
 
 def test_a_tree_as_a_part(address: str, capsys: pytest.CaptureFixture[str]) -> None:
