@@ -26,6 +26,9 @@ PLACES: dict[str, tuple[str, ...]] = {
     "kinematics.rotation": ("frames", "axes", "axes"),
     **dict.fromkeys(("kinematics.U", "kinematics.Omega"), ("frames", "coordinates", "axes")),
     **dict.fromkeys(("momentum.linear", "momentum.angular"), ("axes",)),
+    "regressor": ("coordinates", "parameters"),
+    "inertial_parameters": ("parameters",),
+    "powers": ("loads",),
     **{
         f"{group}{name}{world}": ("joints", "axes")
         for group in ("reactions.", "reaction_")
@@ -44,7 +47,8 @@ class Tabular(Answer):
 
     def _labels(self, name: str, shape: Sequence[int]) -> list[list[str]]:
         """Names of the places of a quantity, numbers from 0 where they have none."""
-        named = {"axes": AXES, **{kind: self.get(kind, ()) for kind in ("coordinates", "frames", "joints")}}
+        named = {"axes": AXES, "parameters": self.get("columns", {}).get("names", ())}
+        named |= {kind: self.get(kind, ()) for kind in ("coordinates", "frames", "joints", "loads")}
         found = [[str(label) for label in named[kind]] for kind in PLACES.get(name, ())]
         fits = [len(labels) for labels in found] == list(shape)
         return found if fits else [[str(k) for k in range(size)] for size in shape]

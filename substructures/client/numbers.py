@@ -13,7 +13,10 @@ from substructures.client.frames import Array, Tabular, labelled, states
 from substructures.formats.arrays import nested, view_npz
 
 #: what an evaluation answers beside quantities
-BESIDE = ("coordinates", "count", "digest", "frames", "columns", "joints", "failures", "warnings", "range", "states")
+BESIDE = (
+    *("coordinates", "count", "digest", "frames", "columns", "joints", "loads"),
+    *("failures", "warnings", "range", "states"),
+)
 
 
 class Evaluation(Tabular):
@@ -45,7 +48,8 @@ class Evaluation(Tabular):
 
     def columns(self) -> dict[str, Array]:
         """``t``, ``q.<coordinate>``, ``qd.<coordinate>`` as given, and every element of every quantity, by names of
-        coordinates (``metric.arm.q1.arm.q2``), frames and joints, or by its place, which counts from 0.
+        coordinates (``metric.arm.q1.arm.q2``), frames, joints, loads and bodies' parameters, or by its place, which
+        counts from 0.
         """
         names, count = [str(name) for name in self["coordinates"]], int(self["count"])
         found = states(self._given, names, count)
@@ -98,7 +102,8 @@ class Motion(Tabular):
         return f"Motion: {len(self['t']):,} states of {', '.join(self['coordinates'])}, {self['status']}; {verdict}"
 
     def columns(self) -> dict[str, Array]:
-        """``t``, ``q.<coordinate>``, ``qd.<coordinate>`` and the series: ``energy``, ``reaction_force.<joint>.x``.
+        """``t``, ``q.<coordinate>``, ``qd.<coordinate>`` and the series: ``energy``, ``reaction_force.<joint>.x``,
+        ``powers.<load>``.
 
         Places without names count from 0.
         """

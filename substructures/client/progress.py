@@ -32,9 +32,8 @@ class Bar:
 
     def end(self, job: Mapping[str, Any]) -> None:
         """Leave the last line."""
-        self._is_watched, self._width = True, self._width if self._is_watched else 0
         self._put(line(job))
-        self._stream.write("\n")
+        self._stream.write("\n" if self._is_watched else f"{line(job)}\n")
 
 
 def line(job: Mapping[str, Any]) -> str:

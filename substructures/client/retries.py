@@ -41,9 +41,18 @@ class Retries:
                     continue
                 pause = max(_retry_after(error) or 0.0, FIRST * GROWTH**attempt)
                 if attempt >= self.count or pause > LONGEST or not _is_passing(error, is_repeatable):
-                    raise
+                    raise _told(error) from None
             sleep(pause)
             attempt += 1
+
+
+def _told(error: httpx2.TransportError | ProblemError) -> httpx2.TransportError | ProblemError:
+    """The same, saying where nothing answers in place of 'Connection refused'."""
+    if not isinstance(error, httpx2.ConnectError):
+        return error
+    url = error.request.url
+    told = f"nothing answers at {url.scheme}://{url.netloc.decode()} ({error}); 'substructures serve' starts a server"
+    return httpx2.ConnectError(told, request=error.request)
 
 
 def _is_passing(error: Exception, is_repeatable: bool) -> bool:

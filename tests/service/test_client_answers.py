@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import io
 import json
 import pickle
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from substructures import Definition, TreeSpec, couple, derive, render
 from substructures.client import Answer, Client, Evaluation, Formula, Job, Picture, ProblemError, Tree, Version
 from substructures.client.progress import Bar
 from substructures.display import mathematics
+from substructures.errors import InvalidDocument
 from substructures.pictures.tree import picture
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE
@@ -114,6 +116,29 @@ def test_equations_for_constraints_are_formulas(client: Client) -> None:
     assert "text/latex" in client.velocity_equations("pair", given)._repr_mimebundle_()
 
 
+class _Printer:
+    """As much of IPython's as is used: without what is asked of it here it shows texts as texts are written."""
+
+    def __init__(self) -> None:
+        self.shown = ""
+
+    def text(self, text: str) -> None:
+        self.shown += text
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (Formula("# a model\nx^2"), "# a model\nx^2"),
+        (Picture("<svg/>"), "a picture (SVG, 6 characters)"),
+    ],
+)
+def test_terminals_show_lines_and_no_quotes(text: Formula | Picture, words: str) -> None:
+    printer = _Printer()
+    text._repr_pretty_(printer, False)
+    assert printer.shown == words
+
+
 def test_mathematics_of_a_formula_is_asked_for_once() -> None:
     asked: list[str] = []
 
@@ -171,6 +196,20 @@ def test_evaluations_are_frames(client: Client) -> None:
     assert "kinematics.position.arm.tip.x" in frame.columns
 
 
+def test_columns_of_every_quantity_have_names(client: Client) -> None:
+    """Also of those whose rows and columns are loads, joints and parameters."""
+    wanted = ["regressor", "inertial_parameters", "reactions", "powers", "condition"]
+    for q in ([0.1], np.array([[0.1], [0.2]])):
+        found = client.evaluate("cell@1", quantities=wanted, q=q, qdd=[0])
+        assert repr(found).startswith(f"Evaluation: {', '.join(name for name in found if name in wanted)} for ")
+        columns = found.columns()
+        expected = {"regressor.arm.q.arm.rod.m", "inertial_parameters.arm.rod.Jzz", "reactions.moment.arm.q.x"}
+        assert {"powers.gravity", "powers.tau.arm.q", "condition", *expected} <= columns.keys()
+        assert not [name for name in columns if name.rpartition(".")[2].isdigit()]
+    motion = client.simulate("cell@1", q=[0.3], span=[0, 0.1], step=0.05, powers=True)
+    assert motion.columns()["powers.gravity"] == pytest.approx(np.asarray(motion.series["powers"])[:, 0])
+
+
 @pytest.mark.parametrize(
     ("q", "known"),
     [
@@ -195,6 +234,15 @@ def test_axes_of_three_coordinates_are_not_those_of_space() -> None:
     }
     columns = Evaluation(told, {"q": np.zeros((2, 3))}).columns()
     assert {"momentum.linear.x", "metric.5", "q.c"} <= columns.keys()
+
+
+@needs("pandas")
+def test_columns_of_frames_are_given_as_arrays(client: Client) -> None:
+    frame = client.evaluate("cell@1", quantities=["metric"], q=[[0.1], [0.2]]).to_pandas()
+    with pytest.raises(InvalidDocument, match=r"/q/arm.q: Series is not plain data: .* NumPy's arrays"):
+        client.evaluate("cell@1", quantities=["metric"], q={"arm.q": frame["q.arm.q"]})
+    again = client.evaluate("cell@1", quantities=["metric"], q={"arm.q": frame["q.arm.q"].to_numpy()})
+    assert again.to_pandas().equals(frame)
 
 
 def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -275,6 +323,15 @@ def test_the_bar_is_written_over() -> None:
     assert lost.rstrip() == "the server cannot be reached for 3 s: refused"
     assert len(lost) == len(first)
     assert last.rstrip() == f"[{'#' * 30}]  succeeded  4 of 4, 1 failed"
+
+
+def test_the_bar_where_nobody_watches_is_a_line() -> None:
+    stream = io.StringIO()
+    bar = Bar(stream)
+    progress = {"done": 1, "failed": 0, "total": 4, "fraction": 0.25, "eta_seconds": 12.0}
+    bar.show({"state": "running", "progress": progress})
+    bar.end({"state": "succeeded", "progress": {**progress, "done": 4, "fraction": 1.0, "eta_seconds": None}})
+    assert stream.getvalue() == f"[{'#' * 30}]  succeeded  4 of 4\n"
 
 
 def test_robot_files(client: Client, tmp_path: Path) -> None:

@@ -184,6 +184,8 @@ def test_what_has_no_key_is_only_sent_again_when_it_was_not_taken(client: Client
 def test_nobody_listens(monkeypatch: pytest.MonkeyPatch) -> None:
     pauses: list[float] = []
     monkeypatch.setattr(retries, "sleep", pauses.append)
-    with Client("http://127.0.0.1:9") as client, pytest.raises(httpx2.ConnectError):
+    with Client("http://127.0.0.1:9") as client, pytest.raises(httpx2.ConnectError) as raised:
         client.remove_job("x")
+    assert str(raised.value).startswith("nothing answers at http://127.0.0.1:9 (")
+    assert str(raised.value).endswith("; 'substructures serve' starts a server")
     assert pauses == pytest.approx([0.1, 0.3, 0.9])

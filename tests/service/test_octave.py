@@ -55,6 +55,24 @@ answer = substructures.evaluate ("both", "metric", [0.1 0.2]);
 assert (size (answer.metric), [2 2])
 motion = substructures.request ("/v1/trees/alone/simulations", struct ("q", 0.5, "span", [0 0.1], "step", 0.05));
 assert (numel (motion.t), 3)
+text = substructures.request ("/v1/trees/alone/metric?format=text");
+assert (ischar (text) && ! isempty (strfind (text, "metric[1, 1] = ")))
+program = substructures.request ("/v1/trees/alone/metric");
+assert (program.format, "substructures.program")
+% what fails says where, and what helps
+function message = said (path)
+  message = "";
+  try
+    substructures.request (path);
+  catch failed
+    message = failed.message;
+  end
+end
+message = said ("/v1/trees/nothing");
+assert (! isempty (strfind (message, [address "/v1/trees/nothing: "])))
+assert (! isempty (strfind (message, "curl and other clients")))
+setenv ("SUBSTRUCTURES_SERVER", "http://127.0.0.1:9")
+assert (! isempty (strfind (said ("/v1/trees"), "substructures serve")))
 disp ("all of it")
 """
 
