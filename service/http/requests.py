@@ -163,12 +163,16 @@ def _is_of_page(request: Request) -> bool:
     return any(name in request.headers for name in ("origin", "referer", "sec-fetch-site", "sec-fetch-mode"))
 
 
+def received(request: Request) -> str:
+    """What a body was declared as, for a message."""
+    sent = request.headers.get("content-type")
+    return "no Content-Type" if sent is None else f"Content-Type '{sent[:80]}'"
+
+
 def require_json(request: Request) -> None:
     """Refuse a body that is not declared as JSON; this also keeps HTML forms of other sites out."""
     if media_type(request) != JSON:
-        received = request.headers.get("content-type")
-        what = "no Content-Type" if received is None else f"Content-Type '{received[:80]}'"
-        detail = f"send Content-Type: application/json; {what} was received"
+        detail = f"send Content-Type: application/json; {received(request)} was received"
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept": JSON})
 
 

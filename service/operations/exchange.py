@@ -55,7 +55,9 @@ def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[Evaluation
         return batches.arrow_requests(file, limits)
     if sent == JSON:
         return [EvaluationRequest.read(read_json(forms.unpacked(file.read())))]
-    raise Refused(415, "unsupported-media-type", f"send {_KNOWN}", headers={"Accept": _KNOWN})
+    received = f"Content-Type '{sent[:80]}'" if sent else "no Content-Type"
+    detail = f"send {_KNOWN}; {received} was received"
+    raise Refused(415, "unsupported-media-type", detail, headers={"Accept": _KNOWN})
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,7 +59,7 @@ def require(viewer: Viewer, owner: str, name: str, what: str) -> None:
 def candidates(connection: Connection, viewer: Viewer, kind: Kind, text: str) -> str:
     """What may have been meant by a reference to something that is not there, of what the viewer sees."""
     name = text.partition("@")[0]
-    return meant(name, [each for each in owners.names_like(connection, viewer, kind, name) if each != name])
+    return meant(name, [each for each in owners.names_like(connection, viewer, kind, name) if each != text])
 
 
 def seen(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> Ownership:

@@ -11,7 +11,7 @@ from service.answers import Answer, etag, json_answer
 from service.bundles import MEDIA_TYPE, read_bundle, write_bundle
 from service.database.connections import Connection
 from service.http.acting import Commit, SpooledActOf, timed
-from service.http.requests import StoreOf, ViewerOf, declared_type, needs
+from service.http.requests import StoreOf, ViewerOf, declared_type, needs, received
 from service.http.responses import conditional
 from service.integrity import digest_of
 from service.operations import bundles
@@ -63,7 +63,12 @@ def import_bundle(
 ) -> Response:
     """Verify the parts of a bundle and store them, all or nothing. 201 when something was new, else 200."""
     if declared_type(request) != MEDIA_TYPE:
-        raise Refused(415, "unsupported-media-type", f"send {MEDIA_TYPE}", headers={"Accept": MEDIA_TYPE})
+        raise Refused(
+            415,
+            "unsupported-media-type",
+            f"send {MEDIA_TYPE}; {received(request)} was received",
+            headers={"Accept": MEDIA_TYPE},
+        )
     entry, limit = PartEntry(visibility=visibility), store.settings.limits.program_nodes
 
     def prepare() -> Commit:

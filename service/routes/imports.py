@@ -10,7 +10,7 @@ from service.addresses import tree_path, version_path
 from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
-from service.http.requests import RawBody, StoreOf, declared_type, needs
+from service.http.requests import RawBody, StoreOf, declared_type, needs, received
 from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
 from service.refusals import Refused
@@ -53,7 +53,8 @@ def read_file(
     """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
     if declared_type(request) not in MEDIA_TYPES:
         accepted = ", ".join(MEDIA_TYPES)
-        raise Refused(415, "unsupported-media-type", f"send one of {accepted}", headers={"Accept": accepted})
+        detail = f"send one of {accepted}; {received(request)} was received"
+        raise Refused(415, "unsupported-media-type", detail, headers={"Accept": accepted})
     options = Options(parameters, fixed, base)
     links = [text.strip() for text in cut.split(",") if text.strip()]
     try:

@@ -38,6 +38,30 @@ def metric(part: Part, q: Any) -> Any:
     return np.asarray(evaluate(couple(tree, {"x": part}), "metric", q=q)["metric"])
 
 
+def test_percents_are_numbers_that_people_read() -> None:
+    (words,) = difference(changed(m3=9.6)).words
+    assert "e+0" not in words
+    assert "at most 100 %" in difference_of_pendulum(1, 2)
+    assert "at most 12 %" in difference_of_pendulum(1, "1.124")
+    assert "at most 0.12 %" in difference_of_pendulum(1, "1.00124")
+
+
+def difference_of_pendulum(m: Any, to: Any) -> str:
+    body = {
+        "name": "b",
+        "parent": "base",
+        "joint": {"type": "revolute", "coordinate": "q"},
+        "mass": "m",
+        "com": [1, 0, 0],
+    }
+    a, b = (
+        derive(Definition.read({"name": "p", "parameters": {"m": {"value": value}}, "bodies": [body]}))
+        for value in (m, to)
+    )
+    (words,) = of_parts(a, b).words
+    return words
+
+
 def test_another_default_changes_numbers_and_no_formula() -> None:
     """Which entries, and by how much at most, is found once more by evaluating both."""
     found = difference(changed(m3=5.1))

@@ -157,6 +157,10 @@ def test_import_prints_the_definition_and_tells_of_the_file(tmp_path: Path, caps
     shown = capsys.readouterr()
     assert json.loads(shown.out)["bodies"][1]["mass"] == 2
     assert "urdf: checks of schema passed, topology passed, physics passed; 2 of 4 names changed" in shown.err
+    assert main(["import", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["kind"], told["definition"]["bodies"][1]["name"], told["stored"]) == ("urdf", "upper_arm", None)
+    assert told["checks"]["physics"]["passed"] is True
     out = tmp_path / "arm.json"
     assert main(["import", str(path), "--out", str(out)]) == 0
     assert main(["derive", str(out)]) == 0

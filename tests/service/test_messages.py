@@ -63,7 +63,10 @@ def test_definitions(client: TestClient, change: dict[str, Any], words: tuple[st
     [
         ({"gravity": -9.81}, ("/gravity", "a list is needed", "found -9.81")),
         ({"gravity": {"x": 0}}, ("a list is needed",)),
-        ({"at": "tip"}, ("/instances/1/at", "'instance.port'", "'arm.tip'")),
+        ({"at": "tip"}, ("/instances/1/at", "'instance.port'", "; there are arm.tip")),
+        ({"at": "arm"}, ("/instances/1/at", "; there are arm.base, arm.rod, arm.tip")),
+        ({"at": "flange"}, ("/instances/1/at", "; there are arm.base, arm.rod, arm.tip, hand")),
+        ({"at": "arm tip"}, ("/instances/1/at", "'instance.port'")),
         ({"at": "arm.tp"}, ("it has base, rod, tip",)),
         ({"at": "amr.tip"}, ("unknown instance 'amr'; did you mean 'arm'?",)),
         ({"substructure": "pendulm"}, ("/instances/1/substructure", "did you mean 'pendulum'?")),
@@ -85,7 +88,11 @@ def test_trees(filled: TestClient, change: dict[str, Any], words: tuple[str, ...
     [
         ("/v1/substructures/pendulm", "did you mean 'pendulum'?"),
         ("/v1/trees/cel", "did you mean 'cell'?"),
+        ("/v1/substructures/pendulum@9", "there is no substructure 'pendulum@9'; did you mean 'pendulum'?"),
+        ("/v1/trees/cell@9", "there is no tree 'cell@9'; did you mean 'cell'?"),
         ("/v1/trees/cell/metrik", "did you mean 'metric'?"),
+        ("/v1/substructures/pendulum/formulas/metrik", "has no formula of 'metrik'; did you mean 'metric'?"),
+        ("/v1/substructures/pendulum/formulas/zzzzzz", "has no formula of 'zzzzzz'; its index lists all"),
         ("/v1/trees/cell/metric?fromat=text", "unknown query parameter 'fromat'; did you mean 'format'?"),
         ("/v1/trees?dofs=2", "unknown query parameter 'dofs'; there are q, uses, page_size, page_token, dof_min"),
         ("/v1/limits?x=1", "there are none"),
@@ -98,6 +105,29 @@ def test_names(filled: TestClient, path: str, words: str) -> None:
 def test_numbers_that_are_none(filled: TestClient) -> None:
     assert "found null, as MATLAB writes NaN" in said(
         filled.post(EVALUATIONS, json={"quantities": ["metric"], "q": [None]})
+    )
+
+
+@pytest.mark.parametrize("path", [EVALUATIONS, "/v1/trees", "/v1/bundles", "/v1/imports"])
+def test_another_content_type_is_named(filled: TestClient, path: str) -> None:
+    answer = filled.post(path, content=b"<a/>", headers={"Content-Type": "text/odd; x=1"})
+    assert answer.status_code == 415
+    assert "text/odd" in answer.json()["detail"]
+    assert "was received" in answer.json()["detail"]
+
+
+def test_units_in_states(filled: TestClient) -> None:
+    told = said(filled.post(EVALUATIONS, json={"quantities": ["metric"], "q": ["90 deg"]}))
+    assert 'found \'90 deg\'; a number with a unit is written {"value": 90, "unit": "deg"}' in told
+    told = said(filled.post(EVALUATIONS, json={"quantities": ["metric"], "q": [0], "parameters": {"arm.m": "500 g"}}))
+    assert 'a number with a unit is written {"value": 500, "unit": "g"}' in told
+
+
+def test_names_in_expressions(filled: TestClient) -> None:
+    body = {**PENDULUM["bodies"][0], "mass": "lenth"}
+    wrong = {"name": "wrong", "parameters": {"length": {"value": 1}}, "bodies": [body]}
+    assert "unknown name 'lenth' (column 1); did you mean 'length'?" in said(
+        filled.post("/v1/substructures", json=wrong)
     )
 
 

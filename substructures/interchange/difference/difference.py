@@ -125,10 +125,19 @@ def _told(quantities: Sequence[QuantityDifference]) -> str:
     return f"changes {'; '.join(told)}" if told else "changes no numbers of the equations of motion at the defaults"
 
 
+def _percent(change: float) -> str:
+    """Two digits; a whole number from ten percent on.
+
+    >>> _percent(0.00123), _percent(0.156), _percent(1.0)
+    ('0.12', '16', '100')
+    """
+    return f"{100 * change:.2g}" if 100 * change < 10 else f"{100 * change:.0f}"
+
+
 def _most(quantity: QuantityDifference) -> str:
     """The largest change in words."""
     added = quantity.count("new") + quantity.count("gone")
     if quantity.change is None:
         return ""
-    size = f", at most {100 * quantity.change:.2g} %" if quantity.change < MANIFOLD else ", more than tenfold"
+    size = f", at most {_percent(quantity.change)} %" if quantity.change < MANIFOLD else ", more than tenfold"
     return size + (f", {added} of them new or gone" if added else "")
