@@ -143,7 +143,8 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
     parts = source.parts
     named = None
     if parts is not None:
-        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts()))
+        stored = source.model.program
+        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts(), model=stored))
     return models.printed(program, style, what, interface, members, named)
 
 
