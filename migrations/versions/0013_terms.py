@@ -19,11 +19,15 @@ LATEST = sa.text(
        WHERE s.latest IS NOT NULL AND s.name > :last ORDER BY s.name LIMIT :size"""
 )
 NUMBERED = tuple(  # as SQLite's are, by a trigger
-    statement.format(table=table)
-    for table in ("substructures", "tree_names")
+    statement.format(table=table, of=of)
+    for table, of in (("substructures", "versions"), ("tree_names", "trees"))
     for statement in (
         "CREATE SEQUENCE {table}_numbers OWNED BY {table}.number",
-        "UPDATE {table} SET number = nextval('{table}_numbers')",
+        """UPDATE {table} SET number = place FROM
+           (SELECT {table}.name AS named, row_number() OVER (ORDER BY min(of_it.created), {table}.name) AS place
+            FROM {table} LEFT JOIN {of} of_it ON of_it.name = {table}.name GROUP BY {table}.name) AS placed
+           WHERE named = {table}.name""",
+        "SELECT setval('{table}_numbers', coalesce(max(number), 0) + 1, false) FROM {table}",
         "ALTER TABLE {table} ALTER COLUMN number SET DEFAULT nextval('{table}_numbers')",
     )
 )

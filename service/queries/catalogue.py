@@ -127,13 +127,14 @@ def _set_latest(connection: Connection, name: str) -> None:
     values = {f"its_{column.name}": value for column, value in zip(_NARROW, shown, strict=True)}
     connection.execute(_NEW_LATEST, {"of_name": name, "its_latest": latest, **values})
     had, has = (set[Term]() if row is None else terms_of(name, *row[len(_NARROW) :]) for row in (old, new))
-    exchange(connection, name, had, has)
+    exchange(connection, name, had, has or set())
 
 
 def yank(
     connection: Connection, name: str, version: int, reason: str, successor: tuple[str, int] | None = None
 ) -> None:
-    """Mark a version as withdrawn; the first mark stays."""
+    """Mark a version as withdrawn; the first mark stays. Until the end nobody else changes the name's versions."""
+    connection.execute(_LOCKED, {"of_name": name})
     chosen = and_(versions.c.name == name, versions.c.version == version, versions.c.yanked.is_(None))
     instead = dict(zip(("successor_name", "successor_version"), successor or (None, None), strict=True))
     connection.execute(update(versions).where(chosen).values(yanked=now(), yank_reason=reason, **instead))
@@ -217,6 +218,7 @@ _OFFERED = (  # from the highest number down: of 10,000 versions one row is read
     .limit(1)
 )
 _SHOWN = select(substructures.c.latest).where(substructures.c.name == bindparam("of_name"))
+_LOCKED = _SHOWN.with_for_update()
 _OF_LATEST = (
     select(*_NARROW, parts.c.title, parts.c.tags, parts.c.ports)
     .join(parts, parts.c.digest == versions.c.digest)

@@ -19,14 +19,20 @@ _WORD = re.compile(r"[^\W_]+")
 Term = tuple[str, str]
 
 
-def terms_of(name: str, title: str, tags: str, ports: str) -> set[Term]:
-    """The terms of a version, each with its kind; tags and ports are JSON as they are stored."""
-    labels = orjson.loads(tags)
+def terms_of(name: str, title: str, tags: str, ports: str) -> set[Term] | None:
+    """The terms of a version, each with its kind; tags and ports are JSON as they are stored.
+
+    None of a damaged one: whoever reads it refuses it by name.
+    """
+    try:
+        labels, frames = orjson.loads(tags), orjson.loads(ports)
+    except ValueError:
+        return None
     words = _WORD.findall(" ".join((name, title, *labels)).lower())
     starts = {word[:size] for word in words for size in range(1, LETTERS + 1)}
     return {
         *((TAG, tag) for tag in labels),
-        *((PORT, port) for port in orjson.loads(ports)),
+        *((PORT, port) for port in frames),
         *((START, each) for each in starts if is_start(each)),
     }
 
@@ -43,8 +49,11 @@ def names_with(kind: str, term: str) -> Select[Any]:
     return select(search_terms.c.name).where(search_terms.c.kind == kind, search_terms.c.term == term)
 
 
-def exchange(connection: Connection, name: str, before: set[Term], after: set[Term]) -> None:
-    """Let a name have other terms than before."""
+def exchange(connection: Connection, name: str, before: set[Term] | None, after: set[Term]) -> None:
+    """Let a name have other terms than before; None where these are not known."""
+    if before is None:
+        connection.execute(delete(search_terms).where(search_terms.c.name == name))
+        before = set()
     if gone := [{"of_kind": kind, "of_term": term, "of_name": name} for kind, term in sorted(before - after)]:
         connection.execute(_GONE, gone)
     new = [{"kind": kind, "term": term, "name": name} for kind, term in sorted(after - before)]
