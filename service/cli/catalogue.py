@@ -107,9 +107,12 @@ def _stored(client: Client, path: Path, document: dict[str, Any], digest: str, l
     if digest == latest:
         return "same", ""
     try:
-        version, _ = client.submit(document)
+        version, is_new = client.submit(document)
     except ProblemError as error:
         return "refused", f"refused: {path}: {error}"
+    if not is_new:
+        why = "which is withdrawn" if version["yanked"] else "and the latest version stays another"
+        return "same", f"same: {path} is {version['name']}@{version['version']} already, {why}"
     told = "new" if latest is None else "changed"
     return told, f"{told}: {path} is {version['name']}@{version['version']}"
 

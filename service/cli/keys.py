@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from typing import Annotated
 
@@ -13,7 +13,7 @@ import typer
 from service import keys
 from service.cli.options import Json, Store, settings
 from service.cli.output import print_json, table
-from service.database.connections import Connection, Database
+from service.database.connections import Connection, Database, DatabaseError
 from service.queries.common import now
 from service.queries.keys import ApiKey, list_keys
 from service.viewer import OPEN, SCOPES
@@ -49,7 +49,9 @@ def create(
     database: Store = None,
     json: Json = False,
 ) -> int:
-    """Create a key and print it once."""
+    """Create a key and print it once; the store, too, if there is none yet."""
+    with suppress(DatabaseError):  # a server has it
+        Database(settings(database=database).database).close()
     with _writing(database) as connection:
         key = keys.create(connection, label, scope or ["read"], days, owner)
     _print(key, json)

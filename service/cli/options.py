@@ -62,7 +62,7 @@ class Server:
     def client(self) -> Iterator[Client]:
         """A client of the server, or of one that serves the store while the block lasts. Raises SettingsError."""
         if self.database is not None:
-            if self.address is not None:
+            if self.address not in (None, os.environ.get("SUBSTRUCTURES_SERVER")):
                 raise SettingsError("give either --server or --database")
             from service.cli.own_server import serving  # noqa: PLC0415 -- of the store alone, with all that serves
 

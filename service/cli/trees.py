@@ -36,11 +36,18 @@ def tree(
     wait: Wait = False,
     json: Json = False,
 ) -> int:
-    """Make a tree of a document, or begin one with parts on the world; what is there gets a new revision."""
+    """Make a tree of a document, or begin one with parts on the world; one of that name is there still, as a revision
+    before.
+    """
     if is_document(tree):
         body = read_document(Path(tree))
         if part:
             raise typer.BadParameter("--part goes with a name, not with a document")
+    elif not part:
+        what = f"a document or '--part NAME=PART' says what '{tree}' is to be made of"
+        raise typer.BadParameter(
+            f"{what}; 'substructures show {tree}' shows a tree, 'couple {tree} PART' goes on with it"
+        )
     else:
         body = {"name": tree, "gravity": _vector(gravity), "instances": [_instance(each) for each in part or ()]}
     if isinstance(body, dict):
@@ -99,6 +106,8 @@ def _changed(server: Server, method: str, path: str, body: Any, wait: bool, as_j
         print_json(found)
         return 0
     what = "was there already" if answer.status_code == 200 else "made"
+    if path == "/v1/trees" and what == "made" and found["revision"] > 1:
+        what += f" in place of {found['name']}@{found['revision'] - 1}, which stays"
     print(f"{found['name']}@{found['revision']} {what}: {found['dof']} coordinates, {_instances(found)}")
     tell_warnings(found)
     return 0

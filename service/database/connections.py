@@ -36,14 +36,17 @@ class Database:
     def __init__(self, address: str, *, exclusive: bool = True, claim: int | None = None) -> None:
         """Open and migrate the database at an SQLAlchemy URL.
 
-        ``exclusive`` claims an SQLite file for this server; ``claim``: the descriptor of a claim that another of its
-        processes has made, known as ``self.claim`` here. Raises DatabaseError when another server holds it, when it is
-        damaged, when it does not answer and for an unknown kind of URL, MigrationError for one of a newer version.
+        ``exclusive`` claims an SQLite file for this server, and makes one; without, it has to be there. ``claim``: the
+        descriptor of a claim that another of its processes has made, known as ``self.claim`` here. Raises DatabaseError
+        when there is none, when another server holds it, when it is damaged, when it does not answer and for an unknown
+        kind of URL, MigrationError for one of a newer version.
         """
         self.url = normalised(address)
         self.claim: int | None = None
         self._watch: Watch | None = None
         with ExitStack() as opened:
+            if not exclusive and self.is_sqlite and not self.file.exists():
+                raise DatabaseError(f"there is no database {self.file}; 'substructures serve' makes one")
             if exclusive and self.is_sqlite:
                 claimed = opened.enter_context(closing(Claim(self.file, claim)))
                 self.claim = claimed.shared

@@ -110,8 +110,7 @@ def find(connection: Connection, viewer: Viewer, text: str) -> catalogue.Version
 def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str = "") -> catalogue.Version:
     version = catalogue.resolve(connection, viewer, ref)
     if version is None:
-        like = owners.candidates(connection, viewer, "substructure", text)
-        raise not_found(f"there is no substructure '{text}'{like}", "unknown-substructure")
+        raise not_found(owners.absent_part(connection, viewer, text), "unknown-substructure")
     return version
 
 

@@ -6,8 +6,9 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from service.database.connections import Connection
-from service.queries import audit, owners, uses
+from service.queries import audit, catalogue, owners, uses
 from service.queries.owners import Kind, Ownership
+from service.references import parse_reference
 from service.refusals import Refused, not_found
 from service.schemas.entries import Entry
 from service.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
@@ -60,6 +61,19 @@ def candidates(connection: Connection, viewer: Viewer, kind: Kind, text: str) ->
     """What may have been meant by a reference to something that is not there, of what the viewer sees."""
     name = text.partition("@")[0]
     return meant(name, [each for each in owners.names_like(connection, viewer, kind, name) if each != text])
+
+
+def absent_part(connection: Connection, viewer: Viewer, text: str) -> str:
+    """Why a reference to a part means nothing that the viewer sees, and what may help."""
+    ref = parse_reference(text)
+    last = None if ref is None else catalogue.last(connection, viewer, ref.name)
+    if ref is not None and last is not None and ref.number is not None:
+        return f"there is no substructure '{text[:80]}'; the last version is {last.name}@{last.version}"
+    if last is not None and text == last.name:
+        why = f": {last.yank_reason}" if last.yank_reason else ""
+        instead = f"; take {last.successor}" if last.successor else ""
+        return f"all versions of '{last.name}' are withdrawn, the last one as {last.name}@{last.version}{why}{instead}"
+    return f"there is no substructure '{text[:80]}'{candidates(connection, viewer, 'substructure', text)}"
 
 
 def seen(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> Ownership:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from service.database.connections import Connection
-from service.operations.owners import candidates
+from service.operations.owners import absent_part
 from service.queries import catalogue
 from service.queries.catalogue import Provenance
 from service.references import parse_reference
@@ -51,8 +51,7 @@ def pinned(connection: Connection, viewer: Viewer, text: str, pointer: str) -> t
     ref = parse_reference(text)
     version = None if ref is None else catalogue.resolve(connection, viewer, ref)
     if version is None:
-        like = candidates(connection, viewer, "substructure", text)
-        raise unprocessable("unknown-substructure", f"there is no substructure '{text[:160]}'{like}", pointer)
+        raise unprocessable("unknown-substructure", absent_part(connection, viewer, text), pointer)
     return version.name, version.version
 
 

@@ -211,8 +211,8 @@ def _part(store: Store, connection: Connection, viewer: Viewer, index: int, inst
     ref = parse_reference(instance.substructure or "")
     version = versions.resolve(connection, viewer, ref) if ref is not None else None
     if version is None:
-        like = owners.candidates(connection, viewer, "substructure", instance.substructure or "")
-        message = f"instance '{instance.name}': there is no substructure '{instance.substructure}'{like}"
+        why = owners.absent_part(connection, viewer, instance.substructure or "")
+        message = f"instance '{instance.name}': {why}"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
     return store.required_part(connection, version.digest)
 

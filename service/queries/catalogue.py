@@ -160,6 +160,12 @@ def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version |
     return None if row is None else Version(*row)
 
 
+def last(connection: Connection, viewer: Viewer, name: str) -> Version | None:
+    """The version of a name with the highest number, withdrawn or not; None when the viewer sees none."""
+    row = connection.execute(_LAST, {"name": name, **seen_by(viewer)}).first()
+    return None if row is None else Version(*row)
+
+
 def _check_content(connection: Connection, viewer: Viewer, ref: Reference) -> None:
     """Raise Refused when what was looked for is a version without its content."""
     gone = select(versions.c.version, versions.c.digest).outerjoin(parts, parts.c.digest == versions.c.digest)
@@ -207,6 +213,7 @@ _BY_ALIAS = _NAMED.join(
     aliases, and_(aliases.c.name == versions.c.name, aliases.c.version == versions.c.version)
 ).where(aliases.c.alias == bindparam("alias"))
 _LATEST = _NAMED.where(_IS_LATEST)
+_LAST = _NAMED.order_by(versions.c.version.desc()).limit(1)
 _NEW = insert(versions)
 _OF_DIGEST = select(versions.c.version).where(versions.c.digest == bindparam("of_digest"))
 _IS_OF_NAME = versions.c.name == bindparam("of_name")

@@ -11,6 +11,7 @@ import pytest
 
 from service.cli import demo
 from service.cli.main import main
+from service.database.connections import Database
 from service.server import background
 from service.settings import Settings
 
@@ -123,6 +124,7 @@ def test_the_key_of_a_client_is_no_setting(
 ) -> None:
     monkeypatch.setenv("SUBSTRUCTURES_KEY", "sub_x")
     address = f"sqlite:///{tmp_path / 'x.db'}"
+    Database(address).close()
     assert main(["key", "list", "--database", address]) == 0
     assert main(["backup", str(tmp_path / "y.db"), "--database", address]) == 0
     assert not capsys.readouterr().err

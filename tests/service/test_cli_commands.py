@@ -303,3 +303,34 @@ def test_a_port_in_use_makes_no_store(tmp_path: Path, run: Runner) -> None:
         told = run("serve", "--port", port, "--database", f"sqlite:///{tmp_path / 'new.db'}", code=1)
     assert "Address already in use; is another server running?" in told
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_tree_is_not_emptied_by_its_name(run: Runner) -> None:
+    told = run("tree", "cell", code=2)
+    assert "'substructures show cell' shows a tree, 'couple cell PART' goes on with it" in told
+    assert run("tree", "again", "--part", "pendulum").startswith("again@1 made: ")
+    told = run("tree", "again", "--part", "other=pendulum")
+    assert told.startswith("again@2 made in place of again@1, which stays: ")
+    run("rm", "again")
+
+
+@pytest.mark.parametrize("words", [("key", "list"), ("key", "revoke", "x"), ("verify",), ("upgrade",)], ids=" ".join)
+def test_what_reads_a_store_makes_none(run: Runner, words: tuple[str, ...], tmp_path: Path) -> None:
+    told = run(*words, "--database", f"sqlite:///{tmp_path / 'typo.db'}", code=1)
+    assert "there is no database" in told
+    assert "substructures serve" in told
+    assert not list(tmp_path.glob("typo*"))
+
+
+def test_a_store_that_is_begun_with_a_key_is_private(run: Runner, tmp_path: Path) -> None:
+    path = tmp_path / "new.db"
+    assert run("key", "create", "--database", f"sqlite:///{path}").startswith("sub_")
+    assert path.stat().st_mode & 0o077 == 0
+
+
+def test_an_option_counts_more_than_a_variable(run: Runner, tmp_path: Path) -> None:
+    """SUBSTRUCTURES_SERVER is set, and the store is asked."""
+    url = f"sqlite:///{tmp_path / 'own.db'}"
+    Database(url).close()
+    assert "pendulum@1  1  R  local" not in run("list", "--database", url)
+    assert "either --server or --database" in run("list", "--database", url, "--server", "http://127.0.0.1:1", code=1)

@@ -88,7 +88,7 @@ def test_trees(filled: TestClient, change: dict[str, Any], words: tuple[str, ...
     [
         ("/v1/substructures/pendulm", "did you mean 'pendulum'?"),
         ("/v1/trees/cel", "did you mean 'cell'?"),
-        ("/v1/substructures/pendulum@9", "there is no substructure 'pendulum@9'; did you mean 'pendulum'?"),
+        ("/v1/substructures/pendulum@9", "there is no substructure 'pendulum@9'; the last version is pendulum@1"),
         ("/v1/trees/cell@9", "there is no tree 'cell@9'; did you mean 'cell'?"),
         ("/v1/trees/cell/metrik", "did you mean 'metric'?"),
         ("/v1/substructures/pendulum/formulas/metrik", "has no formula of 'metrik'; did you mean 'metric'?"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -147,6 +148,14 @@ def test_what_stands_alone_is_a_list_of_one(filled: TestClient) -> None:
     assert motion.status_code == 200, motion.text
     wrong = filled.post("/v1/trees", json={**tree, "gravity": 9.81})  # one number is no vector
     assert problem(wrong, 422, "invalid-document")["errors"][0]["pointer"] == "/gravity"
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.m")), ids=lambda path: path.name)
+def test_code_is_that_of_matlab(path: Path) -> None:
+    """Strings in brackets are not joined in MATLAB, where texts in single quotes are; Octave joins both."""
+    for line in path.read_text().splitlines():
+        code = re.sub(r"'(?:[^']|'')*'|%.*", "''", line)
+        assert not re.search(r'["#!]|\b(?:end(?:if|for|function|_try_catch)|printf|unwind_protect)\b|[-+]=', code), line
 
 
 @pytest.mark.skipif(shutil.which("octave-cli") is None, reason="needs Octave")

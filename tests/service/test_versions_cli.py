@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -80,6 +81,29 @@ def test_a_version_is_withdrawn(address: str, capsys: pytest.CaptureFixture[str]
     assert main(["show", "with-old", "--server", address]) == 0
     assert "old@1 is withdrawn: too light; take new@1" in capsys.readouterr().err
     assert json.loads(run(address, capsys, "withdraw", "new@1", "--json"))["yanked"] is True
+
+
+def test_a_part_of_which_all_is_withdrawn(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is not said to be unknown; reason and successor are told wherever it is asked for."""
+    for name in ("gone", "better"):
+        with Client(address) as client:
+            client.submit({**PENDULUM, "name": name})
+    words = ["withdraw", "gone@1", "--reason", "wrong mass", "--instead", "better@1", "--server", address]
+    assert main(words) == 0
+    expected = "all versions of 'gone' are withdrawn, the last one as gone@1: wrong mass; take better@1"
+    for asked in (["show", "gone"], ["tree", "t", "--part", "a=gone"], ["couple", "cell", "gone", "--name", "x"]):
+        assert main([*asked, "--server", address]) == 1
+        assert expected in re.sub(r"[\s│]+", " ", capsys.readouterr().err)
+    assert main(["show", "gone@7", "--server", address]) == 1
+    assert "there is no substructure 'gone@7'; the last version is gone@1" in capsys.readouterr().err
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    (folder / "gone.yaml").write_text(json.dumps({**PENDULUM, "name": "gone"}))
+    for _ in range(2):
+        assert main(["catalogue", "import", str(folder), "--server", address]) == 0
+        told = capsys.readouterr().out
+        assert "gone@1 already, which is withdrawn" in told
+        assert "0 new, 0 changed, 1 same" in told
 
 
 def test_a_tree_as_a_part(address: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,10 +4,10 @@ function tree = couple (name, instances, varargin)
   %   arm = struct ("name", "arm", "substructure", "puma560");
   %   hand = struct ("name", "hand", "substructure", "parallel-gripper", "at", "arm.flange");
   %   tree = substructures.couple ("cell", {arm, hand}, "gravity", [0 0 -9.81])
-  document = struct ("name", name);
+  document = struct ('name', name);
   document.instances = instances;
   for k = 1:2:numel (varargin)
-    document.(varargin{k}) = varargin{k + 1};
+    document.(char (varargin{k})) = varargin{k + 1};
   end
-  tree = substructures.request ("/v1/trees", document);
+  tree = substructures.request ('/v1/trees', document);
 end

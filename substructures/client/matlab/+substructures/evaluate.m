@@ -5,16 +5,16 @@ function answer = evaluate (tree, quantities, q, varargin)
   %   answer = substructures.evaluate ("cell", "bias", q, "qd", qd, "parameters", values)
   %
   % q and qd are 1 x n, or N x n with a row for each state. Further fields as in contract.md, section 4.
-  request = struct ("q", {rows(q)});
+  request = struct ('q', {rows(q)});
   request.quantities = quantities;
   for k = 1:2:numel (varargin)
     value = varargin{k + 1};
-    if (any (strcmp (varargin{k}, {"qd", "qdd"})))
+    if (any (strcmp (varargin{k}, {'qd', 'qdd'})))
       value = rows (value);
     end
-    request.(varargin{k}) = value;
+    request.(char (varargin{k})) = value;
   end
-  answer = substructures.request (["/v1/trees/" char(tree) "/evaluations"], request);
+  answer = substructures.request (['/v1/trees/' char(tree) '/evaluations'], request);
 end
 
 function listed = rows (values)
@@ -23,6 +23,6 @@ function listed = rows (values)
     listed = values;
   else
     listed = num2cell (values, 2);
-    listed = cellfun (@num2cell, listed, "UniformOutput", false);
+    listed = cellfun (@num2cell, listed, 'UniformOutput', false);
   end
 end

@@ -8,39 +8,39 @@ function answer = request (path, body)
   % with the API key in SUBSTRUCTURES_KEY, if there is one. Lists of one may be sent and come as what stands alone, names
   % with a dot as names with '_'; to send one, use a containers.Map. Formulas, e.g. "/v1/trees/cell/metric?format=text",
   % come as text.
-  address = getenv ("SUBSTRUCTURES_SERVER");
+  address = getenv ('SUBSTRUCTURES_SERVER');
   if (isempty (address))
-    address = "http://127.0.0.1:8000";
+    address = 'http://127.0.0.1:8000';
   end
-  key = getenv ("SUBSTRUCTURES_KEY");
-  options = weboptions ("Timeout", 60);
+  key = getenv ('SUBSTRUCTURES_KEY');
+  options = weboptions ('Timeout', 60);
   if (~ isempty (key))
-    options = weboptions ("Timeout", 60, "HeaderFields", {"Authorization", ["Bearer " char(key)]});
+    options = weboptions ('Timeout', 60, 'HeaderFields', {'Authorization', ['Bearer ' char(key)]});
   end
   url = [char(address) char(path)];
   try
     if (nargin < 2)
       answer = webread (url, options);
     else
-      if (~ (ischar (body) || isa (body, "string")))
+      if (~ (ischar (body) || isa (body, 'string')))
         body = jsonencode (body);
       end
-      answer = webwrite (url, "json", char (body), options);
+      answer = webwrite (url, 'json', char (body), options);
     end
   catch failed
-    error ("substructures:request", "%s: %s%s", url, failed.message, advice (failed.message));
+    error ('substructures:request', '%s: %s%s', url, failed.message, advice (failed.message));
   end
-  if (ischar (answer) && any (strncmp (strtrim (answer), {"{", "["}, 1)))  % Octave does not decode
+  if (ischar (answer) && any (strncmp (strtrim (answer), {'{', '['}, 1)))  % Octave does not decode
     answer = jsondecode (answer);
   end
 end
 
 function words = advice (message)
   % what helps against an error of Octave, which keeps what the server says to itself
-  words = "";
-  if (~ isempty (strfind (message, "response code said error")))
-    words = "; Octave does not show what the server says of it, curl and other clients do";
-  elseif (~ isempty (strfind (message, "connect to server")))
-    words = "; start one with 'substructures serve', or set the variable SUBSTRUCTURES_SERVER to its address";
+  words = '';
+  if (~ isempty (strfind (message, 'response code said error')))
+    words = '; Octave does not show what the server says of it, curl and other clients do';
+  elseif (~ isempty (strfind (message, 'connect to server')))
+    words = '; start one with ''substructures serve'', or set the variable SUBSTRUCTURES_SERVER to its address';
   end
 end
