@@ -46,7 +46,7 @@ class LatexDocument(Latex):
         return lines
 
     def _symbols(self) -> list[str]:
-        rows = [(self.names[n], (s.name, s.kind, s.unit)) for n, s in self.described]
+        rows = [(self.names[n], (s.name, self.kind(n), s.unit)) for n, s in self.described]
         return [" & ".join([f"${_shown(name)}$", *(prose(x[:LONGEST]) for x in row)]) + r" \\" for name, row in rows]
 
     def _sections(self, listing: Listing) -> list[tuple[str, list[str], list[str]]]:

@@ -118,10 +118,7 @@ def meanings(program: Program, glossary: Program) -> Mapping[int, Label]:
     one function the first.
     """
     labels: dict[int, Label] = {}
-    # with numbers in them some are zero
-    found = {
-        _label(name): x for name, formulas in replay(glossary, Graph(), {}).items() for x in formulas.entries.values()
-    }
+    found = {_label(name): formulas.entries[()] for name, formulas in replay(glossary, Graph(), {}).items()}
     order = {key: n for n, key in enumerate(LETTERS)}
     for label in sorted(found, key=lambda label: (order[label.key], bool(label.component), label)):
         value = found[label]
