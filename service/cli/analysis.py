@@ -143,8 +143,7 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
     parts = source.parts
     named = None
     if parts is not None:
-        stored = source.model.program
-        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts(), model=stored))
+        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts()))
     return models.printed(program, style, what, interface, members, named)
 
 

@@ -30,7 +30,6 @@ from service.schemas.numbers import EvaluationResult
 from service.store import Store
 from service.viewer import Viewer
 from substructures.export import interface_of_model
-from substructures.expr.program import Program
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 from substructures.tree.glossary import glossary
@@ -194,12 +193,7 @@ def _quantity(
         members, parameters = models.described(sources, quantity)
         program = models.with_numbers(models.model_quantity(sources, quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
-
-        def names() -> Program:
-            """What steps are called."""
-            return glossary(*tree_parts(store, tree), model=model.program)
-
-        named = models.names_of_steps(style, parameters, model.inputs, names)
+        named = models.names_of_steps(style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree)))
         return models.printed(program, style, quantity, interface, members, named)
 
     return remembered(request, tag, lasting, make)

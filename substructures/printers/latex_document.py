@@ -46,8 +46,10 @@ class LatexDocument(Latex):
         return lines
 
     def _symbols(self) -> list[str]:
-        rows = [(self.names[n], (s.name, self.kind(n), s.unit)) for n, s in self.described]
-        return [" & ".join([f"${_shown(name)}$", *(prose(x[:LONGEST]) for x in row)]) + r" \\" for name, row in rows]
+        return [
+            rf"${_shown(self.names[n])}$ & {prose(s.name[:LONGEST])} & {s.kind} & {prose(s.unit[:LONGEST])} \\"
+            for n, s in self.described
+        ]
 
     def _sections(self, listing: Listing) -> list[tuple[str, list[str], list[str]]]:
         """Title, what is said before them, and the rows of every section."""

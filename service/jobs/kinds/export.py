@@ -268,9 +268,7 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     members, parameters = described(sources, quantity)
     program = with_numbers(model_quantity(sources, quantity), parameters, model.inputs, style)
     parts = source.parts
-    named = None
-    if parts is not None:
-        named = names_of_steps(style, parameters, model.inputs, lambda: glossary(*parts(), model=model.program))
+    named = None if parts is None else names_of_steps(style, parameters, model.inputs, lambda: glossary(*parts()))
     return text_of(program, style, quantity, _interface(source), members, item["nodes"], glossary=named)
 
 
