@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.printers import render
 from substructures.printers.definitions import Definitions
-from substructures.quantities.formulas import derived
 from substructures.quantities.regressor import regressor
 
 G = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
@@ -139,21 +137,6 @@ def test_wrong_formulas_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grouped, "_coupled", wrong)
     with pytest.raises(VerificationFailed, match="grouped formulas: metric"):
         grouping_of(alone("furuta-pendulum"), {"furuta-pendulum": catalogue.load("furuta-pendulum")})
-
-
-def test_models_of_older_versions() -> None:
-    """Which have no nonlinear_effects."""
-    spec, parts = tree_parts({"name": "t", **alone("scara")}, {"scara": catalogue.load("scara")})
-    model = couple(spec, parts)
-    names = [name for name in model.program.outputs if name != "nonlinear_effects"]
-    old = replace(model, program=model.program.select(names))
-    base = base_parameters(regressor(spec, parts))
-    found, wanted = (grouped_model(spec, parts, each, base).model for each in (old, model))
-    assert set(OUTPUTS) - set(found.program.outputs) == {"nonlinear_effects"}
-    for quantity in ("metric", "bias", "inverse_dynamics"):
-        one, other = (render(each.program.select([quantity]), "text", "textbook") for each in (found, wanted))
-        assert one == other
-    assert "forward_dynamics" in derived(found, "forward_dynamics").outputs
 
 
 def test_constant_angles_are_written_in_textbook_forms() -> None:
