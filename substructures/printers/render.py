@@ -158,7 +158,9 @@ class _Said:
         names = {s.name: other.name for s, other in zip(self.program.symbols, spoken, strict=True)}
         found = defined(replace(self.defining, symbols=spoken), names, language, self.limit)
         # those of the formulas, and those of what their symbols stand for
-        language.occurring = None if before is None or language.occurring is None else before | language.occurring
+        called = {names[name] for name in self.defining.outputs}
+        own = {n for n, s in enumerate(spoken) if s.name in called}
+        language.occurring = None if before is None or language.occurring is None else before | language.occurring | own
         notes = (self.own.notes.get(name, "") for name in self.defining.outputs)
         return replace(listing, definitions=tuple((*pair, note) for pair, note in zip(found, notes, strict=True)))
 
