@@ -10,12 +10,18 @@ from service.analyses.source import Source
 from service.cache import Cache
 from service.refusals import unprocessable
 from substructures.analysis.identification.base_parameters import base_parameters
-from substructures.analysis.identification.grouped import OUTPUTS, Grouped, GroupedSymbol, grouped_model, sum_of
+from substructures.analysis.identification.grouped import (
+    OUTPUTS,
+    Grouped,
+    GroupedSymbol,
+    cut,
+    formulas_of,
+    grouped_model,
+    sum_of,
+)
 from substructures.errors import InvalidInput, TooLarge
 from substructures.export import Interface
-from substructures.printers import entries
 from substructures.printers.definitions import Definitions
-from substructures.printers.names import MAX_COMMENT
 from substructures.printers.render import LIMIT
 from substructures.quantities.evaluation import Sources
 
@@ -62,7 +68,7 @@ def grouped_text(source: Source, quantity: str, style: Style, interface: Interfa
     parameters = found.model.parameters
     program = bound(model_quantity(Sources(found.model), quantity), parameters, style.bind)
     definitions = Definitions(
-        bound(found.definitions, parameters, style.bind), {s.name: _shown(s) for s in found.symbols}
+        bound(found.definitions, parameters, style.bind), {s.name: cut(sum_of(s.standard)) for s in found.symbols}
     )
     members: dict[str, Any] = {}
     if style.format == JSON:
@@ -75,15 +81,8 @@ def grouped_text(source: Source, quantity: str, style: Style, interface: Interfa
 def _described(symbol: GroupedSymbol, used: Definitions) -> dict[str, Any]:
     """What a symbol stands for: ``formula`` in parameters (null where it is too long), ``standard`` as sums."""
     try:
-        told = entries(used.program, symbol.name, "text")
-        formula = str(told[0]["formula"]) if told else "0"
+        formula = formulas_of(used.program.select([symbol.name]))[symbol.name]
     except TooLarge:
         formula = None
     named = {"name": symbol.name, "unit": symbol.unit, "base": symbol.named_by, "formula": formula}
     return {**named, "combination": dict(symbol.standard)}
-
-
-def _shown(symbol: GroupedSymbol) -> str:
-    """The combination in one line, cut between two terms where it is long."""
-    text = sum_of(symbol.standard)
-    return text if len(text) < MAX_COMMENT - 20 else text[: MAX_COMMENT - 20].rpartition(" + ")[0] + " + ..."

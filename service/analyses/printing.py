@@ -10,10 +10,14 @@ import orjson
 
 from service.analyses.binding import Parameters, bound, bound_names
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
+from service.analyses.source import Source
 from service.refusals import not_found
+from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.analysis.identification.told import base_symbols
 from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
 from substructures.expr.hoist import hoisted
+from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
 from substructures.printers import entries
 from substructures.printers.definitions import Definitions
@@ -23,6 +27,7 @@ from substructures.quantities.canonical import MOMENTA, momentum
 from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
+from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
@@ -35,7 +40,7 @@ GROUPS = {
     "closures": ("closure.residual", "closure.jacobian", "closure.acceleration", "closure.direction"),
     "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
 }
-CHRISTOFFEL = "christoffel"
+CHRISTOFFEL, BASE = "christoffel", "base_parameters"
 #: formats that have a title
 DOCUMENTS = ("latex-document", "mathml")
 #: formats that people read, and outputs that programs judge others by: D_k / |g_kk| and |g_kk|
@@ -189,16 +194,42 @@ def _rendered(
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 
 
-def made_text(found: Made, quantity: str, interface: Interface, model: Model, style: Style, limit: int = LIMIT) -> str:
-    """A quantity that follows from a model in the format chosen, with its description in JSON, and that of first
-    integrals in text. Raises as :func:`bound`, and TooLarge."""
+def source_glossary(source: Source, style: Style, parameters: Parameters) -> Program | None:
+    """What steps of derivations from a tree are called; None where its parts are not there, and as above."""
+    model, parts = source.model, source.parts
+    if parts is None:
+        return None
+    return names_of_steps(style, parameters, model.inputs, lambda: glossary(*parts(), model=model.program))
+
+
+def made_text(
+    found: Made, quantity: str, interface: Interface, source: Source, style: Style, limit: int = LIMIT
+) -> str:
+    """A quantity that follows from a model in the format chosen, with its description in JSON, that of first integrals
+    in text, and base parameters as symbols for people. Raises as :func:`bound`, and TooLarge."""
+    model = source.model
+    if isinstance(found.value, BaseParameters) and quantity == BASE and style.format in TO_READ:
+        return _base_text(found.value, interface, model, style, limit)
     program = with_numbers(found.program, model.parameters, model.inputs, style)
-    text = _rendered(program, style, quantity, interface, limit)
+    named = source_glossary(source, style, model.parameters)
+    text = _rendered(program, style, quantity, interface, limit, glossary=named)
     if style.format == JSON and found.members:
         return _joined(found.members, text)
     if style.format != "text":
         return text
     return "\n".join([text.rstrip("\n"), *_notes(found.members), ""])
+
+
+def _base_text(base: BaseParameters, interface: Interface, model: Model, style: Style, limit: int) -> str:
+    """Every base parameter with its formula and what was grouped into it."""
+    symbols, notes = base_symbols(base)
+    units = dict(zip(base.standard, base.units, strict=True))
+    called = (
+        Symbol(name, "base parameter", units[standard])
+        for name, standard in zip(symbols.outputs, base.names, strict=True)
+    )
+    definitions = Definitions(with_numbers(symbols, model.parameters, model.inputs, style), notes)
+    return _rendered(Program(tuple(called), (), {}), style, BASE, interface, limit, definitions)
 
 
 def _notes(members: Mapping[str, Any]) -> Iterator[str]:

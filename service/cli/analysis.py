@@ -36,7 +36,6 @@ from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import TreeSpec
-from substructures.tree.glossary import glossary
 from substructures.tree.model import couple
 
 #: what is said of results that are not known to be right
@@ -140,10 +139,7 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
     inputs = source.model.inputs
     program = models.with_numbers(models.model_quantity(sources, what), parameters, inputs, style)
     interface = interface_of_model(source.model, digest=source.digest)
-    parts = source.parts
-    named = None
-    if parts is not None:
-        named = models.names_of_steps(style, parameters, inputs, lambda: glossary(*parts()))
+    named = models.source_glossary(source, style, parameters)
     return models.printed(program, style, what, interface, members, named)
 
 

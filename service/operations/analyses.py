@@ -60,7 +60,7 @@ def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, st
 
 def _printed(source: Source, quantity: str, found: Made, style: Style) -> Answer:
     interface = interface_of_model(source.model, digest=source.digest)
-    text = made_text(found, quantity, interface, source.model, style)
+    text = made_text(found, quantity, interface, source, style)
     return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
 
 

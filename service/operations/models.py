@@ -18,6 +18,7 @@ from service.analyses.printing import (
     names_of_steps,
     options_of_quantity,
     quantities,
+    source_glossary,
     text_of,
     with_numbers,
     with_options,
@@ -42,6 +43,7 @@ __all__ = [
     "part_formulas",
     "printed",
     "quantities",
+    "source_glossary",
     "with_numbers",
     "with_options",
 ]

@@ -76,7 +76,7 @@ def written(store: Store, about: Subject, format: str, document: bool) -> Answer
         about.model,
         {name: part.definition for name, part in about.parts.items()},
         about.heading,
-        glossary(about.spec, about.parts),
+        glossary(about.spec, about.parts, model=about.model.program),
     )
     text = _text(found, about, format, document, store.settings.limits.program_nodes)
     return Answer(200, text, {"Content-Type": FORMATS[format]})

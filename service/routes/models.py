@@ -193,7 +193,9 @@ def _quantity(
         members, parameters = models.described(sources, quantity)
         program = models.with_numbers(models.model_quantity(sources, quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
-        named = models.names_of_steps(style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree)))
+        named = models.names_of_steps(
+            style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree), model=model.program)
+        )
         return models.printed(program, style, quantity, interface, members, named)
 
     return remembered(request, tag, lasting, make)

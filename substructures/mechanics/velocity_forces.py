@@ -7,6 +7,7 @@ joint c alone needs, on the axis of a; where both are less than a, everything be
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import INTERFACE, Link
@@ -25,9 +26,26 @@ def velocity_forces(
     ``start``: the motion of what carries the first joints, by joint, in the axes and at the origin from which their
     links lead; with -gamma for its acceleration the result is Gamma_abc q'^b q'^c - Q_a of gravity.
     """
+    return [each.force for each in transmitted(chain, momenta, rates, motions_before(chain, rates, start or {}))]
+
+
+@dataclass(frozen=True, slots=True)
+class Transmitted:
+    """At a joint, about O_k in frame k: the wrench that it transmits from joints beyond it, its ``own`` for what it
+    carries, and the generalised force.
+    """
+
+    beyond: Wrench
+    own: Wrench
+    force: Scalar
+
+
+def transmitted(
+    chain: Sequence[Link], momenta: Sequence[JointMomentum], rates: Sequence[Scalar], before: Sequence[BodyMotion]
+) -> list[Transmitted]:
+    """The velocity forces of all joints; ``before``: what :func:`motions_before` gives."""
     n = len(chain)
-    before = _motions_before(chain, rates, start or {})
-    wrenches, result = [Wrench()] * n, list[Scalar]([0] * n)
+    wrenches, result = [Wrench()] * n, list[Transmitted]()
     for a in reversed(range(n)):
         link, momentum, motion = chain[a], momenta[a], before[a]
         # bias_a = (wrenches of joints c > a, on axis a) + p_a . a + H_a . alpha - omega . K_a omega
@@ -36,15 +54,13 @@ def velocity_forces(
         for x, p in zip(motion.a, momentum.p, strict=True):
             total = total + x * p
         of_mass, own = (_sliding if link.s else _turning)(momentum.composite, motion, rates[a])
-        result[a] = total + of_mass
+        result.append(Transmitted(wrenches[a], own, total + of_mass))
         if link.parent != INTERFACE:
             wrenches[link.parent] += (wrenches[a] + own).before(link.Z, link.rotation)
-    return result
+    return result[::-1]
 
 
-def _motions_before(
-    chain: Sequence[Link], rates: Sequence[Scalar], start: Mapping[int, BodyMotion]
-) -> list[BodyMotion]:
+def motions_before(chain: Sequence[Link], rates: Sequence[Scalar], start: Mapping[int, BodyMotion]) -> list[BodyMotion]:
     """omega, alpha and the acceleration of O_k for q'' = 0, in frame k, of what joint k is fixed to."""
     before: list[BodyMotion] = []
     after: list[BodyMotion] = []

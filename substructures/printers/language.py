@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
@@ -49,6 +50,8 @@ class Language(ABC):
     first = 0
     #: whether people read it: names of the only instance are left out of textbook forms, c12 is cos(q1 + q2)
     is_for_people = False
+    #: whether letters may have a bar
+    bars = False
     #: what else is to be said about names
     remark = ""
     #: what letters mean, a line each
@@ -61,6 +64,8 @@ class Language(ABC):
     def __init__(self, program: Program) -> None:
         self.program = program
         self._called: dict[int, Label | int] = {}
+        #: instances that symbols belong to, where that is to be said of each
+        self.owners: Mapping[int, str] = {}
         #: numbers of the symbols that are said to occur; None: all of the program
         self.occurring: frozenset[int] | None = None
 
@@ -73,6 +78,10 @@ class Language(ABC):
         """The symbols that readers are told about, with their numbers."""
         found = enumerate(self.program.symbols)
         return [(n, s) for n, s in found if self.occurring is None or n in self.occurring]
+
+    def kind(self, n: int) -> str:
+        """What symbol number n is, and of what."""
+        return self.program.symbols[n].kind + (f" of {self.owners[n]}" if n in self.owners else "")
 
     def symbol(self, n: int) -> Piece:
         """Symbol number n of the program."""
@@ -98,6 +107,29 @@ class Language(ABC):
     def labelled(self, label: Label) -> Piece:
         """A quantity of mechanics."""
         return Piece(label.text)
+
+    def look(self, text: str) -> str:
+        """What readers tell a name from others by."""
+        return text
+
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """Looks of symbols and of elements of outputs, which nothing else may have."""
+        symbols = (self.symbol(n).text for n in range(len(self.program.symbols)))
+        return frozenset(map(self.look, (*symbols, *self.lefts())))
+
+    def lefts(self) -> Iterator[str]:
+        """What the elements of outputs are called."""
+        yield from ()
+
+    def is_free(self, piece: Piece) -> bool:
+        """Whether no symbol and no element of an output looks like that."""
+        return self.look(piece.text) not in self.taken
+
+    @cached_property
+    def one(self) -> Piece:
+        """The number 1."""
+        return self.number(Fraction(1))
 
     def pi(self) -> Piece:
         """The constant pi."""

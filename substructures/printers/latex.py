@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import ClassVar
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
-from substructures.printers.names import LETTERS, RAISED, comment, latex_names
+from substructures.printers.names import LETTERS, RAISED, comment, latex_names, letter_of, look
 from substructures.printers.numbers import decimal_text
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, solid, width
 
@@ -30,6 +30,7 @@ class Latex(Language):
     width = 300
     first = 1
     is_for_people = True
+    bars = True
     functions: ClassVar[Mapping[str, str]] = _NAMED
 
     def __init__(self, program: Program) -> None:
@@ -49,6 +50,15 @@ class Latex(Language):
     def labelled(self, label: Label) -> Piece:
         """A letter with numbers and component below."""
         return Piece(label.latex)
+
+    def look(self, text: str) -> str:
+        """Letters and indices, upright or not."""
+        return look(text)
+
+    def lefts(self) -> Iterator[str]:
+        """With their indices."""
+        for output, array in self.program.outputs.items():
+            yield from self._places(output, array)
 
     def pi(self) -> Piece:
         """The Greek letter."""
@@ -143,8 +153,8 @@ class Latex(Language):
         """An ``aligned`` environment; comments say what the symbols are."""
         lines = [f"% {comment(x)}" for x in (name, self.remark, *self.legend) if x]
         lines += [
-            f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {x if x.isascii() else ''}"
-            for x, s in ((self.names[n], s) for n, s in self.described)
+            f"% {comment(s.name)}: {comment(self.kind(n))} [{comment(s.unit)}], written {self.names[n]}"
+            for n, s in self.described
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")
@@ -165,24 +175,23 @@ class Latex(Language):
 
     def rows(self, output: str, array: Output, texts: tuple[str, ...]) -> list[str]:
         """Rows of an output, its symmetry as the last one."""
-        letter = self.letter_of(output) or latex_names([output])[0]
-        letter = letter if letter.isalpha() or output in LETTERS else f"{{{letter}}}"
-        separator = "," if max(array.shape, default=0) > 9 else ""
-        rows = []
-        for index, text in zip(array.index, texts, strict=True):
-            place = self._indexed(letter, output, [str(i + 1) for i in index], separator)
-            rows.append(f"{place} &= {broken(text)}")
-        if not rows:
-            rows.append(f"{letter} &= 0")
+        letter = self._letter(output, array)
+        rows = [f"{left} &= {broken(text)}" for left, text in zip(self._places(output, array), texts, strict=True)]
+        rows = rows or [f"{letter} &= 0"]
         if array.symmetry in _RULES:
             said = {x: self._indexed(letter, output, list(x), "") for x in ("ab", "ba", "abc", "acb", "cba")}
             rows.append(_RULES[array.symmetry].format(**said))
         return rows
 
-    def letter_of(self, output: str) -> str | None:
-        """The letter of a quantity, unless a symbol has it."""
-        letter = LETTERS.get(output)
-        return None if letter in self.names and not self.program.outputs[output].shape else letter
+    def _letter(self, output: str, array: Output) -> str:
+        """The letter of a quantity; a longer name is one letter."""
+        letter = letter_of(output, array, self.names)
+        return letter if letter.isalpha() or letter == LETTERS.get(output) else f"{{{letter}}}"
+
+    def _places(self, output: str, array: Output) -> list[str]:
+        """The left sides of the elements of an output."""
+        letter, separator = self._letter(output, array), "," if max(array.shape, default=0) > 9 else ""
+        return [self._indexed(letter, output, [str(i + 1) for i in index], separator) for index in array.index]
 
     @staticmethod
     def _indexed(letter: str, output: str, index: Sequence[str], separator: str) -> str:

@@ -47,7 +47,8 @@ class LatexDocument(Latex):
 
     def _symbols(self) -> list[str]:
         return [
-            rf"${_shown(self.names[n])}$ & {prose(s.name[:LONGEST])} & {s.kind} & {prose(s.unit[:LONGEST])} \\"
+            " & ".join((f"${_shown(self.names[n])}$", *(prose(x[:LONGEST]) for x in (s.name, self.kind(n), s.unit))))
+            + r" \\"
             for n, s in self.described
         ]
 

@@ -14,6 +14,7 @@ from substructures.expr.program import Operation, Program, operands
 from substructures.expr.replay import replay
 from substructures.expr.walk import reachable
 from substructures.printers.language import SUM, Language, Listing, Piece
+from substructures.printers.signs import Signed, signed
 
 
 def check_size(size: int, limit: int) -> None:
@@ -27,17 +28,26 @@ def compact(program: Program, language: Language, limit: int) -> Listing:
     needed = program.reachable()
     check_size(len(needed), limit)
     uses = _uses(program, needed, language.powers)
+    written: dict[int, Signed] = {}
     pieces: dict[int, Piece] = {}
     temporaries: list[tuple[int, str]] = []
     for i in needed:
-        piece = _operation(program, language, i, pieces)
-        simple = program.operations[i][0] in ("int", "rat", "sym") or _is_pi(program, i)
-        if not simple and (uses[i] > 1 or len(piece.text) > language.width or i in language.meanings):
-            temporaries.append((len(temporaries) + 1, piece.text))
-            piece = language.call_temporary(len(temporaries), i)
-        pieces[i] = piece
-    entries = {name: tuple(pieces[e].text for e in output.entries) for name, output in program.outputs.items()}
+        found = signed(program, i, written, language) or Signed(_operation(program, language, i, pieces))
+        if i in language.meanings or (_is_long(program, language, i, uses[i], found) and not found.is_short):
+            is_negative = i in language.meanings and language.meanings[i].is_negative
+            temporaries.append((len(temporaries) + 1, found.times(language, is_negative).text))
+            found = Signed(language.call_temporary(len(temporaries), i), is_negative)
+        written[i], pieces[i] = found, found.piece
+    entries = {
+        name: tuple(written[e].times(language).text for e in output.entries) for name, output in program.outputs.items()
+    }
     return Listing(tuple(temporaries), entries)
+
+
+def _is_long(program: Program, language: Language, i: int, uses: int, found: Signed) -> bool:
+    """Whether an operation is used several times, or too long to be written where it is used."""
+    is_simple = program.operations[i][0] in ("int", "rat", "sym") or _is_pi(program, i)
+    return not is_simple and (uses > 1 or len(found.piece.text) > language.width)
 
 
 def inlined(program: Program, language: Language, limit: int) -> Listing:

@@ -7,7 +7,7 @@ msubsup, mfrac, msqrt, mover.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import ClassVar
 from xml.sax.saxutils import escape
@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
-from substructures.printers.names import LETTERS, RAISED, comment, latex_names, prefix
+from substructures.printers.names import RAISED, comment, latex_names, letter_of, prefix
 from substructures.printers.numbers import decimal_text
 
 #: before every term of a sum that stands in no parentheses or fraction
@@ -27,6 +27,7 @@ _CODES = [*range(0x3B1, 0x3BF), 0x3C0, 0x3C1, *range(0x3C3, 0x3CA)]
 _CODES += [0x393, 0x394, 0x398, 0x39B, 0x39E, 0x3A0, 0x3A3, 0x3A5, 0x3A6, 0x3A8, 0x3A9]
 _GREEK = dict(zip(f"{_LOWER} {_UPPER}".split(" "), (f"&#{code};" for code in _CODES), strict=True))
 _PART = re.compile(r"\\(d+)ot\{|\\math(?:rm|it|tt)\{([^}]*)\}|\\([A-Za-z]+)|([A-Za-z]+|[0-9]+)|(.)", re.DOTALL)
+_FONT = re.compile(r"</?m(?:i|n|o|row|text)\b[^>]*>")
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml"><head><title>{title}</title>
 <meta name="viewport" content="width=device-width, initial-scale=1"/><style>
@@ -76,14 +77,15 @@ class MathML(Language):
     width = 4000
     first = 1
     is_for_people = True
+    bars = True
     functions: ClassVar = _NAMED
 
     def __init__(self, program: Program) -> None:
         super().__init__(program)
-        written = latex_names(s.name for s in program.symbols)
+        self._latex = latex_names(s.name for s in program.symbols)
         self.names = [
             f"<mtext>{escape(comment(s.name))}</mtext>" if latex.startswith(r"\mathtt") else named(latex)
-            for latex, s in zip(written, program.symbols, strict=True)
+            for latex, s in zip(self._latex, program.symbols, strict=True)
         ]
         self.prefix = prefix(s.name for s in program.symbols)
 
@@ -98,6 +100,15 @@ class MathML(Language):
     def labelled(self, label: Label) -> Piece:
         """A letter with numbers and component below."""
         return Piece(named(label.latex))
+
+    def look(self, text: str) -> str:
+        """Letters and indices, upright or not."""
+        return _FONT.sub("", text)
+
+    def lefts(self) -> Iterator[str]:
+        """With their indices."""
+        for output, array in self.program.outputs.items():
+            yield from self._places(output, array)
 
     def abbreviation(self, op: str, digits: str) -> Piece:
         """c with the numbers of the angles of cos(q1 + q2) below."""
@@ -222,20 +233,26 @@ class MathML(Language):
 
     def _described(self, n: int) -> str:
         symbol = self.program.symbols[n]
-        words = "".join(f"<td>{escape(comment(x))}</td>" for x in (symbol.name, symbol.kind, symbol.unit))
+        words = "".join(f"<td>{escape(comment(x))}</td>" for x in (symbol.name, self.kind(n), symbol.unit))
         return f"<tr><td>{self.finished(self.names[n])}</td>{words}</tr>"
 
     def _output(self, output: str, array: Output, texts: Sequence[str]) -> list[str]:
-        latex = LETTERS.get(output) or latex_names([output])[0]
-        letter = f"<mtext>{escape(comment(output))}</mtext>" if latex.startswith(r"\mathtt") else named(latex)
+        letter = self._letter(output, array)
         lines = [f"<h2>{escape(comment(output))}</h2>"]
         lines += ["<p>Indices from 1; elements that are not listed are 0.</p>"] if array.shape else []
-        separator = "," if max(array.shape, default=0) > 9 else ""
-        for index, text in zip(array.index, texts, strict=True):
-            lines.append(self._line(_indexed(letter, output, [f"<mn>{i + 1}</mn>" for i in index], separator), text))
+        lines += [self._line(left, text) for left, text in zip(self._places(output, array), texts, strict=True)]
         lines += [] if texts else [self._line(letter, "<mn>0</mn>")]
         rules = [self.finished(rule.format(**_indices(letter, output))) for rule in _RULES.get(array.symmetry, ())]
         return [*lines, f"<p>{'<wbr/>'.join(rules)}</p>"] if rules else lines
+
+    def _letter(self, output: str, array: Output) -> str:
+        latex = letter_of(output, array, self._latex)
+        return f"<mtext>{escape(comment(output))}</mtext>" if latex.startswith(r"\mathtt") else named(latex)
+
+    def _places(self, output: str, array: Output) -> list[str]:
+        """The left sides of the elements of an output."""
+        letter, separator = self._letter(output, array), "," if max(array.shape, default=0) > 9 else ""
+        return [_indexed(letter, output, [f"<mn>{i + 1}</mn>" for i in index], separator) for index in array.index]
 
     def _line(self, left: str, text: str) -> str:
         """One element; every term is a formula of its own."""
@@ -272,13 +289,13 @@ def solid(text: str) -> str:
 
 def named(latex: str) -> str:
     """A name of :func:`substructures.printers.names.latex_names` in MathML."""
-    dots = 0
-    if match := re.match(r"\\(d+)ot\{(.*?)\}(?=_|$)", latex):
-        dots, latex = len(match.group(1)), match.group(2) + latex[match.end() :]
+    if match := re.match(r"\\(?:(d+)ot|bar)\{(.*?)\}(?=_|$)", latex):
+        dots, latex = len(match.group(1) or ""), match.group(2) + latex[match.end() :]
     base, _, below = latex.partition("_{")
     found = "".join(_pieces(base))
-    if dots:
-        found = f"<mover>{found}<mo>{'&#x2D9;' if dots == 1 else '.' * dots}</mo></mover>"
+    if match:
+        over = "&#x2D9;" if dots == 1 else "." * dots or "&#xAF;"
+        found = f"<mover>{found}<mo>{over}</mo></mover>"
     return f"<msub>{found}{row(*_pieces(below[:-1]), '')}</msub>" if below else found
 
 

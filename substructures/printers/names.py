@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from substructures.expr.operations import Symbol
+from substructures.expr.operations import Output, Symbol
 from substructures.expr.syntax import RESERVED
 
 _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")
@@ -35,6 +36,7 @@ LETTERS = {
 }
 #: how many of the first indices stand above
 RAISED = {"inverse_metric": 2, "christoffel_second": 1}
+_FONT = re.compile(r"\\math(?:rm|it)|[{}]")
 GREEK = frozenset(_LOWER.split()) | frozenset(_UPPER.split())
 MAX_COMMENT = 200
 
@@ -69,24 +71,30 @@ def prefix(names: Iterable[str]) -> str:
 
 
 def short_names(symbols: Sequence[Symbol]) -> list[str]:
-    """Names as textbooks write them, all different: no instance where there is only one, tau_1 for tau.arm.q1.
+    """Names as textbooks write them, all different: m1 for arm.m1, tau_1 for tau.arm.q1.
 
-    Where that would make two names equal they stay as they are.
+    Those of an instance of which one would then be that of something else stay as they are.
     """
-    names = [s.name for s in symbols]
-    owners = {parts[-2] for n in names if len(parts := _parts(n)) > 1}
-    if len(owners) != 1:
-        return names
-    short = [_short(s) for s in symbols]
-    return short if len(set(short)) == len(short) else names
+    names, long = [s.name for s in symbols], set[str]()
+    while True:
+        short = [n if instance_of(n) in long else _short(n) for n in names]
+        counts = Counter(short)
+        double = {
+            owner for n, s in zip(names, short, strict=True) if counts[s] > 1 and (owner := instance_of(n))
+        } - long
+        if not double:
+            return short
+        long |= double
 
 
-def _parts(name: str) -> list[str]:
-    return name.split(".")
+def instance_of(name: str) -> str | None:
+    """The instance in a name of a tree."""
+    parts = name.split(".")
+    return parts[-2] if len(parts) > 1 else None
 
 
-def _short(symbol: Symbol) -> str:
-    *owners, last = _parts(symbol.name)
+def _short(name: str) -> str:
+    *owners, last = name.split(".")
     if len(owners) < 2:
         return last
     numbered = re.fullmatch(r"q([0-9]+)", last, re.ASCII)
@@ -101,6 +109,22 @@ def latex_names(names: Iterable[str]) -> list[str]:
         text = text if text not in result else typewriter(name)
         result[text if text not in result else f"{text}_{{{len(result)}}}"] = None
     return list(result)
+
+
+def look(latex: str) -> str:
+    """Letters and indices of what is written, upright or not: what readers tell it from others by."""
+    return _FONT.sub("", latex)
+
+
+def letter_of(output: str, array: Output, symbols: Iterable[str]) -> str:
+    """LaTeX of a quantity: its letter, or its name where a symbol (in LaTeX) looks like one of the elements."""
+    letter = LETTERS.get(output)
+    if letter is None:
+        return latex_names([output])[0]
+    separator = "," if max(array.shape, default=0) > 9 else ""
+    below = [separator.join(str(i + 1) for i in index) for index in array.index or ((),)]
+    places = {look(f"{letter}_{{{text}}}" if text else letter) for text in below}
+    return letter if places.isdisjoint(map(look, symbols)) else latex_names([output])[0]
 
 
 def _latex_name(name: str) -> str:

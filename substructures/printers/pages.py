@@ -18,7 +18,7 @@ _SIGN = re.compile(r"\\[A-Za-z]+|\\.|.", re.DOTALL)
 _FACTOR, _SIGNS = re.compile(r"\\[A-Za-z]+|\\.|[{}()]", re.DOTALL), (r"\,", r"\cdot")
 _MARKS = re.compile(f"([{OPENING}{CLOSING}])")
 _COMMANDS = {r"\,": 1.7, r"\cdot": 7.2, r"\quad": 10.0, r"\\": 0.0, r"\ ": 4.0, r"\_": 5.0}
-_SILENT = "left right bigl bigr Bigl Bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
+_SILENT = "left right bar bigl bigr Bigl Bigr frac mathrm mathit mathtt operatorname sqrt dot ddot dddot ddddot hat"
 _INVISIBLE = frozenset("\\" + name for name in _SILENT.split(" "))
 
 

@@ -22,8 +22,8 @@ from substructures.printers.latex import Latex
 from substructures.printers.latex_document import LatexDocument
 from substructures.printers.listing import check_size, compact, expanded, inlined
 from substructures.printers.mathml import MathML
-from substructures.printers.meanings import LETTERS, meanings
-from substructures.printers.names import short_names
+from substructures.printers.meanings import LETTERS, OUTPUTS, Label, meanings
+from substructures.printers.names import instance_of, short_names
 from substructures.printers.text import Text
 from substructures.printers.textbook import textbook, textbook_inlined
 from substructures.textbook import AT_ONCE, read
@@ -83,9 +83,9 @@ def render(
         if prod(output.shape) > MAX_ELEMENTS:
             raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
     said = _Said(program, definitions, limit)
-    spoken, language = _spoken(said.program, format, form)
+    spoken, language = _spoken(said.program, format)
     if form == "compact":
-        name_steps(language, glossary)
+        name_steps(language, _in_names_of(glossary, said.program, spoken))
     return language.render(said.with_definitions(_LISTINGS[form](spoken, language, limit), language), name)
 
 
@@ -93,13 +93,30 @@ def name_steps(language: Language, glossary: Program | None) -> None:
     """Let the language call quantities what they are, and say what the letters mean."""
     if glossary is None or not language.is_for_people or len(language.program.reachable()) < NAMED:
         return
-    # c2 of an instance is not c2 = cos(q2), either
-    taken = {name for s in language.program.symbols for name in (s.name, s.name.rpartition(".")[2])}
-    found = {i: label for i, label in meanings(language.program, glossary).items() if label.text not in taken}
-    language.meanings = found
-    used = {label.letter for label in found.values()}
-    said = [f"{letter}: {text}" for letter, text in LETTERS.items() if letter in used]
+    language.meanings = _distinct(meanings(language.program, glossary), language)
+    used = {(label.key, label.is_barred) for label in language.meanings.values()}
+    said = [
+        f"{key.partition('.')[0]}{' with a bar' * is_barred}: {text}"
+        for key, text in LETTERS.items()
+        for is_barred in (False, True)
+        if (key, is_barred) in used
+    ]
     language.legend = ["joints are numbered from 1, in the order of the coordinates", *said] if said else []
+
+
+def _distinct(found: Mapping[int, Label], language: Language) -> dict[int, Label]:
+    """Names that no symbol and no element of an output looks like: with a bar all of a letter of which one does."""
+    double = {label.kind for label in found.values() if not language.is_free(language.labelled(label))}
+    barred = {kind for kind in double if language.bars}
+    labels = {
+        i: label if label.is_of_angle else label._replace(is_barred=label.kind in barred) for i, label in found.items()
+    }
+    quantities = language.program.outputs
+    return {
+        i: label
+        for i, label in labels.items()
+        if language.is_free(language.labelled(label)) and OUTPUTS.get(label.key) not in quantities
+    }
 
 
 def _readable(
@@ -114,14 +131,14 @@ def _readable(
     if format == "json" or not LANGUAGES[format].is_for_people:
         return render(program, format, "compact", name, limit, definitions, glossary)
     said = _Said(program, definitions, limit)
-    spoken, language = _spoken(said.program, format, "textbook")
+    spoken, language = _spoken(said.program, format)
     try:
         listing = textbook(spoken, language, limit, AT_ONCE)
     except (TooLarge, ZeroDivisionError) as error:
-        language = LANGUAGES[format](said.program)
-        name_steps(language, glossary)
-        language.remark = f"compact, since there is no textbook form: {error}"
-        listing = compact(said.program, language, limit)
+        spoken, language = _spoken(said.program, format)
+        name_steps(language, _in_names_of(glossary, said.program, spoken))
+        language.legend = [f"compact, since there is no textbook form: {error}", *language.legend]
+        listing = compact(spoken, language, limit)
     return language.render(said.with_definitions(listing, language), name)
 
 
@@ -137,10 +154,13 @@ class _Said:
         """The listing with what symbols stand for, in the names of the language. Raises TooLarge."""
         if not self.own or not self.own.program.outputs:
             return listing
-        language.occurring = None
-        spoken = language.program.symbols
+        before, spoken = language.occurring, language.program.symbols
         names = {s.name: other.name for s, other in zip(self.program.symbols, spoken, strict=True)}
         found = defined(replace(self.defining, symbols=spoken), names, language, self.limit)
+        # those of the formulas, and those of what their symbols stand for
+        called = {names[name] for name in self.defining.outputs}
+        own = {n for n, s in enumerate(spoken) if s.name in called}
+        language.occurring = None if before is None or language.occurring is None else before | language.occurring | own
         notes = (self.own.notes.get(name, "") for name in self.defining.outputs)
         return replace(listing, definitions=tuple((*pair, note) for pair, note in zip(found, notes, strict=True)))
 
@@ -167,22 +187,44 @@ def entries(
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(LANGUAGES)}")
     check_form(form)
     form = "compact" if form == "readable" else form
-    part, language = _spoken(part, format, form)
+    # what stands alone, and may be read by a program, has the names of the tree
+    part, language = _spoken(part, format) if form == "textbook" else (part, LANGUAGES[format](part))
     listing = {**_LISTINGS, "compact": inlined, "textbook": textbook_inlined}[form](part, language, limit)
     texts = [language.finished(text) for text in listing.entries[output]]
     return [{"index": list(i), "formula": x} for i, x in zip(part.outputs[output].index, texts, strict=True)]
 
 
-def _spoken(program: Program, format: str, form: str) -> tuple[Program, Language]:  # noqa: A002 -- the name in the contract
-    """The language, and the program with the names that it writes."""
-    if form == "textbook" and LANGUAGES[format].is_for_people:
-        names = short_names(program.symbols)
-        symbols = tuple(replace(s, name=name) for s, name in zip(program.symbols, names, strict=True))
-        owners = {s.name.split(".")[-2] for s in program.symbols if "." in s.name} if symbols != program.symbols else ()
-        language = LANGUAGES[format](replace(program, symbols=symbols))
-        language.remark = "".join(f"all names but those of the tree are of instance {owner}" for owner in owners)
-        return language.program, language
-    return program, LANGUAGES[format](program)
+def _spoken(program: Program, format: str) -> tuple[Program, Language]:  # noqa: A002 -- the name in the contract
+    """The language, and the program with the names that it writes: for people without instances that are clear."""
+    if not LANGUAGES[format].is_for_people:
+        return program, LANGUAGES[format](program)
+    short = short_names(program.symbols)
+    named = list(zip(program.symbols, short, strict=True))
+    language = LANGUAGES[format](replace(program, symbols=tuple(replace(s, name=name) for s, name in named)))
+    owners = {n: owner for n, (s, name) in enumerate(named) if s.name != name and (owner := instance_of(s.name))}
+    some = sorted(set(owners.values()))
+    if len(some) == 1:
+        language.remark = f"all names but those of the tree are of instance {some[0]}"
+        if any("." in name for name in short):
+            language.remark = f"names without an instance are of the tree or of {some[0]}"
+    elif some:
+        language.owners = owners
+    return language.program, language
+
+
+def _in_names_of(glossary: Program | None, program: Program, spoken: Program) -> Program | None:
+    """A glossary in the names of a program as it is spoken; symbols that this has not are called like nothing there."""
+    return (
+        None
+        if glossary is None
+        else renamed(glossary, {s.name: other.name for s, other in zip(program.symbols, spoken.symbols, strict=True)})
+    )
+
+
+def renamed(glossary: Program, called: Mapping[str, str]) -> Program:
+    """A glossary with other names of symbols; the others are called like nothing that there is."""
+    symbols = tuple(replace(s, name=called.get(s.name, f"?{s.name}")) for s in glossary.symbols)
+    return replace(glossary, symbols=symbols)
 
 
 def check_form(form: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 
 from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
@@ -30,6 +31,11 @@ class Text(Language):
         """A prefix that no symbol has, with a number."""
         return Piece(f"{self.prefix}{n}")
 
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """Names, and those within instances: c2 of an instance is not c2 = cos(q2), either."""
+        return frozenset(x for s in self.program.symbols for x in (s.name, s.name.rpartition(".")[2]))
+
     def number(self, value: Fraction) -> Piece:
         """A simple fraction, otherwise an exact decimal number where there is a short one."""
         if value > 0 and 12 % value.denominator:
@@ -41,7 +47,7 @@ class Text(Language):
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
         lines = [f"# {comment(x)}" for x in (name, self.remark, *self.legend) if x]
-        lines += [f"# {self.names[n]} is {s.kind} [{comment(s.unit)}]" for n, s in self.described]
+        lines += [f"# {self.names[n]} is {comment(self.kind(n))} [{comment(s.unit)}]" for n, s in self.described]
         for name, text, note in listing.definitions:
             lines += [f"# {name} stands for {comment(note)}"] if note else []
             lines.append(f"{name} = {text}")

@@ -37,7 +37,7 @@ class TextbookTerms:
         """Raises TooLarge, and ZeroDivisionError."""
         self.reading = read(program, limits)
         check_size(self.reading.size, limit)
-        short = _abbreviations(program, self.reading) if abbreviates else {}
+        short = _abbreviations(program, self.reading, language) if abbreviates else {}
         repeated = _repeated(self.reading) if abbreviates else []
         named = {f: language.temporary(n) for n, f in enumerate(repeated, 1)}
         self._writer = TextbookWriter(program, language, self.reading, short, named)
@@ -59,14 +59,14 @@ def textbook_inlined(program: Program, language: Language, limit: int) -> Listin
     return TextbookTerms(program, language, limit, LIMITS, False).listing
 
 
-def _abbreviations(program: Program, reading: Reading) -> dict[Trig, str]:
-    """Digits of the names of cosines and sines, c12 for cos(q1 + q2); none where a symbol has such a name."""
+def _abbreviations(program: Program, reading: Reading, language: Language) -> dict[Trig, str]:
+    """Digits of the names of cosines and sines, c12 for cos(q1 + q2); none where a symbol looks like such a name."""
     if sum(s.kind == "coordinate" and _ANGLE.fullmatch(s.name) is not None for s in program.symbols) < ABBREVIATED:
         return {}
     used = {leaf for form in reading.forms for leaf in leaves(form) if isinstance(leaf, Trig)}
     digits = {t: d for t in used if (d := _digits(t)) is not None}
-    names = {t.op[0] + d for t, d in digits.items()}
-    if names & {s.name for s in program.symbols} or len(names) < len(digits):
+    names = {language.abbreviation(t.op, d) for t, d in digits.items()}
+    if len(names) < len(digits) or not all(map(language.is_free, names)):
         return {}
     return dict(sorted(digits.items(), key=lambda item: (len(item[1]), item[1], item[0].op)))
 

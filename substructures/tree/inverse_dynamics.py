@@ -20,7 +20,7 @@ WrenchesByCarrier = dict[int, Wrench]
 
 def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar]) -> list[Scalar]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
-    loads = _inertial_loads(placed, body_motions(placed, rates))
+    loads = inertial_loads(placed, body_motions(placed, rates))
     return pass_back(placed, loads, len(rates))
 
 
@@ -32,11 +32,8 @@ def inverse_dynamics(
     Gravity is a world accelerated upwards; forces and torques act on their bodies, what the joints do by themselves
     (armature, springs, dampers, actuators) on their coordinates.
     """
-    loads = _inertial_loads(placed, body_motions(placed, rates, accelerations))
-    for here, own in zip(placed, loads, strict=True):
-        for carrier, wrench in here.applied_wrenches():
-            # a force that acts is one that the joints need not transmit
-            own[carrier] += Wrench(negate(wrench.f), negate(wrench.n))
+    loads = inertial_loads(placed, body_motions(placed, rates, accelerations))
+    subtract_applied(placed, loads)
     result = pass_back(placed, loads, len(rates))
     for here in placed:
         for c in range(len(here.links)):
@@ -77,7 +74,14 @@ def _interface_motion(here: PlacedPart, motions: Sequence[Motions], falling: boo
     return motions[here.mounted.host][seat.parent].at(from_body(here.host.links, seat), seat.rotation)
 
 
-def _inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
+def subtract_applied(placed: Sequence[PlacedPart], loads: Sequence[WrenchesByCarrier]) -> None:
+    """A force that acts on a body is one that the joints need not transmit."""
+    for here, own in zip(placed, loads, strict=True):
+        for carrier, wrench in here.applied_wrenches():
+            own[carrier] += Wrench(negate(wrench.f), negate(wrench.n))
+
+
+def inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
     """What moves every body, and what is fixed to an interface, like that."""
     return [
         {

@@ -32,7 +32,7 @@ def least_forces(graph: Graph, coupled: Coupled, rates: Sequence[Expr]) -> dict[
     momenta = [momentum for here in coupled.placed for momentum in here.evaluated.momenta]
     # a = -gamma
     start = {
-        here.first + c: BodyMotion(a=negate(_outermost(here).gamma[INTERFACE]))
+        here.first + c: BodyMotion(a=negate(outermost(here).gamma[INTERFACE]))
         for here in coupled.placed
         for c in range(len(here.links))
     }
@@ -42,7 +42,7 @@ def least_forces(graph: Graph, coupled: Coupled, rates: Sequence[Expr]) -> dict[
     }
 
 
-def _outermost(part: PlacedPart) -> PlacedPart:
+def outermost(part: PlacedPart) -> PlacedPart:
     """The part whose interface a part is fixed to, over interfaces of others: where links of the tree begin."""
     while part.host is not None and part.seat.parent == INTERFACE:
         part = part.host

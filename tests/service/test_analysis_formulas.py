@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -113,6 +114,47 @@ def test_base_parameters_are_combinations(double: TestClient) -> None:
     assert len(more["base"]) == 6 + 4
 
 
+DECLARED = re.compile(r"# (\S+) is \w")
+NAME = re.compile(r"(?<![\w.'])[A-Za-z_][\w.]*'*")
+
+
+def undeclared(text: str) -> set[str]:
+    """Names in the formulas of a text that are neither declared nor introduced."""
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    known = {m.group(1) for line in text.splitlines() if (m := DECLARED.match(line))}
+    known |= {line.partition(" = ")[0] for line in lines} | {"cos", "sin", "sqrt", "sign", "pi"}
+    assert lines
+    return {name for line in lines for name in NAME.findall(line.partition(" = ")[2])} - known
+
+
+@pytest.mark.parametrize("form", ["readable", "textbook", "compact", "expanded"])
+@pytest.mark.parametrize("quantity", ["metric", "bias", "inverse_dynamics", "gravity", "generalised_momenta"])
+def test_symbols_of_formulas_in_grouped_symbols_are_declared(double: TestClient, quantity: str, form: str) -> None:
+    for group in ("true", "false"):
+        text = double.get(f"/v1/trees/cell/{quantity}?group={group}&format=text&form={form}").text
+        assert not undeclared(text)
+
+
+def test_base_parameters_can_be_read(double: TestClient) -> None:
+    """Each has a name, a formula, and what was grouped into it."""
+    text = double.get("/v1/trees/cell/base_parameters?format=text").text
+    assert "# arm.Jxx_rod stands for arm.rod.Jxx + arm.rod.Jyy + arm.l^2*hand.rod.m" in text
+    assert "# hand.sx_rod is base parameter [kg m]" in text
+    assert not undeclared(text)
+    assert "grouping" not in text
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    assert {line.partition(" = ")[0] for line in lines} == {
+        f"{instance}.{name}_rod" for instance in ("arm", "hand") for name in ("Jxx", "sx", "sy")
+    }
+    drives = double.get("/v1/trees/cell/base_parameters?format=text&drives=armature").text
+    assert re.search(r"arm.Jxx_rod = .*arm.armature_q", drives)
+    for format_ in ("latex", "latex-document", "mathml"):
+        page = double.get(f"/v1/trees/cell/base_parameters?format={format_}").text
+        assert r"\mathit{base}" not in page
+        assert "stands for arm.rod.Jxx + arm.rod.Jyy" in page
+    assert r"J_{\mathrm{arm},xx,\mathrm{rod}} &= " in double.get("/v1/trees/cell/base_parameters?format=latex").text
+
+
 def test_formulas_in_grouped_symbols(double: TestClient) -> None:
     """ZZ2 = m2 (l2/2)^2 + ..., X2 = m2 l2/2, ZZ1 with the mass of the second rod at the end of the first one."""
     found = double.get("/v1/trees/cell/metric?group=true").json()
@@ -121,6 +163,9 @@ def test_formulas_in_grouped_symbols(double: TestClient) -> None:
     assert told["arm.Jxx_rod"]["combination"] == {"arm.rod.Jxx": "1", "arm.rod.Jyy": "1", "hand.rod.m": "arm.l^2"}
     assert (told["hand.sx_rod"]["unit"], told["hand.sx_rod"]["base"]) == ("kg m", "hand.rod.sx")
     assert {s["name"] for s in found["symbols"]} == {*told, "arm.l", "hand.q"}
+    text = double.get("/v1/trees/cell/metric?group=true&format=text").text
+    for name, each in told.items():
+        assert f"\n{name} = {each['formula']}\n" in text
     bound = double.get("/v1/trees/cell/metric?group=true&bind=defaults,hand.sx_rod:3&format=text").text
     assert "metric[1, 2] = hand.Jxx_rod + 3*cos(hand.q)" in bound
     assert "hand.Jxx_rod = 0.55" in bound

@@ -39,10 +39,10 @@ from service.analyses.printing import (
     described,
     made_text,
     model_quantity,
-    names_of_steps,
     needs_parts,
     options_of_quantity,
     quantities,
+    source_glossary,
     text_of,
     with_numbers,
     with_options,
@@ -68,7 +68,6 @@ from substructures.printers.render import FORMS
 from substructures.quantities.evaluation import POWERS, REACTIONS
 from substructures.quantities.formulas import DERIVED
 from substructures.quantities.regressor import OUTPUTS
-from substructures.tree.glossary import glossary
 
 PART = "substructure"
 
@@ -267,8 +266,7 @@ def _stored(source: Source, item: ItemDocument, style: Style) -> str:
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
     program = with_numbers(model_quantity(sources, quantity), parameters, model.inputs, style)
-    parts = source.parts
-    named = None if parts is None else names_of_steps(style, parameters, model.inputs, lambda: glossary(*parts()))
+    named = source_glossary(source, style, parameters)
     return text_of(program, style, quantity, _interface(source), members, item["nodes"], glossary=named)
 
 
@@ -286,7 +284,7 @@ def _followed(source: Source, item: ItemDocument, style: Style) -> str:
             found = follow(source, item["request"])
     else:
         found = made(source, name, options)
-    return made_text(found, name, _interface(source), source.model, style, item["nodes"])
+    return made_text(found, name, _interface(source), source, style, item["nodes"])
 
 
 def _interface(source: Source) -> Interface:

@@ -35,6 +35,7 @@ from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.printers.names import MAX_COMMENT
 from substructures.printers.render import INLINE_LIMIT
 from substructures.printers.text import Text
 from substructures.printers.textbook import textbook_inlined
@@ -211,10 +212,21 @@ def _described(base: BaseParameters, definitions: Program, named_by: Mapping[str
     """What every symbol stands for. Raises TooLarge for what is too long to be told."""
     combinations = base.combinations()
     units = dict(zip(base.standard, base.units, strict=True))
-    told = textbook_inlined(definitions, Text(definitions), INLINE_LIMIT).entries
+    told = formulas_of(definitions)
     for name in definitions.outputs:
         standard = named_by[name]
-        yield GroupedSymbol(name, units[standard], standard, told[name][0], combinations[standard])
+        yield GroupedSymbol(name, units[standard], standard, told[name], combinations[standard])
+
+
+def formulas_of(definitions: Program) -> dict[str, str]:
+    """The textbook form of every definition, in the names of the tree. Raises TooLarge."""
+    told = textbook_inlined(definitions, Text(definitions), INLINE_LIMIT).entries
+    return {name: some[0] if some else "0" for name, some in told.items()}
+
+
+def cut(text: str) -> str:
+    """A sum in one line of a comment, cut between two terms where it is long."""
+    return text if len(text) < MAX_COMMENT - 20 else text[: MAX_COMMENT - 20].rpartition(" + ")[0] + " + ..."
 
 
 def sum_of(standard: Mapping[str, str]) -> str:

@@ -23,7 +23,7 @@ from substructures.part.definition import Definition
 from substructures.printers.language import Language, Listing
 from substructures.printers.listing import compact
 from substructures.printers.names import short_names
-from substructures.printers.render import LIMIT, name_steps
+from substructures.printers.render import LIMIT, name_steps, renamed
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.limits import joint_limits
@@ -214,7 +214,7 @@ def report(
     sources = tuple(Source(instance, d.name, d.title, d.source, d.license or "") for instance, d in definitions.items())
     return Report(
         heading, model, _coordinates(model, called), _symbols(model, known, called), tuple(statements), sources, shown,
-        called, None if glossary is None else _renamed(glossary, called),
+        called, None if glossary is None else renamed(glossary, called),
     )  # fmt: skip
 
 
