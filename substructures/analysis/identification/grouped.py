@@ -186,7 +186,7 @@ def _coupled(assembly: Assembly, spec: TreeSpec, names: Sequence[str]) -> Progra
     if spec.loads:
         acting = load_formulas(assembly, coupled.placed, rates)
         coupled = coupled.with_loads(acting.forces, acting.potential)
-    least = partial(least_forces, graph, coupled, rates)
+    least = partial(least_forces, assembly.scope, coupled, rates)
     found = model_outputs(assembly, coupled, rates, accelerations, frozenset(names), least)
     return program(graph, {name: found[name] for name in names}, assembly.scope.symbols)
 
