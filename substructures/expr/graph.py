@@ -22,6 +22,7 @@ True
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -131,6 +132,22 @@ class Expr:
         return f"<{self.op} {self.index}>"
 
 
+@dataclass(frozen=True)
+class GraphState:
+    """The nodes of a graph, and how they are found."""
+
+    nodes: list[Expr]
+    table: dict[int, Expr]
+    others: dict[tuple[str, tuple[Expr, ...]], Expr]
+    numbers: dict[int | Fraction, Expr]
+    symbols: dict[str, Expr]
+
+    def copy(self) -> GraphState:
+        """One that does not grow with this one."""
+        found = dict(self.table), dict(self.others), dict(self.numbers), dict(self.symbols)
+        return GraphState(list(self.nodes), *found)
+
+
 class Graph:
     """The nodes of one derivation. Nodes of different graphs must not be mixed."""
 
@@ -147,6 +164,15 @@ class Graph:
 
     def __len__(self) -> int:
         return len(self.nodes)
+
+    def state(self) -> GraphState:
+        """What there is now, and grows with the graph until another state is restored."""
+        return GraphState(self.nodes, self.table, self.others, self.numbers, self.symbols)
+
+    def restore(self, state: GraphState) -> None:
+        """Go on from a state, or from a copy of it; nodes that are not in it must not be used any more."""
+        self.nodes, self.table, self.others = state.nodes, state.table, state.others
+        self.numbers, self.symbols = state.numbers, state.symbols
 
     def number(self, value: ExactNumber) -> Expr:
         """An exact constant; a Decimal is taken as its decimal text. Floats are refused.

@@ -20,6 +20,8 @@ ARITY = {
 }
 #: operations that count in the literature
 ARITHMETIC = ("add", "sub", "mul", "div", "powi")
+#: kinds of symbols that are the same in all states
+CONSTANT = ("parameter", "inertia")
 KINDS = ("coordinate", "velocity", "acceleration", "parameter", "inertia", "input", "time")
 SYMMETRIES = ("none", "symmetric", "christoffel")
 #: elements that one output may have

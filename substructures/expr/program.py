@@ -23,6 +23,7 @@ from substructures.expr.needs import needed, totals
 from substructures.expr.operations import (
     ARITHMETIC,
     ARITY,
+    CONSTANT,
     FORMAT,
     KINDS,
     SYMMETRIES,
@@ -158,7 +159,7 @@ class Program:
     @cached_property
     def of_state(self) -> list[bool]:
         """Of every operation, whether it depends on more than parameters and inertia symbols."""
-        constant = [symbol.kind in ("parameter", "inertia") for symbol in self.symbols]
+        constant = [symbol.kind in CONSTANT for symbol in self.symbols]
         result: list[bool] = []
         for operation in self.operations:
             is_symbol = operation[0] == "sym"

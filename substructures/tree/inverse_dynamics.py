@@ -18,9 +18,12 @@ Motions = dict[int, BodyMotion]
 WrenchesByCarrier = dict[int, Wrench]
 
 
-def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar]) -> list[Scalar]:
-    """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first."""
-    loads = inertial_loads(placed, body_motions(placed, rates))
+def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar], falling: bool = False) -> list[Scalar]:
+    """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first.
+
+    ``falling``: less the gravity forces, in a world that is accelerated against gravity.
+    """
+    loads = inertial_loads(placed, body_motions(placed, rates, [0] * len(rates) if falling else None))
     return pass_back(placed, loads, len(rates))
 
 

@@ -186,7 +186,7 @@ def couple(
         if spec.loads:
             acting = load_formulas(assembly, coupled.placed, rates)
             coupled = coupled.with_loads(acting.forces, acting.potential)
-        least = partial(least_forces, assembly.scope.graph, coupled, rates)
+        least = partial(least_forces, assembly.scope, coupled, rates)
         outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.printers import render
 from substructures.printers.definitions import Definitions
+from substructures.quantities.formulas import derived
 from substructures.quantities.regressor import regressor
 
 G = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
@@ -96,6 +98,18 @@ def test_it_is_the_model_for_other_values_of_the_parameters(
     assert set(told) == set(OUTPUTS)
     for name, x in wanted.items():
         np.testing.assert_allclose(told[name], x, rtol=1e-10, atol=1e-10, err_msg=name)
+
+
+@pytest.mark.parametrize("missing", ["nonlinear_effects", "christoffel"])
+def test_a_model_that_lacks_an_output_is_grouped_without_it(missing: str) -> None:
+    """As models are that older versions stored, or that have too many Christoffel symbols."""
+    spec, parts = tree_parts({"name": "t", **CHAIN}, {"bent": BENT})
+    model = couple(spec, parts)
+    outputs = {name: x for name, x in model.program.outputs.items() if name != missing}
+    old = replace(model, program=replace(model.program, outputs=outputs))
+    found = grouped_model(spec, parts, old, base_parameters(regressor(spec, parts)))
+    assert set(found.model.program.outputs) == set(OUTPUTS) - {missing}
+    assert derived(found.model, "forward_dynamics").outputs["forward_dynamics"].shape == (model.dof,)
 
 
 def test_the_double_pendulum_as_in_a_textbook() -> None:

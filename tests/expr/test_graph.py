@@ -37,6 +37,22 @@ def test_equal_functions_are_one_node() -> None:
     assert g.sqrt(x) * (y * g.sqrt(x)) is x * y
 
 
+def test_formulas_are_tried_and_given_up() -> None:
+    g = Graph()
+    x, y = g.symbol("x"), g.symbol("y")
+    start, before = g.state().copy(), len(g)
+    left = (x + y) * (x - y)
+    tried = g.state()
+    g.restore(start.copy())
+    assert len(g) == before
+    right = x * x - y * y
+    assert right.op == "sub"
+    assert left.op == "mul"
+    g.restore(tried)
+    assert x * x - y * y is left
+    assert len(start.nodes) == before
+
+
 def test_multiples_of_pi_are_exact() -> None:
     g = Graph()
     q = g.symbol("q")

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from service import keys
+from service.analyses.grouping import QUANTITIES as GROUPED
 from service.app import open_store
 from service.database.packed import pack, unpack
 from service.improvement import AS_IT_WAS, MORE, SHORTER
@@ -145,7 +146,9 @@ def test_what_fails_is_told_and_left(old: Store, monkeypatch: pytest.MonkeyPatch
     assert found["tree cell@1"].outcome == SHORTER, "from the stored part"
 
 
-def test_outputs_that_older_software_did_not_store_are_added(template: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def poor(template: Path, tmp_path: Path) -> Path:
+    """A database with a tree that has no output nonlinear_effects."""
     shutil.copy(template, tmp_path / "store.db")
     with closing(sqlite3.connect(tmp_path / "store.db")) as connection:
         program, summary = connection.execute("SELECT program, summary FROM trees").fetchone()
@@ -156,10 +159,22 @@ def test_outputs_that_older_software_did_not_store_are_added(template: Path, tmp
         text = json.dumps(told)
         connection.execute("UPDATE trees SET summary = ?, summary_digest = ?", (text, digest_of(text.encode())))
         connection.commit()
-    with open_store(Settings(database=f"sqlite:///{tmp_path / 'store.db'}", catalogue=False)) as store:
+    return tmp_path / "store.db"
+
+
+def test_outputs_that_older_software_did_not_store_are_added(poor: Path) -> None:
+    with open_store(Settings(database=f"sqlite:///{poor}", catalogue=False)) as store:
         found = by_name(upgrade(store.database))
         assert found["tree cell@1"].outcome == MORE
         assert make_client(store).get("/v1/trees/cell/nonlinear_effects").status_code == 200
+
+
+def test_what_older_software_stored_is_grouped_before_it_is_upgraded(poor: Path) -> None:
+    with open_store(Settings(database=f"sqlite:///{poor}", catalogue=False)) as store:
+        client = make_client(store)
+        for quantity in GROUPED:
+            plain, grouped = (client.get(f"/v1/trees/cell/{quantity}", params={"group": x}) for x in ("false", "true"))
+            assert grouped.status_code == plain.status_code == (404 if quantity == "nonlinear_effects" else 200)
 
 
 def test_older_versions_on_request(old: Store) -> None:

@@ -12,7 +12,7 @@ Transactions on Robotics and Automation 6(3), 1990.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -81,7 +81,7 @@ class Grouped:
 def grouped_model(
     spec: TreeSpec, parts: Mapping[str, Part], model: Model, base: BaseParameters, max_nodes: int = MAX_NODES
 ) -> Grouped:
-    """The outputs OUTPUTS of a model with a symbol for every base parameter that is more than one parameter.
+    """Those outputs OUTPUTS that a model has, with a symbol for every base parameter that is more than one parameter.
 
     ``model``: the tree as it was coupled; ``base``: its base parameters without drives. A base parameter that is a
     number, or a single parameter of the tree, stands for itself. Raises TooLarge for more than ``max_nodes``
@@ -91,7 +91,9 @@ def grouped_model(
     definitions, values, named_by = _symbols(assembly, base)
     pairs = zip(assembly.mounted, assembly.instances, strict=True)
     opened = [_opened(m, instance.name, values) for m, instance in pairs]
-    result = hoisted(_coupled(replace(assembly, mounted=tuple(opened)), spec))
+    # models that were stored before one of these was an output do not have it
+    names = [name for name in OUTPUTS if name in model.program.outputs]
+    result = hoisted(_coupled(replace(assembly, mounted=tuple(opened)), spec, names))
     if len(result) > max_nodes:
         raise TooLarge("the grouped formulas (in operations)", len(result), max_nodes)
     _certify(model, result, definitions)
@@ -176,17 +178,18 @@ def _less(a: Inertia, b: Inertia) -> Inertia:
     return Inertia(a.m - b.m, s, (xx, yy, zz, xy, xz, yz))
 
 
-def _coupled(assembly: Assembly, spec: TreeSpec) -> Program:
-    """The outputs of the tree; every mass stays where it is."""
+def _coupled(assembly: Assembly, spec: TreeSpec, names: Sequence[str]) -> Program:
+    """The named outputs of the tree; every mass stays where it is."""
     graph = assembly.scope.graph
-    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, group=lambda _: False)
+    run, christoffel = over_formulas(graph), "christoffel" in names
+    coupled = couple_parts(run, assembly.mounted, assembly.gravity, christoffel, group=lambda _: False)
     rates, accelerations = rate_symbols(assembly)
     if spec.loads:
         acting = load_formulas(assembly, coupled.placed, rates)
         coupled = coupled.with_loads(acting.forces, acting.potential)
-    least = partial(least_forces, graph, coupled, rates)
-    found = model_outputs(assembly, coupled, rates, accelerations, frozenset(OUTPUTS), least)
-    return program(graph, {name: found[name] for name in OUTPUTS if name in found}, assembly.scope.symbols)
+    least = partial(least_forces, assembly.scope, coupled, rates)
+    found = model_outputs(assembly, coupled, rates, accelerations, frozenset(names), least)
+    return program(graph, {name: found[name] for name in names}, assembly.scope.symbols)
 
 
 def _certify(model: Model, result: Program, definitions: Program) -> None:
