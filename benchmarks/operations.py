@@ -45,7 +45,7 @@ def chain(name: str, group: bool = False) -> Model:
 def entry(name: str) -> Model:
     """An entry of the catalogue on the ground."""
     instance = {"name": "c", "substructure": name, "at": "world"}
-    tree = {"name": "tree", "gravity": [0, "-g", 0], "parameters": {"g": {}}, "instances": [instance]}
+    tree = {"name": "tree", "gravity": [0, 0, "-g"], "parameters": {"g": {}}, "instances": [instance]}
     return couple(TreeSpec.read(tree), {"c": derive(Definition.read(catalogue.load(name)))})
 
 

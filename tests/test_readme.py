@@ -104,7 +104,7 @@ def test_own_part() -> None:
 
 
 def test_python_example(tmp_path: Path) -> None:
-    assert "cos(arm.q2)" in run(blocks("python")[1], tmp_path)
+    assert "cos(q2)" in run(blocks("python")[1], tmp_path)
 
 
 @pytest.mark.parametrize(

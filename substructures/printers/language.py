@@ -64,8 +64,6 @@ class Language(ABC):
     def __init__(self, program: Program) -> None:
         self.program = program
         self._called: dict[int, Label | int] = {}
-        #: instances that symbols belong to, where that is to be said of each
-        self.owners: Mapping[int, str] = {}
         #: numbers of the symbols that are said to occur; None: all of the program
         self.occurring: frozenset[int] | None = None
 
@@ -78,10 +76,6 @@ class Language(ABC):
         """The symbols that readers are told about, with their numbers."""
         found = enumerate(self.program.symbols)
         return [(n, s) for n, s in found if self.occurring is None or n in self.occurring]
-
-    def kind(self, n: int) -> str:
-        """What symbol number n is, and of what."""
-        return self.program.symbols[n].kind + (f" of {self.owners[n]}" if n in self.owners else "")
 
     def symbol(self, n: int) -> Piece:
         """Symbol number n of the program."""

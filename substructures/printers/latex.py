@@ -153,8 +153,7 @@ class Latex(Language):
         """An ``aligned`` environment; comments say what the symbols are."""
         lines = [f"% {comment(x)}" for x in (name, self.remark, *self.legend) if x]
         lines += [
-            f"% {comment(s.name)}: {comment(self.kind(n))} [{comment(s.unit)}], written {self.names[n]}"
-            for n, s in self.described
+            f"% {comment(s.name)}: {s.kind} [{comment(s.unit)}], written {self.names[n]}" for n, s in self.described
         ]
         if any(array.shape or "[" in output for output, array in self.program.outputs.items()):
             lines.append("% indices from 1; elements that are not listed are 0")

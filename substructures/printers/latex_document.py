@@ -47,8 +47,7 @@ class LatexDocument(Latex):
 
     def _symbols(self) -> list[str]:
         return [
-            " & ".join((f"${_shown(self.names[n])}$", *(prose(x[:LONGEST]) for x in (s.name, self.kind(n), s.unit))))
-            + r" \\"
+            " & ".join((f"${_shown(self.names[n])}$", *(prose(x[:LONGEST]) for x in (s.name, s.kind, s.unit)))) + r" \\"
             for n, s in self.described
         ]
 

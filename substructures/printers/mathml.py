@@ -233,7 +233,7 @@ class MathML(Language):
 
     def _described(self, n: int) -> str:
         symbol = self.program.symbols[n]
-        words = "".join(f"<td>{escape(comment(x))}</td>" for x in (symbol.name, self.kind(n), symbol.unit))
+        words = "".join(f"<td>{escape(comment(x))}</td>" for x in (symbol.name, symbol.kind, symbol.unit))
         return f"<tr><td>{self.finished(self.names[n])}</td>{words}</tr>"
 
     def _output(self, output: str, array: Output, texts: Sequence[str]) -> list[str]:

@@ -149,7 +149,9 @@ def _labels(glossary: Program, wanted: Collection[int]) -> dict[int, Label]:
 
     A letter is that of one state of motion, the one that most values are of.
     """
-    found = {_label(name): formulas.entries[()] for name, formulas in replay(glossary, Graph(), {}).items()}
+    # with numbers in them some are zero
+    outputs = replay(glossary, Graph(), {}).items()
+    found = {_label(name): x for name, formulas in outputs for x in formulas.entries.values()}
     some = {label: x.fp for label, x in found.items() if isinstance(x, Expr) and _is_made(x) and x.fp in wanted}
     counts = Counter(label.key for label in some)
     order = {key: n for n, key in enumerate(LETTERS)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from substructures.expr.operations import Output, Symbol
@@ -71,20 +70,15 @@ def prefix(names: Iterable[str]) -> str:
 
 
 def short_names(symbols: Sequence[Symbol]) -> list[str]:
-    """Names as textbooks write them, all different: m1 for arm.m1, tau_1 for tau.arm.q1.
+    """Names as textbooks write them, all different: no instance where there is only one, tau_1 for tau.arm.q1.
 
-    Those of an instance of which one would then be that of something else stay as they are.
+    Where that would make two names equal they stay as they are.
     """
-    names, long = [s.name for s in symbols], set[str]()
-    while True:
-        short = [n if instance_of(n) in long else _short(n) for n in names]
-        counts = Counter(short)
-        double = {
-            owner for n, s in zip(names, short, strict=True) if counts[s] > 1 and (owner := instance_of(n))
-        } - long
-        if not double:
-            return short
-        long |= double
+    names = [s.name for s in symbols]
+    if len({owner for n in names if (owner := instance_of(n))}) != 1:
+        return names
+    short = [_short(n) for n in names]
+    return short if len(set(short)) == len(short) else names
 
 
 def instance_of(name: str) -> str | None:

@@ -198,17 +198,10 @@ def _spoken(program: Program, format: str) -> tuple[Program, Language]:  # noqa:
     """The language, and the program with the names that it writes: for people without instances that are clear."""
     if not LANGUAGES[format].is_for_people:
         return program, LANGUAGES[format](program)
-    short = short_names(program.symbols)
-    named = list(zip(program.symbols, short, strict=True))
+    named = list(zip(program.symbols, short_names(program.symbols), strict=True))
     language = LANGUAGES[format](replace(program, symbols=tuple(replace(s, name=name) for s, name in named)))
-    owners = {n: owner for n, (s, name) in enumerate(named) if s.name != name and (owner := instance_of(s.name))}
-    some = sorted(set(owners.values()))
-    if len(some) == 1:
-        language.remark = f"all names but those of the tree are of instance {some[0]}"
-        if any("." in name for name in short):
-            language.remark = f"names without an instance are of the tree or of {some[0]}"
-    elif some:
-        language.owners = owners
+    owners = {instance_of(s.name) for s, name in named if s.name != name} - {None}
+    language.remark = "".join(f"all names but those of the tree are of instance {owner}" for owner in owners)
     return language.program, language
 
 

@@ -47,7 +47,7 @@ class Text(Language):
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""
         lines = [f"# {comment(x)}" for x in (name, self.remark, *self.legend) if x]
-        lines += [f"# {self.names[n]} is {comment(self.kind(n))} [{comment(s.unit)}]" for n, s in self.described]
+        lines += [f"# {self.names[n]} is {s.kind} [{comment(s.unit)}]" for n, s in self.described]
         for name, text, note in listing.definitions:
             lines += [f"# {name} stands for {comment(note)}"] if note else []
             lines.append(f"{name} = {text}")

@@ -330,7 +330,7 @@ def test_symbols_that_cancel_are_not_listed(format_: str) -> None:
     text = render(quantity("excavator-arm", "metric"), format_, "textbook")
     assert "Iz0" in text
     assert "Ix0" not in text
-    assert "x.Ix0" in render(quantity("excavator-arm", "metric"), "text", "compact")
+    assert "Ix0" in render(quantity("excavator-arm", "metric"), "text", "compact")
 
 
 def test_a_length_that_occurs_often_has_a_name() -> None:
@@ -383,8 +383,9 @@ def test_what_does_not_fit_is_printed_compact_with_the_reason() -> None:
     with pytest.raises(TooLarge):
         render(program, "text", "textbook")
     text = render(program, "text", "readable")
-    assert text.splitlines()[1].startswith("# compact, since there is no textbook form: the textbook form (in terms")
-    assert text.splitlines()[2:] == render(program, "text").splitlines()[1:]
+    reason = text.splitlines()[2]
+    assert reason.startswith("# compact, since there is no textbook form: the textbook form (in terms")
+    assert text.replace(f"{reason}\n", "") == render(program, "text")
     assert render(quantity("scara", "metric"), "text", "readable") == render(
         quantity("scara", "metric"), "text", "textbook"
     )
