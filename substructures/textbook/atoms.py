@@ -19,6 +19,8 @@ from substructures.expr.walk import reachable
 
 NUMBER, MASS, PARAMETER, INPUT, MOVING = range(5)
 _MOVING = ("coordinate", "velocity", "acceleration", "time")
+#: units of momenta, which change with time as velocities do
+_MOMENTA = ("kg m/s", "kg m^2/s")
 
 #: powers of atoms, by their place in the order
 Monomial = tuple[tuple[int, int], ...]
@@ -56,6 +58,10 @@ class Atoms:
         is_place = atom.op == "sym" and self.symbols[str(atom.value)].kind == "coordinate"
         return self.ranks[self.place[atom]] == MOVING and not is_place
 
+    def is_momentum(self, atom: Expr) -> bool:
+        """Whether it is a momentum, which is written before cosines and sines."""
+        return atom.op == "sym" and self.symbols[str(atom.value)].unit in _MOMENTA
+
     def split(self, monomial: Monomial) -> tuple[Monomial, Monomial]:
         """What is constant, and what moves."""
         at_rest = tuple((i, n) for i, n in monomial if self.ranks[i] != MOVING)
@@ -74,7 +80,7 @@ def ordered(exprs: Iterable[Expr], symbols: Mapping[str, Symbol]) -> Atoms:
 
 
 def _rank_of(symbol: Symbol) -> int:
-    if symbol.kind in _MOVING:
+    if symbol.kind in _MOVING or symbol.unit in _MOMENTA:
         return MOVING
     if symbol.kind == "input":
         return INPUT

@@ -21,6 +21,7 @@ from substructures.textbook.forms import Sum, Trig, atoms_of, leaves
 from substructures.textbook.harmonics import Mode
 from substructures.textbook.layout import Layout
 from substructures.textbook.quotients import Quotients
+from substructures.textbook.tidy import Tidy
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ def _laid_out(found: Expanded, atoms: Atoms) -> Sum:
         a, b = harmonics.get(mode, (Fraction(0), Fraction(0)))
         c = term.coefficient
         harmonics[mode] = (a, b + c) if term.trig == "sin" else (a + c, b)
-    return Layout(atoms, angles, units)(content)
+    return Tidy(atoms)(Layout(atoms, angles, units)(content))
 
 
 def _ratios(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: Limits) -> dict[Expr, Sum]:
@@ -150,8 +151,8 @@ def _ratios(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: Limits
         return {}
     field = Field(exprs, limits.work)
     atoms = ordered((field.generators.atoms[i] for i in field.plain), symbols)
-    quotients = Quotients(field, atoms)
-    return {e: quotients(e) for e in exprs}
+    quotients, tidy = Quotients(field, atoms), Tidy(atoms)
+    return {e: tidy(quotients(e)) for e in exprs}
 
 
 def _angle_key(angle: Expr) -> tuple[object, ...]:

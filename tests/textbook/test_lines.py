@@ -66,11 +66,13 @@ def program(model: str, output: str) -> Program:
     if model == "top":
         return routh(top()).program.select([output])
     found = top() if model == "symmetric-top" else tree({model: catalogue.load(model)})
+    if output in ("forward_dynamics", "hamiltonian"):
+        return derived(found, output).select([output])
     if output == "energy" or "momentum" in output:
         return first_integrals(found).program.select([output])
     if output == "scalar_curvature":
         return curvature(found).select([output])
-    return derived(found, output).select([output]) if output == "forward_dynamics" else found.program.select([output])
+    return found.program.select([output])
 
 
 LANDAU = "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. 1976, section 5, problem 1, with phi2 = q1 + q2"
@@ -196,7 +198,7 @@ LINES = [
     Line(
         "top",
         "routhian",
-        "-p_phi^2/(2*C) - m*g*l*cos(theta) + 1/2*(A + m*l^2)*theta'^2"
+        "-m*g*l*cos(theta) - p_phi^2/(2*C) + 1/2*(A + m*l^2)*theta'^2"
         " - (p_psi - p_phi*cos(theta))^2/(2*(A + m*l^2)*sin(theta)^2)",
         "(A + m*l^2)*theta'^2/2 - (p_psi - p_phi*cos(theta))^2/(2*(A + m*l^2)*sin(theta)^2) - p_phi^2/(2*C)"
         " - m*g*l*cos(theta)",
@@ -258,6 +260,30 @@ LINES = [
         "(Ic1 + m1*lc1^2)*q1'^2/2 + (m2*l1^2 + Ic2 + m2*lc2^2 + 2*m2*l1*lc2*cos(q2))*q1'^2/2 + (Ic2 + m2*lc2^2)*q2'^2/2"
         " + (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*q1'*q2' + m1*g*lc1*sin(q1) + m2*g*(l1*sin(q1) + lc2*sin(q1 + q2))",
         TEDRAKE + ", from the horizontal",
+    ),
+    Line(
+        "acrobot",
+        "hamiltonian",
+        "g*(m1*lc1 + m2*l1)*sin(q1) + m2*g*lc2*sin(q1 + q2) + ((Ic2 + m2*lc2^2)*(p_1 - p_2)^2"
+        " + (Ic1 + m1*lc1^2 + m2*l1^2)*p_2^2 - 2*m2*l1*lc2*p_2*(p_1 - p_2)*cos(q2))/(2*((Ic2 + m2*lc2^2)*(Ic1"
+        " + m1*lc1^2 + m2*l1^2) - m2^2*l1^2*lc2^2*cos(q2)^2))",
+        # p M^-1 p by Cramer's rule, and the potential energy from the horizontal
+        "m1*g*lc1*sin(q1) + m2*g*(l1*sin(q1) + lc2*sin(q1 + q2)) + ((Ic2 + m2*lc2^2)*p_1^2 - 2*(Ic2 + m2*lc2^2"
+        " + m2*l1*lc2*cos(q2))*p_1*p_2 + (Ic1 + m1*lc1^2 + Ic2 + m2*lc2^2 + m2*l1^2 + 2*m2*l1*lc2*cos(q2))*p_2^2)"
+        "/(2*((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + Ic2 + m2*lc2^2 + m2*l1^2 + 2*m2*l1*lc2*cos(q2)) - (Ic2 + m2*lc2^2"
+        " + m2*l1*lc2*cos(q2))^2))",
+        TEDRAKE,
+    ),
+    Line(
+        "furuta-pendulum",
+        "hamiltonian",
+        "-m2*g*l2*cos(q2) + ((J1 + m1*l1^2 + m2*L1^2)*p_2^2 + (J2 + m2*l2^2)*(p_1^2 + p_2^2*sin(q2)^2)"
+        " - 2*m2*L1*l2*p_1*p_2*cos(q2))/(2*((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)"
+        " - m2^2*L1^2*l2^2*cos(q2)^2))",
+        "((J2 + m2*l2^2)*p_1^2 - 2*m2*L1*l2*cos(q2)*p_1*p_2 + (J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)"
+        "*p_2^2)/(2*((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2) - (m2*L1*l2*cos(q2))^2))"
+        " - m2*g*l2*cos(q2)",
+        FURUTA,
     ),
     Line(
         "cart-pendulum",
@@ -335,7 +361,7 @@ LINES = [
     Line(
         "free-body",
         "christoffel[4, 5, 6]",
-        "-1/2*Ixx*cos(pitch) + 1/2*(Iyy - Izz)*cos(pitch)*cos(2*roll)",
+        "-1/2*cos(pitch)*(Ixx - (Iyy - Izz)*cos(2*roll))",
         "-Ixx*cos(pitch)/2 + (Iyy - Izz)*cos(pitch)*(cos(roll)^2 - sin(roll)^2)/2",
         "half the derivative of g by roll, pitch and yaw",
     ),
