@@ -21,7 +21,7 @@ async def style_of(
         str,
         Query(
             description="textbook (collected, factored, cancelled), compact (shared subexpressions), expanded, or "
-            "readable: textbook in text and LaTeX where that is quick, otherwise compact",
+            "readable: textbook in text, LaTeX and MathML where that is quick and can be read, otherwise compact",
             json_schema_extra={"enum": [*FORMS]},
         ),
     ] = FORMS[0],

@@ -121,6 +121,16 @@ def letter_of(output: str, array: Output, symbols: Iterable[str]) -> str:
     return letter if places.isdisjoint(map(look, symbols)) else latex_names([output])[0]
 
 
+def latex_of(text: str) -> str:
+    """LaTeX of a name, or of an element of an array: ``Gamma[1,1,2]``, ``Gamma[a, b, c]``."""
+    match = re.fullmatch(r"(\w+)\[([\w, ]+)\]", text)
+    if match is None:
+        return latex_names([text])[0]
+    index = match.group(2).replace(" ", "").split(",")
+    below = ("," if any(len(x) > 1 for x in index) else "").join(index)
+    return f"{latex_names([match.group(1)])[0]}_{{{below}}}"
+
+
 def _latex_name(name: str) -> str:
     primes = len(name) - len(name.rstrip("'"))
     *owners, last = name[: len(name) - primes].split(".")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.expand import LIMIT as TERMS
@@ -25,8 +25,8 @@ from substructures.printers.mathml import MathML
 from substructures.printers.meanings import LETTERS, OUTPUTS, Label, meanings
 from substructures.printers.names import instance_of, short_names
 from substructures.printers.text import Text
-from substructures.printers.textbook import textbook, textbook_inlined
-from substructures.textbook import AT_ONCE, read
+from substructures.printers.textbook import TextbookTerms, at_once, textbook, textbook_inlined
+from substructures.textbook import read
 from substructures.textbook.forms import atoms_of, to_expr
 
 LANGUAGES: Mapping[str, type[Language]] = {
@@ -48,6 +48,8 @@ _LISTINGS: Mapping[str, Callable[[Program, Language, int], Listing]] = {
 LIMIT = 100_000
 #: nodes from which on a derivation has names for its steps
 NAMED = 60
+#: characters of a line, from which on a derivation with names reads better
+LONGEST = 1000
 INLINE_LIMIT = 20_000
 
 
@@ -131,15 +133,55 @@ def _readable(
     if format == "json" or not LANGUAGES[format].is_for_people:
         return render(program, format, "compact", name, limit, definitions, glossary)
     said = _Said(program, definitions, limit)
-    spoken, language = _spoken(said.program, format)
+    found = readable(
+        lambda: _spoken(said.program, format)[1],
+        limit,
+        _in_names_of(glossary, said.program, _spoken(said.program, format)[0]),
+    )
+    if found.reason:
+        found.language.legend = [found.reason, *found.language.legend]
+    return found.language.render(said.with_definitions(found.listing, found.language), name)
+
+
+class Readable(NamedTuple):
+    """A listing in a language; ``terms``: of its textbook form, if there is one; ``reason``: why it is not that."""
+
+    language: Language
+    listing: Listing
+    terms: TextbookTerms | None
+    reason: str = ""
+
+
+def readable(make: Callable[[], Language], limit: int, glossary: Program | None) -> Readable:
+    """A program in its textbook form, or as a derivation: where that is not quick to find, or has lines that nobody
+    reads and the glossary has names. ``make``: the language of the program. Raises TooLarge.
+    """
+    language = make()
+    program = language.program
     try:
-        listing = textbook(spoken, language, limit, AT_ONCE)
+        terms = TextbookTerms(program, language, limit, at_once(program))
     except (TooLarge, ZeroDivisionError) as error:
-        spoken, language = _spoken(said.program, format)
-        name_steps(language, _in_names_of(glossary, said.program, spoken))
-        language.legend = [f"compact, since there is no textbook form: {error}", *language.legend]
-        listing = compact(spoken, language, limit)
-    return language.render(said.with_definitions(listing, language), name)
+        steps, listing = _derivation(make(), limit, glossary)
+        return Readable(steps, listing, None, f"compact, since there is no textbook form: {error}")
+    longest = _longest(terms, program, limit)
+    if longest > LONGEST:
+        steps, listing = _derivation(make(), limit, glossary)
+        if steps.meanings and 2 * len(steps.meanings) >= len(listing.temporaries):
+            terms = TextbookTerms(program, make(), limit, abbreviates=False, reading=terms.reading)
+            reason = f"a derivation, since the textbook form has lines of up to {longest:,} characters"
+            return Readable(steps, listing, terms, reason)
+    return Readable(language, terms.listing, terms)
+
+
+def _derivation(language: Language, limit: int, glossary: Program | None) -> tuple[Language, Listing]:
+    name_steps(language, glossary)
+    return language, compact(language.program, language, limit)
+
+
+def _longest(terms: TextbookTerms, program: Program, limit: int) -> int:
+    """Characters of the longest element as text, whatever the language is."""
+    as_text = TextbookTerms(program, Text(program), limit, reading=terms.reading).listing
+    return max((len(x) for some in as_text.entries.values() for x in some), default=0)
 
 
 class _Said:

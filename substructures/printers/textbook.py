@@ -12,7 +12,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.listing import check_size
-from substructures.textbook import LIMITS, Limits, Reading, Sum, Term, Trig, read
+from substructures.textbook import AT_ONCE, LIMITS, Limits, Reading, Sum, Term, Trig, read
 from substructures.textbook.forms import atoms_of, leaves
 
 #: so many angles q1, q2, ..., and c12 is written for cos(q1 + q2); parameters decide nothing, so that one more of them
@@ -20,6 +20,9 @@ from substructures.textbook.forms import atoms_of, leaves
 ABBREVIATED = 4
 #: factors and numbers of a function that has a name where it is used more than once
 REPEATED = 6
+#: elements and operations of small results, and products of terms of rational functions in these and in others: more of
+#: them in many elements are lines that nobody reads, and take long to write
+FEW, SMALL, WORK_OF_FEW, WORK_OF_MANY = 2, 400, 1_000_000, 100_000
 _ANGLE = re.compile(r"q([0-9])", re.ASCII)
 
 
@@ -32,10 +35,16 @@ class TextbookTerms:
     """The textbook form of a program in a language: its listing, and the terms of its elements one by one."""
 
     def __init__(
-        self, program: Program, language: Language, limit: int, limits: Limits = LIMITS, abbreviates: bool = True
+        self,
+        program: Program,
+        language: Language,
+        limit: int,
+        limits: Limits = LIMITS,
+        abbreviates: bool = True,
+        reading: Reading | None = None,
     ) -> None:
-        """Raises TooLarge, and ZeroDivisionError."""
-        self.reading = read(program, limits)
+        """``reading``: of the program, where it is known. Raises TooLarge, and ZeroDivisionError."""
+        self.reading = read(program, limits) if reading is None else reading
         check_size(self.reading.size, limit)
         short = _abbreviations(program, self.reading, language) if abbreviates else {}
         repeated = _repeated(self.reading) if abbreviates else []
@@ -52,6 +61,13 @@ class TextbookTerms:
     def text(self, term: Term) -> str:
         """A term with its sign, in the names of the listing."""
         return self._writer.sum(Sum((term,))).text
+
+
+def at_once(program: Program) -> Limits:
+    """What a textbook form may need where nobody asked for it: about a second."""
+    elements = sum(len(output.entries) for output in program.outputs.values())
+    is_small = elements <= FEW and len(program) <= SMALL
+    return Limits(AT_ONCE.terms, WORK_OF_FEW if is_small else WORK_OF_MANY)
 
 
 def textbook_inlined(program: Program, language: Language, limit: int) -> Listing:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
@@ -21,7 +22,10 @@ from substructures.analysis.report.text import text_report
 from substructures.part.part import Part
 from substructures.pictures.latex import latex_picture
 from substructures.pictures.tree import picture
+from substructures.printers.mathml import named
+from substructures.printers.names import latex_names, look
 from substructures.printers.text import Text
+from substructures.tree.glossary import glossary
 
 G = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
 PRINTABLE = "Grüße: 100 % _{x}^2 \\end{document} ~ # $ & <b> \u2206 \x07"
@@ -46,10 +50,10 @@ def test_the_double_pendulum_in_words() -> None:
         "g[2,2] does not change.",
         "q1 changes no element of g.",
         "q2 changes g[1,1], g[1,2].",
-        "G[1,1,2], G[1,2,2] are equal.",
+        "Gamma[1,1,2], Gamma[1,2,2] are equal.",
         "On q1 gravity and the input tau_1 act.",
     } <= texts
-    assert any(t.startswith("2 of 2 independent Christoffel symbols are not zero; G[a, b, c]") for t in texts)
+    assert any(t.startswith("2 of 2 independent Christoffel symbols are not zero; Gamma[a, b, c]") for t in texts)
     assert any(t.startswith("Energy is constant while all inputs are zero: ") for t in texts)
     # names as in all other statements
     assert not any("x.q1" in t for t in [*texts, *(each.text for each in told("scara").statements)])
@@ -147,7 +151,11 @@ def test_documents_and_pages_say_quantities_in_mathematics() -> None:
     """Lists of elements with their spaces, raised powers of units, and under which condition Gamma is what is said."""
     found = told("furuta-pendulum")
     text, page = latex_report(found), page_report(found)
-    assert "q2 changes g[1,1], g[1,2]." in text
+    assert "$q_{2}$ changes $g_{11}$, $g_{12}$." in text
+    assert "$\\Gamma_{abc}$ = $\\Gamma_{acb}$, and $\\Gamma_{cba}$ = -$\\Gamma_{abc}$ for b $<$= a" in text
+    assert "On $q_{1}$ " in text
+    for name in ("g[", "G[", "tau\\_", ">q2 "):
+        assert name not in text + page
     assert "m/\\allowbreak s$^{2}$" in text
     assert "mass $m$ and inertia tensor $\\Theta$," in text
     assert "<sup>2</sup>" in page
@@ -189,3 +197,31 @@ def test_the_page_is_xhtml_that_loads_nothing() -> None:
     assert {"math", "svg", "table", "h2"} <= tags
     assert not tags & {"script", "img", "link", "iframe", "object"}
     assert "".join(root.itertext()).count("<script>alert(1)</script>") == 2
+
+
+@pytest.mark.parametrize("name", ["puma560", "kuka-iiwa-14"])
+def test_no_equation_of_a_report_is_false(name: str) -> None:
+    """The mass that joint 6 carries is not written as that of link 6: m_{6} = m_{6} + m_{7}."""
+    spec, parts, model = subject(name)
+    names = glossary(spec, parts, model=model.program)
+    found = report(model, {n: p.definition for n, p in parts.items()}, Heading(name), names)
+    looks = {look(x) for x in latex_names(found.called.values())}
+    pages = {named(x) for x in latex_names(found.called.values())}
+    rows = [line.partition(" &= ")[0] for line in latex_report(found).splitlines() if " &= " in line]
+    lines = re.findall(r"<p><math[^>]*><mrow>(.*?)<mo>=</mo>", page_report(found))
+    assert len(rows) > 100 < len(lines)
+    assert not looks.intersection(map(look, rows))
+    assert not pages.intersection(lines)
+
+
+def test_long_lines_are_a_derivation_and_terms_keep_their_sizes() -> None:
+    spec, parts, model = subject("humanoid-arm")
+    definitions = {n: p.definition for n, p in parts.items()}
+    found = report(model, definitions, Heading("humanoid-arm"), glossary(spec, parts, model=model.program))
+    printed = found.printed("metric", Text)
+    assert printed.reason.startswith("a derivation, since the textbook form has lines of up to ")
+    assert max(map(len, printed.listing.entries["metric"])) < 200
+    sizes, reason = found.sizes(printed)
+    assert sizes
+    assert not reason
+    assert "cos(shoulder_roll)" in text_report(found)

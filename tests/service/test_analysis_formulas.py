@@ -114,6 +114,14 @@ def test_base_parameters_are_combinations(double: TestClient) -> None:
     assert len(more["base"]) == 6 + 4
 
 
+@pytest.mark.parametrize("format_", ["text", "latex", "latex-document", "mathml"])
+def test_what_people_read_is_in_the_textbook_form(double: TestClient, format_: str) -> None:
+    for quantity in ("metric", "scalar_curvature"):
+        url = f"/v1/trees/cell/{quantity}?format={format_}"
+        found = [double.get(url + form).text for form in ("", "&form=readable", "&form=textbook", "&form=compact")]
+        assert found[0] == found[1] == found[2] != found[3]
+
+
 DECLARED = re.compile(r"# (\S+) is \w")
 NAME = re.compile(r"(?<![\w.'])[A-Za-z_][\w.]*'*")
 

@@ -98,3 +98,46 @@ def test_no_element_of_a_result_looks_like_a_symbol(format_: str) -> None:
     text = render(program, format_, "compact")
     assert not double_names(text, program, format_)
     assert {"latex": "C_{11} &=", "mathml": "<msub><mi>C</mi>"}[format_] in text, "nothing else looks like it"
+
+
+def tree_of(*names: str) -> tuple[Program, Program]:
+    """Metric and glossary of parts beside each other."""
+    instances = [{"name": f"x{k}", "substructure": name} for k, name in enumerate(names)]
+    spec, parts = tree_parts(
+        {"name": "t", "gravity": [0, 0, -9.81], "instances": instances}, {n: catalogue.load(n) for n in names}
+    )
+    model = couple(spec, parts)
+    return model.program.select(["metric", "forces"]), glossary(spec, parts, model=model.program)
+
+
+def test_instances_are_named_where_they_distinguish() -> None:
+    one, _ = tree_of("scara")
+    for form in ("textbook", "compact", "expanded", "readable"):
+        text = render(one, "text", form)
+        assert "# all names but those of the tree are of instance x0" in text
+        assert "x0." not in text
+        assert "tau_3" in text
+    two, _ = tree_of("simple-pendulum", "double-pendulum")
+    text = render(two, "text", "compact")
+    assert "x0.q1" in text
+    assert "x1.q1" in text
+    clear, names = tree_of("humanoid-head", "scara")
+    text = render(clear, "text", "compact", glossary=names)
+    assert "# neck_yaw is coordinate of x0 [rad]" in text or "# neck_pitch is coordinate of x0 [rad]" in text
+    assert "# q2 is coordinate of x1 [rad]" in text
+    assert not re.search(r"^[^#]*x[01]\.", text, re.MULTILINE)
+
+
+def test_a_parameter_of_the_tree_is_not_that_of_the_instance() -> None:
+    """The formula has arm.m, which is m in short; what joint 1 carries is a sum of parameters of the tree."""
+    graph = Graph()
+    known = {name: Symbol(name, "parameter") for name in ("m", "b", "arm.m", "arm.b", "arm.x")}
+    inner, x = graph.symbol("arm.m") + graph.symbol("arm.b"), graph.symbol("arm.x")
+    value = inner
+    for k in range(40):
+        value = value * x + inner * k
+    program = collect(graph, {"f": Formulas((), {(): value})}, known)
+    for owner, is_named in (("", False), ("arm.", True)):
+        carried = graph.symbol(f"{owner}m") + graph.symbol(f"{owner}b")
+        names = collect(graph, {"m 1": Formulas((), {(): carried})}, known)
+        assert ("m_1 = m + b" in render(program, "text", "compact", glossary=names)) == is_named

@@ -16,9 +16,10 @@ from substructures.analysis.report.report import (
     some_terms,
     told_sizes,
 )
+from substructures.analysis.report.statements import MARK
 from substructures.analysis.report.words import DERIVATION, REFERENCE
 from substructures.printers.latex_document import LatexDocument
-from substructures.printers.names import latex_names
+from substructures.printers.names import latex_names, latex_of
 from substructures.printers.pages import BREAK, LINE, sized, width
 from substructures.printers.render import LIMIT
 
@@ -91,8 +92,8 @@ def _kept(text: str) -> str:
 
 
 def _named(text: str) -> str:
-    """Words with names of quantities in dollar signs."""
-    return "".join(f"${latex_names([x])[0]}$" if n % 2 else _kept(x) for n, x in enumerate(text.split("$")))
+    """Words with names of quantities between marks."""
+    return "".join(f"${latex_of(x)}$" if n % 2 else _kept(x) for n, x in enumerate(text.split(MARK)))
 
 
 def _coordinates(rows: Sequence[Coordinate]) -> list[str]:
@@ -151,23 +152,18 @@ def _quantity(found: Report, name: str, each: Printed) -> list[str]:
 
 
 def _statements(found: Report, about: str) -> list[str]:
-    said = [prose_of(each.text) for each in found.statements if each.about == about]
+    said = [_named(each.marked) for each in found.statements if each.about == about]
     if not said:
         return []
     return [_title(SECTIONS[about]), r"\begin{itemize}", *(rf"\item {text}" for text in said), r"\end{itemize}"]
-
-
-def prose_of(text: str) -> str:
-    """A statement."""
-    return words(text)
 
 
 def _sizes(found: Report, metric: Printed) -> list[str]:
     sizes, reason = found.sizes(metric)
     lines = [_title("Sizes of the terms of the mass matrix")]
     if not sizes or metric.terms is None:
-        return [*lines, prose_of(f"Not told: {reason or 'all elements are one term'}.")]
-    lines.append(prose_of(told_sizes(found)))
+        return [*lines, words(f"Not told: {reason or 'all elements are one term'}.")]
+    lines.append(_named(told_sizes(found)))
     for each in sizes:
         shown, rest = some_terms(each)
         lines.append(rf"\paragraph{{$g_{{{','.join(str(i + 1) for i in each.index)}}}$}}")
@@ -176,7 +172,7 @@ def _sizes(found: Report, metric: Printed) -> list[str]:
             lines.append(
                 rf"\par\hangindent=2em {words(percent(t.share))}{small}: ${_inline(metric.terms.text(t.term))}$"
             )
-        lines += [rf"\par {prose_of(rest)}."] if rest else []
+        lines += [rf"\par {words(rest)}."] if rest else []
     return lines
 
 

@@ -15,9 +15,10 @@ from substructures.analysis.report.report import (
     some_terms,
     told_sizes,
 )
+from substructures.analysis.report.statements import MARK
 from substructures.analysis.report.words import DERIVATION, REFERENCE
 from substructures.printers.mathml import MathML, named
-from substructures.printers.names import latex_names
+from substructures.printers.names import latex_names, latex_of
 from substructures.printers.render import LIMIT
 
 MATH = "http://www.w3.org/1998/Math/MathML"
@@ -48,8 +49,7 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
     lines += ["<h2>Coordinates</h2>", *_coordinates(found), "<h2>Symbols</h2>", *_symbols(found)]
     lines.append("<h2>Derivation</h2>")
     for words, _, equation in DERIVATION:
-        said = "".join(_math(named(latex_names([x])[0])) if n % 2 else _e(x) for n, x in enumerate(words.split("$")))
-        lines += [f"<p>{said}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
+        lines += [f"<p>{_named(words)}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
     printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
         lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *(f"<p>{_e(x)}.</p>" for x in each.said)]
@@ -65,6 +65,11 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
 def _e(text: str) -> str:
     """Text that is no markup, without what XML cannot hold."""
     return escape("".join(c if c.isprintable() or c in "\n\t" else "\ufffd" for c in text))
+
+
+def _named(text: str) -> str:
+    """Words with names of quantities between marks."""
+    return "".join(_math(named(latex_of(x))) if n % 2 else _e(x) for n, x in enumerate(text.split(MARK)))
 
 
 def _math(inner: str) -> str:
@@ -114,7 +119,7 @@ def _name(latex: str, called: str) -> str:
 
 
 def _statements(found: Report, about: str) -> list[str]:
-    said = [f"<li>{_e(each.text)}</li>" for each in found.statements if each.about == about]
+    said = [f"<li>{_named(each.marked)}</li>" for each in found.statements if each.about == about]
     return [f"<h3>{_e(SECTIONS[about])}</h3><ul>", *said, "</ul>"] if said else []
 
 
@@ -123,7 +128,7 @@ def _sizes(found: Report, metric: Printed) -> list[str]:
     lines = ["<h2>Sizes of the terms of the mass matrix</h2>"]
     if not sizes or metric.terms is None:
         return [*lines, f"<p>Not told: {_e(reason or 'all elements are one term')}.</p>"]
-    lines.append(f"<p>{_e(told_sizes(found))}</p>")
+    lines.append(f"<p>{_named(told_sizes(found))}</p>")
     for each in sizes:
         shown, rest = some_terms(each)
         index = ",".join(str(i + 1) for i in each.index)

@@ -9,26 +9,25 @@ from typing import Any
 
 from substructures.analysis.report.sizes import SMALL, STATES, ElementSizes, element_sizes, missing_values, sampled
 from substructures.analysis.report.statements import (
+    MARK,
     Statement,
     christoffel_statements,
     force_statements,
     metric_statements,
     symmetry_statements,
 )
-from substructures.errors import TooLarge, listed
+from substructures.errors import listed
 from substructures.expr.hoist import hoisted
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.printers.language import Language, Listing
-from substructures.printers.listing import compact
 from substructures.printers.names import short_names
-from substructures.printers.render import LIMIT, name_steps, renamed
+from substructures.printers.render import LIMIT, readable, renamed
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.limits import joint_limits
 from substructures.quantities.states import default_numbers
-from substructures.textbook import AT_ONCE
 from substructures.tree.model import Model
 
 #: what is printed, and what it is called
@@ -93,12 +92,12 @@ class Heading:
 
 @dataclass(frozen=True)
 class Printed:
-    """A quantity in a language: ``terms`` of its textbook form, None where it is compact, for the ``reason``."""
+    """A quantity in a language: ``terms`` of its textbook form, if it has one; ``reason``: why it is compact."""
 
     language: Language
     listing: Listing
-    terms: TextbookTerms | None = None
-    reason: str = ""
+    terms: TextbookTerms | None
+    reason: str
 
     @property
     def said(self) -> tuple[str, ...]:
@@ -121,20 +120,13 @@ class Report:
     glossary: Program | None = field(default=None, repr=False)
 
     def printed(self, quantity: str, language: type[Language], limit: int = LIMIT) -> Printed:
-        """A quantity: the textbook form where it takes about a second at most, otherwise the compact one.
+        """A quantity: the textbook form where it takes about a second at most and its lines can be read, otherwise the
+        compact one.
 
         Raises TooLarge (size, limit).
         """
         program = self.shown[quantity]
-        spoken = language(program)
-        try:
-            terms = TextbookTerms(program, spoken, limit, AT_ONCE)
-        except (TooLarge, ZeroDivisionError) as error:
-            spoken = language(program)
-            name_steps(spoken, self.glossary)
-            reason = f"compact, since there is no textbook form: {error}"
-            return Printed(spoken, compact(program, spoken, limit), None, reason)
-        return Printed(spoken, terms.listing, terms)
+        return Printed(*readable(lambda: language(program), limit, self.glossary))
 
     def sizes(self, metric: Printed) -> tuple[list[ElementSizes], str]:
         """The terms of the elements of the metric by size, and why there are none."""
@@ -205,11 +197,12 @@ def report(
     }
     called = dict(zip(known, short_names(list(known.values())), strict=True))
     shown = {name: _renamed(hoisted(whole.select([name])), called) for name in quantities}
+    marked = {name: f"{MARK}{short}{MARK}" for name, short in called.items()}
     statements = [
-        *metric_statements(model, called),
-        *christoffel_statements(model, called),
-        *force_statements(model, called),
-        *symmetry_statements(model, called),
+        *metric_statements(model, marked),
+        *christoffel_statements(model, marked),
+        *force_statements(model, marked),
+        *symmetry_statements(model, marked),
     ]
     sources = tuple(Source(instance, d.name, d.title, d.source, d.license or "") for instance, d in definitions.items())
     return Report(
@@ -248,10 +241,9 @@ def _symbols(model: Model, known: Mapping[str, Symbol], called: Mapping[str, str
 
 
 def told_sizes(report: Report) -> str:
-    """What the shares of terms mean, as a sentence."""
-    ranges = "; ".join(
-        f"{report.called[name]} in [{low:.3g}, {high:.3g}]" for name, (low, high) in list(report.ranges.items())[:12]
-    )
+    """What the shares of terms mean, as a sentence, with names between marks."""
+    some = list(report.ranges.items())[:12]
+    ranges = "; ".join(f"{MARK}{report.called[name]}{MARK} in [{low:.3g}, {high:.3g}]" for name, (low, high) in some)
     return (
         f"The largest share that every term of an element has in the sum of the absolute values of its terms, over "
         f"{STATES} random states ({ranges}) at the default values of the parameters. Terms below {100 * SMALL:g} % "

@@ -1,11 +1,13 @@
 """What can be said of g_ab, Gamma_abc and Q_a in words: by which coordinates an element is changed, what repeats.
 
 Whether an element depends on a coordinate is read from its program, in which equal formulas are one operation and what
-cancels is gone (notation.md, section 8). Elements are told as g[1,2], counted from 1; ``entries`` count from 0.
+cancels is gone (notation.md, section 8). Elements are told as g[1,2], counted from 1, Christoffel
+symbols as Gamma[1,1,2]; ``entries`` count from 0.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -20,23 +22,32 @@ from substructures.tree.model import Model
 #: operations of a model up to which symmetries are looked for
 SEARCHED = 20_000
 Index = tuple[int, ...]
+#: around what is mathematics
+MARK = "$"
 #: what a name of the tree is called for people
 Names = Mapping[str, str]
 
 
 @dataclass(frozen=True)
 class Statement:
-    """``about``: metric, christoffel, forces or symmetries; ``code``: which statement it is; ``text``: in words."""
+    """``about``: metric, christoffel, forces or symmetries; ``code``: which statement it is; ``marked``: in words, with
+    names and elements between dollar signs.
+    """
 
     about: str
     code: str
-    text: str
+    marked: str
     entries: tuple[Index, ...] = field(default=())
     coordinates: tuple[str, ...] = ()
 
+    @property
+    def text(self) -> str:
+        """In words."""
+        return self.marked.replace(MARK, "")
+
     def plain(self) -> dict[str, Any]:
         """Plain data."""
-        return asdict(self)
+        return {"text" if key == "marked" else key: x for key, x in (asdict(self) | {"marked": self.text}).items()}
 
 
 class Dependence:
@@ -80,7 +91,8 @@ def metric_statements(model: Model, names: Names) -> Iterator[Statement]:
         yield Statement("metric", "zero", text, zero)
     for name in model.coordinates:
         where = tuple(index for index, some in depends.items() if name in some)
-        text = f"{names[name]} changes {_elements('g', where)}." if where else f"{names[name]} changes no element of g."
+        what = _elements("g", where) if where else f"no element of {MARK}g{MARK}"
+        text = f"{names[name]} changes {what}."
         yield Statement("metric", "coordinate", text, where, (name,))
     yield from _equal(output, "g", "metric")
     yield from _blocks(model, given, names)
@@ -122,7 +134,7 @@ def christoffel_statements(model: Model, names: Names) -> Iterator[Statement]:
     output = model.program.outputs["christoffel"]
     every = n * (n * n - 1) // 3
     index = tuple(output.index)
-    text = f"{len(index)} of {every} independent Christoffel symbols are not zero; {symmetry_rule('christoffel', 'G')}."
+    text = f"{len(index)} of {every} independent Christoffel symbols are not zero; {_rule()}."
     yield Statement("christoffel", "independent", text, index)
     acting: dict[int, set[Index]] = {a: set() for a in range(n)}
     for (a, b, c), _, _ in output.expanded():
@@ -136,7 +148,7 @@ def christoffel_statements(model: Model, names: Names) -> Iterator[Statement]:
     if silent and len(silent) < n:
         text = f"No centrifugal forces (of one rate squared) come from {listed(names[c] for c in silent)}."
         yield Statement("christoffel", "no-centrifugal-forces", text, coordinates=silent)
-    yield from _equal(output, "G", "christoffel")
+    yield from _equal(output, "Gamma", "christoffel")
 
 
 def force_statements(model: Model, names: Names) -> Iterator[Statement]:
@@ -208,7 +220,12 @@ def _in_short(reason: str, model: Model, names: Names) -> str:
 
 
 def _elements(letter: str, index: Iterable[Index]) -> str:
-    return listed((f"{letter}[{','.join(str(i + 1) for i in one)}]" for one in index), 16)
+    return listed((f"{MARK}{letter}[{','.join(str(i + 1) for i in one)}]{MARK}" for one in index), 16)
+
+
+def _rule() -> str:
+    """That of Christoffel symbols."""
+    return re.sub(r"Gamma\[[^\]]*\]", lambda m: MARK + m.group() + MARK, symmetry_rule("christoffel", "Gamma"))
 
 
 def _do(index: Sequence[Index]) -> str:

@@ -10,6 +10,7 @@ from substructures.analysis.report.report import (
     some_terms,
     told_sizes,
 )
+from substructures.analysis.report.statements import MARK
 from substructures.printers.render import LIMIT
 from substructures.printers.text import Text
 
@@ -26,7 +27,7 @@ def text_report(found: Report, limit: int = LIMIT) -> str:
     lines += [
         "",
         "Sizes of terms",
-        told_sizes(found) if sizes else f"Not told: {reason or 'all elements are one term'}.",
+        told_sizes(found).replace(MARK, "") if sizes else f"Not told: {reason or 'all elements are one term'}.",
     ]
     terms = printed["metric"].terms
     for each in sizes:
