@@ -90,7 +90,18 @@ def folded_difference(graph: Nodes[T], a: T, b: T, fp: int) -> T:
     found = graph.table.get(PRIME - fp)
     if found is not None and (not found.args or graph.serves(found, "sub", a, b)):
         return -found
-    return graph.node("sub", (a, b), fp)
+    left = _without_common_term(a, b)
+    return graph.node("sub", (a, b), fp) if left is None else left
+
+
+def _without_common_term(a: T, b: T) -> T | None:
+    """(x + y) - (x + z) = y - z."""
+    if a.op != "add" or b.op != "add":
+        return None
+    (x, y), (u, z) = a.args, b.args
+    if u is not x:
+        x, y, u, z = (y, x, u, z) if u is y else (x, y, z, u) if z is x else (y, x, z, u)
+    return y - z if u is x else None
 
 
 def folded_product(graph: Nodes[T], a: T, b: T, fp: int) -> T:

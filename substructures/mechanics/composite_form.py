@@ -95,11 +95,11 @@ def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict
     """Inertia of every carrier with all that hangs on it: about O_k in frame k, of the whole about the interface.
 
     One pass from the leaves to the base; ``bodies`` are given about the body frame origins, what is fixed to the
-    interface is left out. Joints that are parallel all the way to the base never need J_xx and J_yy alone, only their
-    sum, which their turns leave as it is (notation.md, section 8.4).
+    interface is left out. Where all axes on the way are parallel J_xx and J_yy are never needed alone, only their sum,
+    which turns about them leave as it is (:func:`about_one_direction`).
     """
     total = {INTERFACE: Inertia(), **dict(enumerate(bodies))}
-    parallel = parallel_to_root(joints)
+    parallel = about_one_direction(joints)
     for k in reversed(range(len(joints))):
         joint = joints[k]
         # own body, about O_k: z = tau e3 to the body frame origin
@@ -119,14 +119,15 @@ def with_moments_about_axes(
 
     ``body``: what is fixed in the carrier of a joint, about O_k in frame k.
     """
-    result, parallel = list(carried), parallel_to_root(chain)
+    result, parallel = list(carried), about_one_direction(chain)
     below: dict[int, list[int]] = {link.parent: [] for link, is_in in zip(chain, parallel, strict=True) if is_in}
     for c, link in enumerate(chain):
         if link.parent in below:
             below[link.parent].append(c)
     for k in sorted(below, reverse=True):
         total = body(k).about_third_axis
-        for c in reversed(below[k]):
+        # what slides is mostly constant and comes first, the last joint before others
+        for c in sorted(below[k], key=lambda c: (not chain[c].s, -c)):
             up = result[c].turned_back(chain[c].rotation)
             if parallel[c]:
                 up = replace(up, polar=result[c].about_third_axis)
@@ -135,12 +136,21 @@ def with_moments_about_axes(
     return result
 
 
-def parallel_to_root(joints: Sequence[OneDofJoint | Link]) -> list[bool]:
-    """For every joint but a root: whether it and its ancestors turn about one direction, down to the root's axis."""
-    group: list[bool] = []
-    for joint in joints:
-        group.append(joint.parent < 0 or (joint.rotation.keeps_third_axis and group[joint.parent]))
-    return [is_in and joint.parent >= 0 for is_in, joint in zip(group, joints, strict=True)]
+def about_one_direction(joints: Sequence[OneDofJoint | Link]) -> list[bool]:
+    """For every joint: whether its axis is parallel to all revolute ones before it, of which there is one at least.
+
+    Then what it carries enters moments of inertia about them by J_xx + J_yy alone. The axes of prismatic joints before
+    the first revolute one may have any direction: J of what they carry is needed nowhere.
+    """
+    turns, parallel = [False] * len(joints), [False] * len(joints)
+    is_in = list(parallel)
+    for k, joint in enumerate(joints):
+        p = joint.parent
+        before = p != INTERFACE and turns[p]
+        turns[k] = before or not joint.s
+        parallel[k] = before and is_in[p] and joint.rotation.keeps_line_of_third_axis
+        is_in[k] = parallel[k] or not before
+    return parallel
 
 
 @dataclass(frozen=True, slots=True)

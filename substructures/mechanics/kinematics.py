@@ -106,24 +106,38 @@ def constant_rotation(E: Matrix) -> Rotation:
 def joint_rotation(constant: Matrix, c: Scalar, s: Scalar) -> Rotation:
     """Ehat(phi) A with as few operations as possible, from A and (cos phi, sin phi).
 
-    Parallel axes (A turns by psi about the third axis) give one turn by phi + psi (notation.md, section 8.4);
-    a turn about the first axis stays a factor of its own; any other A is multiplied out.
+    Parallel axes (A turns by psi about the third axis, or after a half turn about the first, which reverses it) give
+    one turn by phi + psi (notation.md, section 8.4); a tilt about the first axis stays a factor of its own; any other
+    A is multiplied out.
     """
-    if _turns_about(constant, 2):
-        c1, s1 = constant[0][0], constant[0][1]
-        if exactly(c1, 1) and exactly(c, 1):
-            return Rotation(())
-        # cos(phi + psi), sin(phi + psi)
-        return Rotation((Planar(2, c * c1 - s * s1, s * c1 + c * s1),))
-    if _turns_about(constant, 0):
-        # Ehat(phi) Rx(theta)^T
-        return Rotation((Planar(0, constant[1][1], constant[1][2]), Planar(2, c, s)))
+    if exactly(constant[2][0], 0) and (exactly(constant[0][0], 1) or exactly(constant[2][1], 0)):
+        # A = Ehat(psi) Rx(theta)^T:   first column (cos psi, -sin psi, 0),   last row (0, -sin theta, cos theta)
+        c1, s1, tilt = constant[0][0], -constant[1][0], Planar(0, constant[2][2], -constant[2][1])
+        turn = Planar(2, c * c1 - s * s1, s * c1 + c * s1)
+        return Rotation(tuple(factor for factor in (tilt, turn) if not exactly(factor.c, 1)))
     # Ehat(phi) A
     return Rotation((Turn(multiply(Planar(2, c, s).matrix(), constant)),))
 
 
-def _turns_about(m: Matrix, axis: int) -> bool:
-    return all(exactly(m[axis][x], x == axis) and exactly(m[x][axis], x == axis) for x in range(3))
+def joined(outer: Link, inner: Link) -> Link:
+    """One link after the other: E = E_inner E_outer, Z = Z_outer + E_outer^T Z_inner; the outer one is constant."""
+    Z = add(outer.Z, outer.rotation.back(inner.Z))
+    return Link(outer.parent, inner.s, _after(outer.rotation, inner.rotation), Z, inner.tau)
+
+
+def _after(outer: Rotation, inner: Rotation) -> Rotation:
+    """E_inner E_outer, of which the outer one is constant, in the form with the fewest operations."""
+    if not outer.factors:
+        return inner
+    *constant, turn = inner.factors or (Planar(2, 1, 0),)
+    E = outer.matrix()
+    if isinstance(turn, Planar) and turn.axis == 2:
+        whole = joint_rotation(multiply(Rotation(tuple(constant)).matrix(), E), turn.c, turn.s)
+    else:
+        whole = constant_rotation(multiply(inner.matrix(), E))
+    # axes that change places cost nothing, planar turns less than others
+    renames = all(exactly(x, 0) or exactly(x, 1) or exactly(x, -1) for row in E for x in row)
+    return Rotation((Turn(E), *inner.factors)) if renames and inner.is_planar and not whole.is_planar else whole
 
 
 def path(chain: Sequence[OneDofJoint | Link], k: int) -> list[int]:
@@ -184,14 +198,6 @@ def base_functions(links: Sequence[Link]) -> dict[int, Columns]:
         # a < k from the parent, a = k: Omega_kk = (1 - s_k) e3, U_kk = 0
         result[k] = columns_beyond(links, result, link)
         result[k][k] = own_twist(link.s)
-    return result
-
-
-def transport(links: Sequence[Link], outside: Columns) -> dict[int, Columns]:
-    """Columns given at the interface, of coordinates that are not those of the links, carried to every O_k."""
-    result: dict[int, Columns] = {INTERFACE: outside}
-    for k, link in enumerate(links):
-        result[k] = {a: carried(twist, link) for a, twist in result[link.parent].items()}
     return result
 
 

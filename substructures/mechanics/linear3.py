@@ -217,6 +217,13 @@ class Turn:
         return self.e
 
 
+def _keeps_line_of_third_axis(factor: Planar | Turn) -> bool:
+    if isinstance(factor, Planar) and factor.axis == 2:
+        return True
+    x, y, z = factor.back(E3)
+    return exactly(x, 0) and exactly(y, 0) and (exactly(z, 1) or exactly(z, -1))
+
+
 @dataclass(frozen=True, slots=True)
 class Rotation:
     """A product of rotations, first factor applied first: v' = E_n ... E_1 v."""
@@ -224,9 +231,19 @@ class Rotation:
     factors: tuple[Planar | Turn, ...] = ()
 
     @property
+    def is_planar(self) -> bool:
+        """True when all factors turn about axes of the frame."""
+        return all(isinstance(factor, Planar) for factor in self.factors)
+
+    @property
     def keeps_third_axis(self) -> bool:
         """True when all factors are known to turn about the third axis."""
         return all(isinstance(factor, Planar) and factor.axis == 2 for factor in self.factors)
+
+    @property
+    def keeps_line_of_third_axis(self) -> bool:
+        """True when all factors are known to leave the third axis parallel to itself, in either direction."""
+        return all(_keeps_line_of_third_axis(factor) for factor in self.factors)
 
     def forward(self, v: Vector) -> Vector:
         """E v: components in the child frame of a vector given in the parent frame."""

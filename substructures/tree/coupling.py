@@ -8,7 +8,7 @@ and 6, and :mod:`.inertial`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from substructures.mechanics.composite_form import Inertia, joint_momentum, with_moments_about_axes
@@ -17,13 +17,14 @@ from substructures.mechanics.kinematics import (
     Columns,
     Link,
     Twist,
+    carried,
     carrier_link,
     constant_rotation,
     fixed_columns,
+    joined,
     path,
-    transport,
 )
-from substructures.mechanics.linear3 import Scalar, Vector, add, apply, dot, transpose
+from substructures.mechanics.linear3 import ZERO, Rotation, Scalar, Vector, add, apply, dot, transpose
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
 from substructures.part.frames import joined_turns
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
@@ -31,12 +32,19 @@ from substructures.part.pairs import wrench_forces
 from substructures.part.part import Part
 from substructures.tree.grouping import Admitted, Inertias, as_they_are, fixed_inertia, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, Plan, inertial_entries, planned
-from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
+from substructures.tree.mounted_part import (
+    WORLD,
+    EvaluatedPart,
+    MountedPart,
+    PlacedPart,
+    frame_placement,
+    links_of,
+)
 
 #: outputs of a stored program that coupling uses
 USED = (
     *("E.tilt", "E.turn", "E.full", "Z", "tau", "U", "Omega", "subtree.m", "subtree.s", "subtree.J"),
-    *("composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("applied", "potential"),
     *("frame.E", "frame.position", "load.at", "load.vector"),
 )
 OWN = (*OWN_INERTIA, "armature")
@@ -48,8 +56,13 @@ def asked(part: Part) -> tuple[tuple[str, ...], ...]:
     return (OWN, FRAMES, *((*USED, *names) for names in equations))
 
 
-#: what a part has to carry, by carrier, about its body frame origin (of the interface: about its own)
-Payload = dict[int, Inertia]
+@dataclass(frozen=True, slots=True)
+class Hanging:
+    """What hangs on an interface, in the frame and about the point to which a link leads; ``moves``: on a joint."""
+
+    link: Link
+    inertia: Inertia
+    moves: bool
 
 
 @dataclass(frozen=True)
@@ -95,8 +108,7 @@ def couple_parts(
     body = fixed_inertia(plan.outlined, inertias)
     by_angles = _by_angles(plan, body, gravity, christoffel) if chosen else ByAngles()
     evaluated, total = evaluate_parts(run, mounted, own, inertias, [(*USED, *names) for names in plan.stored])
-    if chosen:
-        evaluated = _about_axes(plan, body, evaluated)
+    evaluated = with_momenta(plan.chain, evaluated, body if chosen else None)
     total = total + ground
     placed: list[PlacedPart] = []
     for part in evaluated:
@@ -126,11 +138,19 @@ def _by_angles(plan: Plan, body: Callable[[int], Inertia], gravity: Vector, chri
     return ParallelAxes(plan.chain, body, joined_turns).by_angles(plan.by_angles, christoffel, before)
 
 
-def _about_axes(plan: Plan, body: Callable[[int], Inertia], evaluated: Sequence[EvaluatedPart]) -> list[EvaluatedPart]:
-    """With the moments about parallel axes in their short form, over the borders of parts."""
-    carried = [momentum.composite for part in evaluated for momentum in part.momenta]
-    carried = with_moments_about_axes(plan.chain, carried, body)
-    momenta = [joint_momentum(link.s, inertia) for link, inertia in zip(plan.chain, carried, strict=True)]
+def with_momenta(
+    chain: Sequence[Link], evaluated: Sequence[EvaluatedPart], body: Callable[[int], Inertia] | None
+) -> list[EvaluatedPart]:
+    """With what the joints do to the masses that they carry.
+
+    ``body``: what is fixed in the carrier of a joint of the tree, from which moments about parallel axes have their
+    short form, over the borders of parts; None: they stay as they are.
+    """
+    inertias = [inertia for part in evaluated for inertia in part.carried]
+    if body is not None:
+        # before J_xx + J_yy of any is added up: of equal formulas the graph keeps the first
+        inertias = with_moments_about_axes(chain, inertias, body)
+    momenta = [joint_momentum(link.s, inertia) for link, inertia in zip(chain, inertias, strict=True)]
     return [
         replace(part, momenta=tuple(momenta[part.mounted.first : part.mounted.first + part.mounted.part.dof]))
         for part in evaluated
@@ -149,74 +169,96 @@ def evaluate_parts(
     By part: ``own`` values, ``inertias`` of the carriers, ``names`` of the outputs that are wanted. What is mounted on
     a port acts on the body that carries it as additional inertia (notation.md, section 6, payload).
     """
-    payloads: list[Payload] = [{} for _ in mounted]
+    carried = [dict(some) for some in inertias]
+    hanging: list[list[Hanging]] = [[] for _ in mounted]
     evaluated: list[EvaluatedPart] = []
     total = Inertia()
     for i in reversed(range(len(mounted))):
-        m, payload = mounted[i], payloads[i]
-        part = _evaluated(run, m, payload, own[i], inertias[i], names[i])
-        evaluated.insert(0, part)
-        # (m, s, J) of the whole about the origin of I
-        whole = part.outputs.inertia("composite") + payload.get(INTERFACE, Inertia())
-        if m.host == WORLD:
-            total = total + whole.in_parent(constant_rotation(m.E), m.position)
-        else:
-            add_payload(run, mounted[m.host], payloads[m.host], m, whole)
+        m = mounted[i]
+        evaluated.insert(0, _evaluated(run, m, carried[i], own[i], inertias[i], names[i]))
+        seat = _seat(run, mounted, m)
+        for each in _gathered([*hanging[i], *_roots(evaluated[0])], seat):
+            way = joined(seat, each.link)
+            if m.host != WORLD and way.parent == INTERFACE:
+                hanging[m.host].append(replace(each, link=way))
+                continue
+            inertia = each.inertia.in_parent(way.rotation, way.Z)
+            if m.host == WORLD:
+                total = total + inertia
+            else:
+                carried[m.host][way.parent] = carried[m.host][way.parent] + inertia
     return evaluated, total
 
 
-def add_payload(run: Run, host: MountedPart, payload: Payload, m: MountedPart, whole: Inertia) -> None:
-    """Add the whole of a part to what the carrier of its frame in the host has to carry."""
-    frames = run(host.part, host.bindings, FRAMES)
-    E, position = frames.matrix("frame.E", m.frame), frames.vector("frame.position", m.frame)
-    carrier = host.part.frame_carriers[m.frame]
-    # from the interface to the frame of the host, from there to the body frame of its carrier
-    whole = whole.in_parent(constant_rotation(m.E), m.position).in_parent(constant_rotation(E), position)
-    payload[carrier] = payload.get(carrier, Inertia()) + whole
+def _seat(run: Run, mounted: Sequence[MountedPart], m: MountedPart) -> Link:
+    """From the body frame of the carrier in the host, or from the world, to the interface of a part."""
+    if m.host == WORLD:
+        return Link(INTERFACE, 0, constant_rotation(m.E), m.position)
+    host = mounted[m.host]
+    placement = frame_placement(run(host.part, host.bindings, FRAMES), m.frame, m.E, m.position)
+    return Link(host.part.frame_carriers[m.frame], 0, *placement)
+
+
+def _roots(part: EvaluatedPart) -> Iterator[Hanging]:
+    """What a part has on its interface: all that its first joints carry, last one first, and what is fixed there."""
+    for c in reversed(range(len(part.links))):
+        if part.links[c].parent == INTERFACE:
+            yield Hanging(part.links[c], part.carried[c], True)
+    if INTERFACE in part.inertias:
+        yield Hanging(Link(INTERFACE, 0, Rotation(), ZERO), part.inertias[INTERFACE], False)
+
+
+def _gathered(hanging: Sequence[Hanging], seat: Link) -> list[Hanging]:
+    """With one inertia at the interface for what is fixed there, and for joints, where there are several and the seat
+    turns nothing: it is shifted once.
+    """
+    several = not seat.rotation.factors and sum(each.moves for each in hanging) > 1
+    apart = [each for each in hanging if each.moves and not several]
+    total = Inertia()
+    for each in hanging:
+        if several or not each.moves:
+            total = total + each.inertia.in_parent(each.link.rotation, each.link.Z)
+    return [*apart, Hanging(Link(INTERFACE, 0, Rotation(), ZERO), total, several)]
 
 
 def _evaluated(
-    run: Run, m: MountedPart, payload: Payload, own: PartOutputs, inertias: Inertias, names: Sequence[str]
+    run: Run, m: MountedPart, carried: Inertias, own: PartOutputs, inertias: Inertias, names: Sequence[str]
 ) -> EvaluatedPart:
-    """The stored formulas with the inertia of every body + payload for its inertia symbols."""
-    loaded = {k: inertias[k] + payload.get(k, Inertia()) for k in m.part.inertia_symbols}
-    outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, loaded)}, names)
-    joints = m.part.topology.joints
+    """The stored formulas with what its carriers carry, own bodies and what is mounted, for its inertia symbols."""
+    outputs = run(m.part, {**m.bindings, **inertia_bindings(m.part, carried)}, names)
     links = links_of(m.part, outputs)
-    momenta = tuple(joint_momentum(j.s, outputs.inertia("subtree", c)) for c, j in enumerate(joints))
-    return EvaluatedPart(m, outputs, own, links, momenta, inertias)
+    subtrees = tuple(outputs.inertia("subtree", c) for c in range(len(links)))
+    return EvaluatedPart(m, outputs, own, links, subtrees, inertias)
 
 
 def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) -> PlacedPart:
-    """From the root: the host's columns and gravity carried to the interface and to every joint.
+    """From the root: the host's columns and gravity carried to every joint, and to the interface.
 
     ``placed``: the parts before this one, its host among them; ``gravity``: in world axes.
     """
     m = part.mounted
+    columns, gamma = dict[int, Columns](), dict[int, Vector]()
     if m.host == WORLD:
-        host, outside = None, Columns()
-        seat = Link(INTERFACE, 0, constant_rotation(m.E), m.position)
-        gamma = {INTERFACE: seat.rotation.forward(gravity)}
+        host, seat = None, Link(INTERFACE, 0, constant_rotation(m.E), m.position)
+        columns[INTERFACE], gamma[INTERFACE] = Columns(), seat.rotation.forward(gravity)
     else:
         host = placed[m.host]
-        # z = r + tau_host e3;   Omega_Ia = A Omega_ha;   U_Ia = A (U_ha + s_a [a = h] e3 + Omega_ha x z)
         seat = host.frame_link(m.frame, m.E, m.position)
-        outside = host.columns_beyond(seat)
-        gamma = {INTERFACE: seat.rotation.forward(host.gamma[seat.parent])}
-    # gamma_k = E_k gamma_p
+    here = PlacedPart(part, host, seat, columns, gamma)
     for c, link in enumerate(part.links):
-        gamma[c] = link.rotation.forward(gamma[link.parent])
-    return PlacedPart(part, host, seat, _columns(part, outside), gamma)
-
-
-def _columns(part: EvaluatedPart, outside: Columns) -> dict[int, Columns]:
-    """The host's columns carried to every joint, and the stored own ones, by index in the tree."""
-    columns = transport(part.links, outside)
-    for c in range(len(part.links)):
+        # of a first joint over the interfaces, from the carrier in the host: z = r + tau_host e3
+        before, way = here.from_carrier(link)
+        # gamma_k = E_k gamma_p;   Omega_ka = E Omega_ha;   U_ka = E (U_ha + s_a [a = h] e3 + Omega_ha x z)
+        gamma[c] = way.rotation.forward(before.gamma[way.parent])
+        if link.parent == INTERFACE:
+            columns[c] = before.columns_beyond(way)
+        else:
+            columns[c] = {a: carried(twist, link) for a, twist in columns[link.parent].items() if a < m.first}
         for a in path(part.links, c):
-            own = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
-            columns[c][part.mounted.first + a] = own
-    return columns
+            columns[c][m.first + a] = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
+    if host is not None:
+        columns[INTERFACE], gamma[INTERFACE] = host.columns_beyond(seat), seat.rotation.forward(host.gamma[seat.parent])
+    return here
 
 
 def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:

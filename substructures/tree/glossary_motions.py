@@ -13,6 +13,7 @@ from substructures.mechanics.kinematics import INTERFACE, Link, from_body
 from substructures.mechanics.linear3 import Matrix, Scalar, Vector, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench
 from substructures.mechanics.velocity_forces import motions_before, transmitted
+from substructures.tree.grouping import on_carriers
 from substructures.tree.inverse_dynamics import body_motions, inertial_loads, pass_back, subtract_applied
 from substructures.tree.mounted_part import PlacedPart
 from substructures.tree.velocity_forces import outermost
@@ -65,13 +66,14 @@ def inverse_terms(
     """Of Newton and Euler's recursion: omega, alpha, a, A of bodies, F and N that move them, f and n of joints."""
     found: Glossary = {}
     names = "alpha", "a", "A"
-    motions = body_motions(placed, rates, accelerations)
+    inertias = on_carriers(placed)
+    motions = body_motions(placed, rates, accelerations, inertias)
     for here, own in zip(placed, motions, strict=True):
         for c, link in enumerate(here.links):
             k = here.first + c
             before = own[link.parent].at_joint(link, from_body(here.links, link))
             found |= _motion(names, (k,), own[c]) | _motion(names, (chain[k].parent, k), before)
-    loads = inertial_loads(placed, motions)
+    loads = inertial_loads(inertias, motions)
     for k, wrench in _by_joint(placed, loads):
         found |= _wrench("F", "N", (k,), wrench)
     subtract_applied(placed, loads)

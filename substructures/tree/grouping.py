@@ -13,9 +13,9 @@ from collections.abc import Callable, Sequence
 from substructures.expr.graph import Expr
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, from_body
-from substructures.mechanics.linear3 import E3, ZERO, ZERO6, add, scale
+from substructures.mechanics.linear3 import E3, ZERO, ZERO6, add, exactly, scale
 from substructures.part.outputs import PartOutputs
-from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart, frame_placement
 
 #: inertia of the carriers of a part about their body frame origins, of the interface about its own
 Inertias = dict[int, Inertia]
@@ -108,6 +108,18 @@ def carried_by(outlined: Sequence[PlacedPart], i: int, carrier: int, inertia: In
         inertia = inertia.in_parent(constant_rotation(E), position)
         i, carrier = m.host, host.part.frame_carriers[m.frame]
     return i, carrier, inertia
+
+
+def on_carriers(placed: Sequence[PlacedPart]) -> list[Inertias]:
+    """The inertias of all parts, with what is fixed to interfaces counted with the carriers that move it."""
+    result = [dict(here.evaluated.inertias) for here in placed]
+    for here, inertias in zip(reversed(placed), reversed(result), strict=True):
+        fixed, m = inertias.pop(INTERFACE, Inertia()), here.mounted
+        if here.host is not None and not all(exactly(x, 0) for x in (fixed.m, *fixed.s, *fixed.J)):
+            fixed = fixed.in_parent(*frame_placement(here.host.outputs, m.frame, m.E, m.position))
+            host = result[m.host]
+            host[here.seat.parent] = host.get(here.seat.parent, Inertia()) + fixed
+    return result
 
 
 def _unmoved(link: Link, own: Inertia) -> tuple[Inertia, Inertia]:

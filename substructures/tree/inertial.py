@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.expr.graph import Graph
-from substructures.mechanics.composite_form import parallel_to_root
+from substructures.mechanics.composite_form import about_one_direction
 from substructures.mechanics.evaluation_frames import Entries, Frames, InertialEntries
 from substructures.mechanics.frame_choice import evaluation_frames
-from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, joint_rotation
-from substructures.mechanics.linear3 import ZERO, Planar, Rotation, add, multiply
+from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation
+from substructures.mechanics.linear3 import ZERO, Rotation
 from substructures.mechanics.parallel_axes import ByAngles, absolute
 from substructures.part.outputs import Run, over_formulas
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
@@ -61,22 +61,28 @@ def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen:
     outlined = _outlined(run, mounted)
     chain = _tree_links(outlined)
     frames, by_angles = evaluation_frames(chain, christoffel), absolute(chain)
-    # joints beside whose axes others turn in parts mounted there: moments about them are summed over the border
-    parallel, firsts = parallel_to_root(chain), [m.first for m in mounted for _ in _joints(m)]
-    borders = {link.parent for c, link in enumerate(chain) if parallel[c] and link.parent < firsts[c]}
-    is_same = [_is_as_stored(m, frames, by_angles | borders) for m in mounted]
+    sums = _moments_summed(chain)
+    is_same = [_is_as_stored(m, frames, by_angles, sums) for m in mounted]
     stored = [some if same else () for some, same in zip(kinds, is_same, strict=True)]
     return Plan(chain, frames, stored, outlined, by_angles)
 
 
-def _is_as_stored(m: MountedPart, frames: Frames, axes: frozenset[int]) -> bool:
-    """Whether the tree wants the entries of a part as they are stored: in the same frames, and none of joints ``axes``,
-    nor by absolute angles, which the tree has from the links and what is fixed in the carriers.
+def _moments_summed(chain: Sequence[Link]) -> set[tuple[int, int]]:
+    """Joints p, c: the moment of inertia about the axis of p is a sum of moments about axes, that of c among them."""
+    axes = {link.parent for link, parallel in zip(chain, about_one_direction(chain), strict=True) if parallel}
+    return {(link.parent, c) for c, link in enumerate(chain) if link.parent in axes}
+
+
+def _is_as_stored(m: MountedPart, frames: Frames, by_angles: frozenset[int], sums: set[tuple[int, int]]) -> bool:
+    """Whether the tree wants the entries of a part as they are stored: in the same frames, from the same ``sums`` of
+    moments, and not by absolute angles, which the tree has from the links and what is fixed in the carriers.
     """
     links = links_of(m.part, over_formulas(Graph())(m.part, {}, LINKS))
-    if absolute(links) or axes.intersection(_joints(m)):
+    if absolute(links) or by_angles.intersection(_joints(m)):
         return False
-    stored = evaluation_frames(links, m.part.has_christoffel)
+    stored, own = evaluation_frames(links, m.part.has_christoffel), _moments_summed(links)
+    if {(m.first + p, m.first + c) for p, c in own} != {pair for pair in sums if pair[0] in _joints(m)}:
+        return False
     return [m.first + e for e in stored] == [frames[c] for c in _joints(m)]
 
 
@@ -116,7 +122,7 @@ def _outlined(run: Run, mounted: Sequence[MountedPart]) -> list[PlacedPart]:
         seat = Link(INTERFACE, 0, constant_rotation(m.E), m.position)
         if host is not None:
             seat = host.frame_link(m.frame, m.E, m.position)
-        result.append(PlacedPart(EvaluatedPart(m, outputs, outputs, links_of(m.part, outputs), ()), host, seat, {}, {}))
+        result.append(PlacedPart(EvaluatedPart(m, outputs, outputs, links_of(m.part, outputs)), host, seat, {}, {}))
     return result
 
 
@@ -125,25 +131,7 @@ def _tree_links(placed: Sequence[PlacedPart]) -> list[Link]:
     result: list[Link] = []
     for here in placed:
         for link in here.links:
-            part, whole = here, link
-            while whole.parent == INTERFACE and part.host is not None:
-                part, whole = part.host, joined(part.seat, whole)
+            part, whole = here.from_carrier(link)
             index = INTERFACE if whole.parent == INTERFACE else part.first + whole.parent
             result.append(Link(index, whole.s, whole.rotation, whole.Z, whole.tau))
     return result
-
-
-def joined(outer: Link, inner: Link) -> Link:
-    """One link after the other: E = E_inner E_outer, Z = Z_outer + E_outer^T Z_inner; the outer one is constant."""
-    Z = add(outer.Z, outer.rotation.back(inner.Z))
-    return Link(outer.parent, inner.s, _after(outer.rotation, inner.rotation), Z, inner.tau)
-
-
-def _after(outer: Rotation, inner: Rotation) -> Rotation:
-    """E_inner E_outer, of which the outer one is constant, in the form in which a joint has it (as few operations)."""
-    if not outer.factors:
-        return inner
-    *constant, turn = inner.factors or (Planar(2, 1, 0),)
-    if isinstance(turn, Planar) and turn.axis == 2:
-        return joint_rotation(multiply(Rotation(tuple(constant)).matrix(), outer.matrix()), turn.c, turn.s)
-    return constant_rotation(multiply(inner.matrix(), outer.matrix()))

@@ -6,12 +6,13 @@ without the metric (Luh, Walker, Paul 1980). Motions and loads are kept by carri
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, from_body
 from substructures.mechanics.linear3 import Scalar, exactly, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
+from substructures.tree.grouping import Inertias, on_carriers
 from substructures.tree.mounted_part import WORLD, PlacedPart
 
 Motions = dict[int, BodyMotion]
@@ -23,7 +24,9 @@ def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar], falling: 
 
     ``falling``: less the gravity forces, in a world that is accelerated against gravity.
     """
-    loads = inertial_loads(placed, body_motions(placed, rates, [0] * len(rates) if falling else None))
+    inertias = on_carriers(placed)
+    motions = body_motions(placed, rates, [0] * len(rates) if falling else None, inertias)
+    loads = inertial_loads(inertias, motions)
     return pass_back(placed, loads, len(rates))
 
 
@@ -35,7 +38,8 @@ def inverse_dynamics(
     Gravity is a world accelerated upwards; forces and torques act on their bodies, what the joints do by themselves
     (armature, springs, dampers, actuators) on their coordinates.
     """
-    loads = inertial_loads(placed, body_motions(placed, rates, accelerations))
+    inertias = on_carriers(placed)
+    loads = inertial_loads(inertias, body_motions(placed, rates, accelerations, inertias))
     subtract_applied(placed, loads)
     result = pass_back(placed, loads, len(rates))
     for here in placed:
@@ -48,21 +52,25 @@ def inverse_dynamics(
 
 
 def body_motions(
-    placed: Sequence[PlacedPart], rates: Sequence[Scalar], accelerations: Sequence[Scalar] | None = None
+    placed: Sequence[PlacedPart],
+    rates: Sequence[Scalar],
+    accelerations: Sequence[Scalar] | None = None,
+    inertias: Sequence[Mapping[int, Inertia]] = (),
 ) -> list[Motions]:
     """For every part the motions of its body frames and of its interface, by carrier.
 
-    With ``accelerations`` the world is accelerated against gravity; without, q'' = 0 in a world at rest.
+    With ``accelerations`` the world is accelerated against gravity; without, q'' = 0 in a world at rest. ``inertias``:
+    of the carriers, by part, unless they are those of the parts.
     """
     motions: list[Motions] = []
-    for here in placed:
+    for here, moving in zip(placed, inertias or [here.evaluated.inertias for here in placed], strict=True):
         own = {INTERFACE: _interface_motion(here, motions, accelerations is not None)}
         for c, link in enumerate(here.links):
             a = here.first + c
             # from the body frame of the parent to O_c, then by the joint's own motion to the body frame of c
             second = 0 if accelerations is None else accelerations[a]
             before = own[link.parent].at_joint(link, from_body(here.links, link))
-            J = here.evaluated.inertias.get(c, Inertia()).J
+            J = moving.get(c, Inertia()).J
             own[c] = before.moved(link.s, rates[a], link.tau, second, not exactly(J[4], 0))
         motions.append(own)
     return motions
@@ -84,14 +92,11 @@ def subtract_applied(placed: Sequence[PlacedPart], loads: Sequence[WrenchesByCar
             own[carrier] += Wrench(negate(wrench.f), negate(wrench.n))
 
 
-def inertial_loads(placed: Sequence[PlacedPart], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
-    """What moves every body, and what is fixed to an interface, like that."""
+def inertial_loads(inertias: Sequence[Inertias], motions: Sequence[Motions]) -> list[WrenchesByCarrier]:
+    """What moves all carriers like that, and nothing interfaces."""
     return [
-        {
-            c: inertial_load(own[c], here.evaluated.inertias.get(c, Inertia()))
-            for c in (*range(len(here.links)), INTERFACE)
-        }
-        for here, own in zip(placed, motions, strict=True)
+        {c: inertial_load(own[c], moving.get(c, Inertia())) for c in own if c != INTERFACE} | {INTERFACE: Wrench()}
+        for moving, own in zip(inertias, motions, strict=True)
     ]
 
 

@@ -31,7 +31,7 @@ def placed_parts(run: Run, mounted: Sequence[MountedPart]) -> list[PlacedPart]:
     placed: list[PlacedPart] = []
     for m in mounted:
         outputs = run(m.part, m.bindings, PLACED)
-        placed.append(place(EvaluatedPart(m, outputs, outputs, links_of(m.part, outputs), ()), placed, (0, 0, 0)))
+        placed.append(place(EvaluatedPart(m, outputs, outputs, links_of(m.part, outputs)), placed, (0, 0, 0)))
     return placed
 
 

@@ -18,8 +18,20 @@ from substructures.mechanics.kinematics import (
     columns_beyond,
     constant_rotation,
     fixed_link,
+    joined,
 )
-from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Scalar, Vector, add, apply, multiply, transpose
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Rotation,
+    Scalar,
+    Vector,
+    add,
+    apply,
+    multiply,
+    transpose,
+)
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.outputs import PartOutputs
 from substructures.part.part import Part
@@ -53,19 +65,30 @@ def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
     )
 
 
+def frame_placement(
+    outputs: PartOutputs, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO
+) -> tuple[Rotation, Vector]:
+    """Of what is placed in a frame of a part: rotation from the body frame of the carrier, and origin there."""
+    # E E_f and r_f + E_f^T r
+    E_f, r_f = outputs.matrix("frame.E", frame), outputs.vector("frame.position", frame)
+    return constant_rotation(multiply(E, E_f)), add(r_f, apply(transpose(E_f), position))
+
+
 @dataclass(frozen=True)
 class EvaluatedPart:
     """The stored formulas of a part: ``outputs`` with what is mounted on its bodies, ``own`` values without it.
 
-    ``inertias``: what its carriers and its interface have of their own, as :mod:`.grouping` counts it.
+    ``carried``: everything that its joints carry, about O_c in frame c, and ``momenta`` of it; ``inertias``: what its
+    carriers and its interface have of their own, as :mod:`.grouping` counts it.
     """
 
     mounted: MountedPart
     outputs: PartOutputs
     own: PartOutputs
     links: tuple[Link, ...]
-    momenta: tuple[JointMomentum, ...]
+    carried: tuple[Inertia, ...] = ()
     inertias: Mapping[int, Inertia] = field(default_factory=dict)
+    momenta: tuple[JointMomentum, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -126,12 +149,20 @@ class PlacedPart:
             pose = part._poses[k] = pose.beyond(link)
         return pose
 
+    def from_carrier(self, link: Link) -> tuple[PlacedPart, Link]:
+        """A link of this part over interfaces: the part of the carrier from which it leads, and the way from there.
+
+        What is fixed to the world leads from the interface of the part that is mounted there.
+        """
+        part = self
+        while link.parent == INTERFACE and part.host is not None:
+            part, link = part.host, joined(part.seat, link)
+        return part, link
+
     def frame_link(self, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO) -> Link:
         """A frame (body or port), and a constant placement in it, as a link from O of its carrier."""
-        # E E_f and r_f + E_f^T r in the body frame of the carrier
-        E_f, r_f = self.outputs.matrix("frame.E", frame), self.outputs.vector("frame.position", frame)
-        r = add(r_f, apply(transpose(E_f), position))
-        return fixed_link(self.links, self.part.frame_carriers[frame], constant_rotation(multiply(E, E_f)), r)
+        placed = frame_placement(self.outputs, frame, E, position)
+        return fixed_link(self.links, self.part.frame_carriers[frame], *placed)
 
     def columns_beyond(self, link: Link) -> Columns:
         """Columns at the end of a link from one of its carriers, by index in the tree, in the axes there."""

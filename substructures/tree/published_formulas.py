@@ -11,25 +11,23 @@ from collections.abc import Callable, Mapping, Sequence
 from substructures.documents.fields import in_si
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas
-from substructures.mechanics.composite_form import Inertia, joint_momentum
-from substructures.mechanics.kinematics import INTERFACE, Columns, Link, constant_rotation
+from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.kinematics import INTERFACE, Columns, Link, constant_rotation, joined
 from substructures.mechanics.linear3 import ZERO
 from substructures.part.formulas import Coupled, parallel_axes
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.mechanism import Mechanism
-from substructures.part.outputs import OWN_INERTIA, Run, inertia_bindings, over_formulas
+from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, derive
-from substructures.tree.coupling import OWN, add_payload, place
+from substructures.tree.coupling import OWN, evaluate_parts, place, with_momenta
 from substructures.tree.document import Instance
-from substructures.tree.inertial import FRAMES, LINKS, Plan, inertial_entries, joined, planned
-from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
+from substructures.tree.inertial import FRAMES, LINKS, Plan, inertial_entries, planned
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
 from substructures.tree.published import Published
 from substructures.tree.published_names import PartNames
 from substructures.tree.renaming import number_text
 
-SUBTREE = ("subtree.m", "subtree.s", "subtree.J")
-WHOLE = ("composite.m", "composite.s", "composite.J")
-USED = (*LINKS, *FRAMES, "U", "Omega", *SUBTREE, *WHOLE)
+USED = (*LINKS, *FRAMES, "U", "Omega", "subtree.m", "subtree.s", "subtree.J")
 
 
 def published_part(
@@ -50,8 +48,13 @@ def _coupled(found: Published, parts: Mapping[str, Part], m: Mechanism, large: b
     mounted = _mounted(found, parts, m)
     plan = planned(run, mounted, not large, True)
     symbols = inertia_symbols(m)
-    by_angles = parallel_axes(plan.chain, symbols).by_angles(plan.by_angles, not large)
-    evaluated, total = _evaluated(run, mounted, symbols, plan)
+    axes = parallel_axes(plan.chain, symbols)
+    by_angles = axes.by_angles(plan.by_angles, not large)
+    own = [run(here.part, here.bindings, OWN) for here in mounted]
+    # what is fixed to a body, interfaces with it, is counted in its symbols
+    inertias = [{k: symbols[here.first + k] for k in here.part.inertia_symbols} for here in mounted]
+    evaluated, total = evaluate_parts(run, mounted, own, inertias, [(*USED, *names) for names in plan.stored])
+    evaluated = with_momenta(plan.chain, evaluated, axes.body)
     placed: list[PlacedPart] = []
     for part in evaluated:
         placed.append(place(part, placed, ZERO))
@@ -124,36 +127,3 @@ def _bindings(names: PartNames, m: Mechanism, instance: str, part: Part) -> dict
 def _number(given: object) -> object:
     """A number of a document in SI, or an expression."""
     return number_text(given) if isinstance(given, Mapping) else in_si(given)
-
-
-def _evaluated(
-    run: Run, mounted: Sequence[MountedPart], symbols: Sequence[Inertia], plan: Plan
-) -> tuple[list[EvaluatedPart], Inertia]:
-    """From the leaves: every program with what is carried by its bodies; the inertia of all that joints carry, about
-    the interface. What is fixed to a body is counted in its symbols.
-    """
-    payloads: list[dict[int, Inertia]] = [{} for _ in mounted]
-    evaluated: list[EvaluatedPart] = []
-    total = Inertia()
-    for i in reversed(range(len(mounted))):
-        here, payload = mounted[i], payloads[i]
-        loaded = {k: symbols[here.first + k] + payload.get(k, Inertia()) for k in here.part.inertia_symbols}
-        bindings = {**here.bindings, **inertia_bindings(here.part, loaded)}
-        outputs, own = run(here.part, bindings, (*USED, *plan.stored[i])), run(here.part, here.bindings, OWN)
-        links = links_of(here.part, outputs)
-        joints = here.part.topology.joints
-        momenta = tuple(joint_momentum(j.s, outputs.inertia("subtree", c)) for c, j in enumerate(joints))
-        evaluated.insert(0, EvaluatedPart(here, outputs, own, links, momenta))
-        if any(own.entries(name) for name in OWN_INERTIA if name.startswith("base.")):
-            moving = Inertia()
-            for c, link in enumerate(links):
-                if link.parent == INTERFACE:
-                    moving = moving + momenta[c].composite.in_parent(link.rotation, link.Z)
-        else:
-            moving = outputs.inertia("composite")
-        whole = moving + payload.get(INTERFACE, Inertia())
-        if here.host == WORLD:
-            total = total + whole.in_parent(constant_rotation(here.E), here.position)
-        else:
-            add_payload(run, mounted[here.host], payloads[here.host], here, whole)
-    return evaluated, total

@@ -53,6 +53,14 @@ def test_formulas_are_tried_and_given_up() -> None:
     assert len(start.nodes) == before
 
 
+def test_terms_that_both_sides_of_a_difference_have_are_left_out() -> None:
+    g = Graph()
+    x, y, z, u = (g.symbol(n) for n in "xyzu")
+    for a in (x + y, y + x):
+        assert (a - (x + z)).args == (a - (z + x)).args == (y, z)
+    assert ((x + y) - (z + u)).args == (x + y, z + u)
+
+
 def test_multiples_of_pi_are_exact() -> None:
     g = Graph()
     q = g.symbol("q")

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import copy
-import json
-import re
-from collections.abc import Iterator
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from random_cuts import all_cuts, owners
+from catalogue_cuts import bare
 from random_trees import Kind, Plain, random_definition
 from serial_chains import IIWA, RX90, SIX, SIX14, revolute
 
-from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
+from substructures import Definition, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, program
 from substructures.mechanics.composite_form import composites, joint_momentum
@@ -25,7 +20,6 @@ from substructures.mechanics.kinematics import Link, base_functions, links, path
 from substructures.mechanics.linear3 import Planar, Rotation, Turn
 from substructures.part import formulas
 from substructures.part.mechanism import Mechanism, mechanism
-from substructures.part.one_piece import derive_in_one_piece
 
 MANY = Kind(7, joints=("revolute", "prismatic", "universal", "fixed"), depth=8)
 EQUATIONS = ("metric", "christoffel")
@@ -99,83 +93,9 @@ def test_operations_per_state(rows: list[Plain], metric: int, both: int) -> None
     assert program.count(EQUATIONS, per_state=True)["total"] <= both
 
 
-# --- coupled trees need no more than the same mechanism in one piece
-
-
-@cache
-def stored(text: str) -> Part:
-    return derive(Definition.read(json.loads(text)))
-
-
-def in_pieces(definition: Plain, cut: tuple[str, ...]) -> Model:
-    """The mechanism with the bodies of a cut as roots of parts, each mounted on the body that carried it."""
-    owner = owners(definition, cut)
-    host = {owner[b["name"]]: f"{owner[b['parent']]}.{b['parent']}" for b in definition["bodies"] if b["name"] in cut}
-    instances, parts = [], {}
-    for name in dict.fromkeys(owner.values()):
-        bodies = [copy.deepcopy(b) for b in definition["bodies"] if owner[b["name"]] == name]
-        for body in bodies:
-            body["parent"] = "base" if body["name"] in cut else body["parent"]
-        used = set(re.findall(r"[A-Za-z_]\w*", json.dumps(bodies, default=str))) & definition["parameters"].keys()
-        text = {"name": name.replace("_", "-").lower(), "bodies": bodies}
-        text["parameters"] = {p: definition["parameters"][p] for p in sorted(used)}
-        parts[name] = stored(json.dumps(text, default=str))
-        instance = {"name": name, "substructure": parts[name].name, "at": host.get(name, "world")}
-        instances.append(instance | {"parameters": {p: p for p in used}})
-    tree = {"name": "tree", "parameters": definition["parameters"], "instances": instances}
-    return couple(TreeSpec.read(tree), parts)
-
-
-def bare(name: str) -> Plain:
-    """An entry of the catalogue without what acts on it."""
-    definition = catalogue.load(name) | {"loads": [], "inputs": {}, "ports": []}
-    definition.setdefault("parameters", {})
-    for body in definition["bodies"]:
-        for law in ("stiffness", "damping", "rest", "limits", "limits_act"):
-            body["joint"].pop(law, None)
-    return definition
-
-
-def counted(program: Program) -> Iterator[int]:
-    for names in (["metric"], ["christoffel"], EQUATIONS):
-        yield program.count(names)["total"]
-
-
-def assert_no_cut_costs_more(name: str, cuts: int) -> None:
-    definition = bare(name)
-    whole = list(counted(derive_in_one_piece(Definition.read(definition))))
-    some = list(all_cuts(definition))
-    rng = np.random.default_rng(4)
-    chosen = [some[0], some[-1], *(some[i] for i in rng.integers(0, len(some), cuts))]
-    for cut in some if len(some) <= cuts else chosen:
-        found = list(counted(in_pieces(definition, cut).program))
-        assert all(x <= y for x, y in zip(found, whole, strict=True)), (cut, found, whole)
-
-
-@pytest.mark.parametrize("name", ["puma560", "ur5", "furuta-pendulum", "gantry", "cart-pendulum"])
-def test_no_cut_costs_more_than_one_piece(name: str) -> None:
-    assert_no_cut_costs_more(name, 4)
-
-
-#: composites of parts are summed over their interfaces, which takes up to 20 operations more
-DEARER = pytest.mark.xfail(strict=True, reason="some cuts of it cost 1 to 9 % more than one piece")
-
-
-@pytest.mark.deep
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("puma560", "ur5", "pan-tilt"),
-        *(pytest.param(name, marks=DEARER) for name in ("kuka-iiwa-14", "humanoid-leg", "quadruped-leg")),
-    ],
-)
-def test_none_of_many_cuts_costs_more_than_one_piece(name: str) -> None:
-    assert_no_cut_costs_more(name, 60)
-
-
 def test_parts_that_are_stored_in_the_frames_of_their_joints_are_coupled(monkeypatch: pytest.MonkeyPatch) -> None:
     """As those of older versions are: more operations, the same functions."""
-    new = stored(json.dumps(bare("puma560"), default=str))
+    new = derive(Definition.read(bare("puma560")))
     with monkeypatch.context() as patch:
         patch.setattr(formulas, "evaluation_frames", lambda chain, _: range(len(chain)))
         old = derive(Definition.read(bare("puma560")))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,16 @@ from benchmarks.operations import chain as on_the_ground
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
-from substructures.mechanics.composite_form import Inertia, composites, joint_momentum
+from substructures.mechanics.composite_form import (
+    Inertia,
+    about_one_direction,
+    composites,
+    joint_momentum,
+    with_moments_about_axes,
+)
 from substructures.mechanics.evaluation_frames import InertialEntries
 from substructures.mechanics.kinematics import INTERFACE, Link, OneDofJoint, base_functions, links, path
-from substructures.mechanics.linear3 import Planar, Rotation
+from substructures.mechanics.linear3 import Planar, Rotation, Turn
 from substructures.mechanics.parallel_axes import MOST, ParallelAxes, absolute
 from substructures.part.mechanism import mechanism
 from substructures.part.one_piece import derive_in_one_piece
@@ -51,6 +58,48 @@ def random_tree(rng: np.random.Generator, n: int, tilted: bool) -> tuple[list[On
 def axes_of(joints: list[OneDofJoint], bodies: list[Inertia]) -> ParallelAxes:
     chain = links(joints)
     return ParallelAxes(chain, lambda k: bodies[k].shifted((0, 0, chain[k].tau)))
+
+
+def turned_over(rng: np.random.Generator, joints: list[OneDofJoint]) -> list[OneDofJoint]:
+    """The same with some axes in the opposite direction, and one that slides anywhere before the first ones."""
+    slide = OneDofJoint(INTERFACE, 1, Rotation((Planar(0, 0.6, 0.8),)), (0, 0, 0), 0.3)
+    half = Planar(0, -1, 0)
+    return [slide] + [
+        replace(
+            joint,
+            parent=joint.parent + 1,
+            rotation=Rotation((half, *joint.rotation.factors)) if rng.random() < 0.5 else joint.rotation,
+        )
+        for joint in joints
+    ]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_moments_about_axes_by_their_sums(seed: int) -> None:
+    """J_xx + J_yy from the axis beyond, in whatever direction, is the sum of the two."""
+    rng = np.random.default_rng(seed)
+    joints, bodies = random_tree(rng, 7, tilted=seed % 2 == 1)
+    joints, bodies = turned_over(rng, joints), [bodies[0], *bodies]
+    chain, carried, parallel = links(joints), composites(joints, bodies), about_one_direction(joints)
+    assert not any(parallel[k] for k, joint in enumerate(joints) if joint.parent <= 0 and joints[joint.parent].s)
+    apart = [replace(carried[k], polar=None) for k in range(len(joints))]
+    again = with_moments_about_axes(chain, apart, lambda k: bodies[k].shifted((0, 0, chain[k].tau)))
+    assert any(parallel) or seed % 2
+    for k in range(len(joints)):
+        x, y = carried[k].J[:2]
+        assert carried[k].about_third_axis == pytest.approx(x + y, rel=1e-12)
+        assert again[k].about_third_axis == pytest.approx(x + y, rel=1e-12)
+        summed = any(parallel[c] for c, joint in enumerate(joints) if joint.parent == k)
+        assert (again[k].polar is not None) == (carried[k].polar is not None) == summed
+
+
+@pytest.mark.parametrize(
+    ("tilt", "keeps"),
+    [(Planar(0, -1, 0), True), (Planar(0, 0, 1), False), (Turn(((0, 1, 0), (1, 0, 0), (0, 0, -1))), True)],
+)
+def test_axes_in_opposite_directions_are_parallel(tilt: Planar | Turn, keeps: bool) -> None:
+    assert Rotation((tilt, turn(0.3))).keeps_line_of_third_axis == keeps
+    assert Rotation((turn(0.3),)).keeps_line_of_third_axis
 
 
 @pytest.mark.parametrize("seed", range(12))

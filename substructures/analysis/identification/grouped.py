@@ -157,10 +157,7 @@ def _opened(m: MountedPart, instance: str, values: _Values) -> MountedPart:
             constant_rotation(own.matrix("frame.E", frame)), own.vector("frame.position", frame)
         )
         _put(carried, "inertia", (k,), inertia)
-    whole, base = own.inertia("composite"), own.inertia("base")
-    composite = {f"composite.{x}": dict[tuple[int, ...], Scalar]() for x in "msJ"}
-    _put(composite, "composite", (), _less(whole, base))
-    changed = {name: Formulas(formulas[name].shape, some) for name, some in (carried | composite).items()}
+    changed = {name: Formulas(formulas[name].shape, some) for name, some in carried.items()}
     return replace(m, part=replace(part, program=program(graph, {**formulas, **changed}, symbols)), bindings=bindings)
 
 
@@ -169,13 +166,6 @@ def _put(outputs: Mapping[str, dict[tuple[int, ...], Scalar]], name: str, lead: 
     outputs[f"{name}.m"][lead] = x.m
     outputs[f"{name}.s"] |= {(*lead, i): x.s[i] for i in range(3)}
     outputs[f"{name}.J"] |= {(*lead, i, j): x.J[SYMMETRIC_INDEX[i][j]] for i in range(3) for j in range(3)}
-
-
-def _less(a: Inertia, b: Inertia) -> Inertia:
-    """What is left of an inertia without another one about the same point."""
-    s = (a.s[0] - b.s[0], a.s[1] - b.s[1], a.s[2] - b.s[2])
-    xx, yy, zz, xy, xz, yz = (x - y for x, y in zip(a.J, b.J, strict=True))
-    return Inertia(a.m - b.m, s, (xx, yy, zz, xy, xz, yz))
 
 
 def _coupled(assembly: Assembly, spec: TreeSpec, names: Sequence[str]) -> Program:
