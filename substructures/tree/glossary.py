@@ -69,7 +69,8 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, mod
     found |= inverse_terms(placed, chain, rates, accelerations)
     if model is not None:
         found |= _stored(assembly.scope.graph, model, rates)
-    return _written(assembly.scope.graph, found, assembly.scope.symbols)
+    of_loads = {} if model is None else {symbol.name: symbol for symbol in model.symbols}
+    return _written(assembly.scope.graph, found, {**of_loads, **assembly.scope.symbols})
 
 
 def part_glossary(part: Part) -> Program:
