@@ -32,6 +32,14 @@ LETTERS = {
     "ricci": "R",
     "scalar_curvature": "R",
     "energy": "E",
+    "kinetic_energy": "T",
+    "potential_energy": "V",
+    "lagrangian": "L",
+    "hamiltonian": "H",
+    "routhian": "R",
+    "power": "P",
+    "inverse_dynamics": r"\tau",
+    "nonlinear_effects": "h",
 }
 #: how many of the first indices stand above
 RAISED = {"inverse_metric": 2, "christoffel_second": 1}
