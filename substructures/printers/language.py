@@ -158,6 +158,10 @@ class Language(ABC):
         """What cos or sin of a sum of numbered angles is called."""
         return Piece(op[0] + digits)
 
+    def is_too_wide(self, above: Piece, below: Piece) -> bool:  # noqa: ARG002 - here a line has room for all
+        """Whether a fraction has no room for both."""
+        return False
+
     def finished(self, text: str) -> str:
         """A whole formula, as it stands alone."""
         return text

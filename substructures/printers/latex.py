@@ -119,6 +119,10 @@ class Latex(Language):
         sign = r" \cdot " if right[0].isdigit() or right.startswith(r"\frac") else r" \, "
         return Piece(left + sign + right, PRODUCT)
 
+    def is_too_wide(self, above: Piece, below: Piece) -> bool:
+        """Whether a line has no room for more than that."""
+        return max(width(solid(x.text)) for x in (above, below)) > LINE - 50
+
     def div(self, a: Piece, b: Piece) -> Piece:
         """A fraction; what is too wide for one is multiplied by it."""
         above, below = solid(a.text), solid(b.text)

@@ -167,6 +167,10 @@ class MathML(Language):
         sign += TERM if right.startswith(OPENING) else ""
         return Piece(left + sign + right, PRODUCT)
 
+    def is_too_wide(self, above: Piece, below: Piece) -> bool:
+        """Whether a line that is not broken may have no room for one of them."""
+        return any(_is_wide(row(solid(x.text), ""), IN_FRACTION) for x in (above, below))
+
     def div(self, a: Piece, b: Piece) -> Piece:
         """A fraction; what is too wide for one is multiplied by it."""
         above, below = row(solid(a.text), ""), row(solid(b.text), "")

@@ -13,13 +13,15 @@ from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.listing import check_size
 from substructures.textbook import AT_ONCE, LIMITS, Limits, Reading, Sum, Term, Trig, read
-from substructures.textbook.forms import atoms_of, leaves
+from substructures.textbook.forms import Factor, atoms_of, leaves
 
 #: so many angles q1, q2, ..., and c12 is written for cos(q1 + q2); parameters decide nothing, so that one more of them
 #: leaves the other lines as they are
 ABBREVIATED = 4
 #: factors and numbers of a function that has a name where it is used more than once
 REPEATED = 6
+#: factors and numbers of a sum that has a name where a fraction with it below is too wide
+LONG = 12
 #: elements and operations of small results, and products of terms of rational functions in these and in others: more of
 #: them in many elements are lines that nobody reads, and take long to write
 FEW, SMALL, WORK_OF_FEW, WORK_OF_MANY = 2, 400, 1_000_000, 100_000
@@ -49,10 +51,12 @@ class TextbookTerms:
         short = _abbreviations(program, self.reading, language) if abbreviates else {}
         repeated = _repeated(self.reading) if abbreviates else []
         named = {f: language.temporary(n) for n, f in enumerate(repeated, 1)}
-        self._writer = TextbookWriter(program, language, self.reading, short, named)
+        divisors: dict[str, Piece] | None = {} if abbreviates else None
+        self._writer = TextbookWriter(program, language, self.reading, short, named, divisors)
         before = [(language.abbreviation(t.op, n).text, self._writer.spelled_out(t)) for t, n in short.items()]
         before += [(piece.text, self._writer.formulas[f].text) for f, piece in named.items()]
         entries = {name: tuple(self._writer.sum(f).text for f in some) for name, some in self.reading.outputs.items()}
+        before += [(piece.text, text) for text, piece in (divisors or {}).items()]
         self.listing = Listing((), entries, tuple(before))
         # symbols that cancelled are in none of the forms
         symbols = {str(a.value) for a in atoms_of(self.reading.forms) if a.op == "sym"}
@@ -102,7 +106,7 @@ def _repeated(reading: Reading) -> list[Expr]:
 class TextbookWriter:
     """Writes textbook forms; ``short`` are the cosines and sines that have names, ``named`` the functions.
 
-    ``formulas``: of all functions.
+    ``formulas``: of all functions. ``divisors``: takes the names of long sums below too wide fractions, by formula.
     """
 
     def __init__(
@@ -112,8 +116,10 @@ class TextbookWriter:
         reading: Reading,
         short: Mapping[Trig, str],
         named: Mapping[Expr, Piece],
+        divisors: dict[str, Piece] | None = None,
     ) -> None:
         self.language, self.reading, self.short = language, reading, short
+        self._divisors, self._first_divisor = divisors, len(named) + 1
         self.number = {s.name: n for n, s in enumerate(program.symbols)}
         self.atoms: dict[Expr, Piece] = {}
         self.formulas: dict[Expr, Piece] = {}
@@ -151,13 +157,27 @@ class TextbookWriter:
             below.insert(0, self.language.number(Fraction(c.denominator)))
             c = Fraction(c.numerator)
         top = reduce(self.language.mul, [*([self.language.decimal(c)] if c != 1 or not above else []), *above])
-        return self.language.div(top, reduce(self.language.mul, below)) if below else top
+        if not below:
+            return top
+        bottom = reduce(self.language.mul, below)
+        if self._divisors is not None and self.language.is_too_wide(top, bottom):
+            with_names = [self._divisor(f, -n) for f, n in term.factors if n < 0]
+            bottom = reduce(self.language.mul, [*below[: len(below) - len(with_names)], *with_names])
+        return self.language.div(top, bottom)
+
+    def _divisor(self, factor: Factor, n: int) -> Piece:
+        """What stands below a fraction that has no room for all, long sums by names."""
+        if self._divisors is None or not isinstance(factor, Sum) or len(factor) < LONG:
+            return self._power(factor, n)
+        name = self.language.temporary(self._first_divisor + len(self._divisors))
+        piece = self._divisors.setdefault(self.sum(factor).text, name)
+        return piece if n == 1 else self.language.power(piece, n)
 
     def _is_ratio(self, c: Fraction) -> bool:
         """Whether a number is written as a quotient of integers."""
         return c.denominator != 1 and "." not in self.language.decimal(c).text
 
-    def _power(self, factor: Expr | Trig | Sum, n: int) -> Piece:
+    def _power(self, factor: Factor, n: int) -> Piece:
         if isinstance(factor, Trig):
             return self.trig(factor, n)
         piece = self.sum(factor) if isinstance(factor, Sum) else self._atom(factor)

@@ -82,6 +82,6 @@ class Jax(Python):
             f"], dtype=float).reshape({shape!r})",
         ]
 
-    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002
+    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002 - of the interface
         """The variable of an element."""
         return "_".join([variable, "e", *map(str, index)])

@@ -106,6 +106,6 @@ class Python(Code):
         lines = [f"{v} = np.zeros(batch + {array.shape!r})"]
         return lines + [f"{element} = {text}" for element, text in self.pairs(output, listing)]
 
-    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002
+    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002 - of the interface
         """An element, behind the axes of the batch."""
         return f"{variable}[{', '.join(['...', *map(str, index)])}]"

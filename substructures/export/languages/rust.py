@@ -43,7 +43,7 @@ class Rust(Code):
         """An integer power."""
         return Piece(f"pow({a.text}, {float(n)!r})")
 
-    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002
+    def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002 - of the interface
         """An element of nested arrays, or what a reference to a number refers to."""
         return variable + "".join(f"[{i}]" for i in index) if index else f"*{variable}"
 
