@@ -51,8 +51,10 @@ def serving(folder: str, **settings: str) -> Iterator[tuple[Client, int]]:
     environment = {**os.environ, **{f"SUBSTRUCTURES_{name.upper()}": value for name, value in settings.items()}}
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env=environment)
     try:
-        with Client(f"http://127.0.0.1:{port}") as client:
-            wait(client)
+        address = f"http://127.0.0.1:{port}"
+        with Client(address, retries=0) as impatient:  # pauses between retries are longer than the start
+            wait(impatient)
+        with Client(address) as client:
             yield client, port
     finally:
         process.terminate()
