@@ -176,21 +176,10 @@ def couple(
     names = [
         f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
     ]
-    run = over_formulas(assembly.scope.graph)
     try:
-        admitted = every if group else numbers
-        coupled = couple_parts(run, assembly.mounted, assembly.gravity, not entries.is_large, group=admitted)
-        found = found_potential(assembly.scope.graph, coupled.placed, names)
-        coupled = replace(coupled, potential=coupled.potential + found)
-        rates, accelerations = rate_symbols(assembly)
-        if spec.loads:
-            acting = load_formulas(assembly, coupled.placed, rates)
-            coupled = coupled.with_loads(acting.forces, acting.potential)
-        least = partial(least_forces, assembly.scope, coupled, rates)
-        outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
+        result = _formulas(spec, assembly, names, not entries.is_large, group)
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
-    result = hoisted(program(assembly.scope.graph, outputs, assembly.scope.symbols))
     if len(result) > max_nodes:
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
     seconds = perf_counter() - start
@@ -211,6 +200,21 @@ def couple(
     except VerificationFailed as error:
         raise _blamed(parts, error) from None
     return replace(model, certificate={**certificate, "warnings": warnings, "converted": units.converted})
+
+
+def _formulas(spec: TreeSpec, assembly: Assembly, names: Sequence[str], christoffel: bool, group: bool) -> Program:
+    """All outputs of a tree; ``names``: of its coordinates; ``christoffel``: with the Christoffel symbols."""
+    graph = assembly.scope.graph
+    admitted = every if group else numbers
+    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
+    coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
+    rates, accelerations = rate_symbols(assembly)
+    if spec.loads:
+        acting = load_formulas(assembly, coupled.placed, rates)
+        coupled = coupled.with_loads(acting.forces, acting.potential)
+    least = partial(least_forces, assembly.scope, coupled, rates)
+    outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
+    return hoisted(program(graph, outputs, assembly.scope.symbols))
 
 
 def _blamed(parts: Mapping[str, Part], error: VerificationFailed) -> VerificationFailed:
