@@ -10,8 +10,8 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
+from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
-from substructures.documents.schema import PATTERNS
 from substructures.errors import listed, meant
 from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
 from substructures.tree.load_document import AT, TreeLoad
@@ -26,6 +26,9 @@ MOUNT = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 
 PATTERNS[AT] = lambda text: f"{PLACE}{_example(text)}"
 PATTERNS[MOUNT] = PATTERNS[AT]
+#: the same text as COORDINATE
+PATTERNS[FRAME] = lambda text: f"a name with its instance is needed, as 'instance.name'{_example(text)}"
+PATTERNS[REFERENCE] = lambda _: "a reference is a name with its version, as in arm@2, or a name alone"
 
 
 def _example(text: str) -> str:
