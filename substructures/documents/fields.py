@@ -87,12 +87,18 @@ def unit_advice(text: str) -> str:
     >>> unit_advice("500g")
     '; a number with a unit is written {"value": 500, "unit": "g"}'
     """
+    found = with_unit(text)
+    return f'; a number with a unit is written {{"value": {found.value}, "unit": "{found.unit}"}}' if found else ""
+
+
+def with_unit(text: str) -> Quantity | None:
+    """A number and a known unit behind it, also without a space between them; None of any other text."""
     match = _WITH_UNIT.fullmatch(text.strip())
     try:
         read_unit(match[2] if match else "")
     except UnknownUnitError:
-        return ""
-    return f'; a number with a unit is written {{"value": {match[1]}, "unit": "{match[2]}"}}' if match else ""
+        return None
+    return Quantity(value=match[1], unit=match[2]) if match else None
 
 
 def unit_of(text: str) -> Unit:
