@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from service.refusals import Refused, unprocessable
+from substructures.errors import meant
 from substructures.export.render import FORMATS
 from substructures.printers import FORMS
 
@@ -17,7 +18,8 @@ def choose_format(wanted: str | None, accept: str, offered: Mapping[str, str] = 
     known = ", ".join(f"{name} ({media})" for name, media in offered.items())
     if wanted is not None:
         if wanted not in offered:
-            raise unprocessable("format", f"unknown format '{wanted[:40]}'; there are {known}", "/query/format")
+            there = meant(wanted, offered) or f"; there are {known}"
+            raise unprocessable("format", f"unknown format '{wanted[:40]}'{there}", "/query/format")
         return wanted
     for pattern in by_preference(accept or "*/*"):
         for name, media in offered.items():
@@ -38,7 +40,8 @@ def choose_media_type(accept: str, offered: Sequence[str]) -> str:
 def choose_form(wanted: str) -> str:
     """One of FORMS. Raises Refused 422."""
     if wanted not in FORMS:
-        raise unprocessable("form", f"unknown form '{wanted[:40]}'; there are {', '.join(FORMS)}", "/query/form")
+        there = f"; there are {', '.join(FORMS)}{meant(wanted, FORMS)}"
+        raise unprocessable("form", f"unknown form '{wanted[:40]}'{there}", "/query/form")
     return wanted
 
 

@@ -15,7 +15,7 @@ from service.cli.analysis import local_source
 from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
-from service.cli.trees import pairs
+from service.cli.trees import values
 from substructures.client.connection import step
 from substructures.quantities.evaluation import QUANTITIES
 from substructures.quantities.evaluation import evaluate as evaluated
@@ -43,10 +43,11 @@ def evaluate(
     qdd: Numbers = None,
     t: Annotated[float, typer.Option(help="Time, s.")] = 0.0,
     set: Annotated[  # noqa: A002 -- name of the option
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A parameter; may be repeated.")
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="A parameter, also '500 mm'; may be repeated."),
     ] = None,
     input: Annotated[  # noqa: A002 -- name of the option
-        list[str] | None, typer.Option("--input", metavar="NAME=VALUE", help="An input; may be repeated.")
+        list[str] | None, typer.Option("--input", metavar="NAME=VALUE", help="An input, also '5 N'; may be repeated.")
     ] = None,
     json: Json = False,
 ) -> int:
@@ -90,13 +91,16 @@ def _numbers(text: str) -> list[float]:
         raise typer.BadParameter(f"numbers between commas are needed, found '{text}'") from None
 
 
-def _by_name(given: Iterable[str] | None) -> dict[str, float]:
-    found = {}
-    for name, value in pairs(given).items():
+def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
+    """Numbers, and those that have one with their units."""
+    found: dict[str, Any] = {}
+    for name, value in values(given).items():
+        number, unit = (value["value"], value["unit"]) if isinstance(value, dict) else (value, None)
         try:
-            found[name] = float(value)
+            found[name] = float(number) if unit is None else {"value": float(number), "unit": unit}
         except ValueError:
-            raise typer.BadParameter(f"a number in SI units is needed for '{name}', found '{value}'") from None
+            message = f"a number is needed for '{name}', in SI units or with its unit, as in {name}='500 mm'"
+            raise typer.BadParameter(f"{message}; found '{number}'") from None
     return found
 
 

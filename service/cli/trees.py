@@ -15,10 +15,14 @@ from service.cli.options import Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
 from substructures.client.connection import step
+from substructures.documents.fields import Quantity, quantity_of, with_unit
 
 Name = Annotated[str, typer.Argument(metavar="TREE", autocompletion=completion.trees)]
 Several = list[str] | None
-Set = Annotated[Several, typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the part; may be repeated.")]
+Set = Annotated[
+    Several,
+    typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the part, also '500 mm'; may be repeated."),
+]
 Vector = Annotated[str | None, typer.Option(metavar="X,Y,Z")]
 
 
@@ -73,7 +77,7 @@ def couple(
     json: Json = False,
 ) -> int:
     """Couple a part onto a tree, which makes a new revision."""
-    body: dict[str, Any] = {**_instance(part), "at": at, "parameters": pairs(set)}
+    body: dict[str, Any] = {**_instance(part), "at": at, "parameters": values(set)}
     body |= {"name": name} if name else {}
     placement = {key: _vector(text) for key, text in (("position", position), ("rpy", rpy)) if text is not None}
     body |= {"placement": placement} if placement else {}
@@ -142,6 +146,12 @@ def pairs(given: Iterable[str] | None) -> dict[str, str]:
             raise typer.BadParameter(f"'{name}' is given twice")
         found[name] = value
     return found
+
+
+def values(given: Iterable[str] | None) -> dict[str, Any]:
+    """``NAME=VALUE`` with values as documents have them: texts, and ``500 mm`` as a number with its unit."""
+    found = {name: (with_unit(text) or quantity_of(text)) for name, text in pairs(given).items()}
+    return {name: x.model_dump() if isinstance(x, Quantity) else x for name, x in found.items()}
 
 
 COMMANDS = {"tree": tree, "couple": couple, "rm": remove}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.operations import trees
+from service.operations.owners import absent_part, absent_tree
 from service.operations.sources import tree_parts
 from service.queries import catalogue
 from service.queries import trees as stored_trees
@@ -59,7 +60,7 @@ def _stored(store: Store, viewer: Viewer, reference: str) -> Part | Parts:
         if version is not None:
             return store.required_part(connection, version.digest)
         tree = None if ref is None else stored_trees.resolve(connection, viewer, ref)
-    if tree is None:
-        message = f"there is no substructure or tree '{reference[:80]}'"
-        raise InvalidDocument.at("", "unknown-reference", message)
+        if tree is None:
+            absent = (describe(connection, viewer, reference) for describe in (absent_part, absent_tree))
+            raise InvalidDocument.at("", "unknown-reference", "; ".join(absent))
     return tree_parts(store, tree)

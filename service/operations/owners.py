@@ -76,6 +76,11 @@ def absent_part(connection: Connection, viewer: Viewer, text: str) -> str:
     return f"there is no substructure '{text[:80]}'{candidates(connection, viewer, 'substructure', text)}"
 
 
+def absent_tree(connection: Connection, viewer: Viewer, text: str) -> str:
+    """Why a reference to a tree means nothing that the viewer sees, and what may help."""
+    return f"there is no tree '{text[:160]}'{candidates(connection, viewer, 'tree', text)}"
+
+
 def seen(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> Ownership:
     """Whose a name is. Raises Refused 404 for what the viewer does not see."""
     found = owners.ownership(connection, kind, name)

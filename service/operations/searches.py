@@ -17,6 +17,7 @@ from service.queries.trees import Tree
 from service.queries.words import corrected
 from service.refusals import unprocessable
 from service.viewer import Viewer
+from substructures.errors import meant
 
 Found = TypeVar("Found", Version, Tree)
 Wanted = TypeVar("Wanted", bound=Search)
@@ -41,7 +42,7 @@ def checked(wanted: Wanted) -> Wanted:
     """
     wanted = replace(wanted, sort=wanted.sort or (RELEVANCE if wanted.words else "name"))
     if wanted.sort not in SORTS:
-        detail = f"unknown sort '{wanted.sort[:40]}'; there are {', '.join(SORTS)}"
+        detail = f"unknown sort '{wanted.sort[:40]}'; there are {', '.join(SORTS)}{meant(wanted.sort, SORTS)}"
         raise unprocessable("sort", detail, "/query/sort")
     for name in ("dof", "mass"):
         least, most = (getattr(wanted, f"{name}_{end}") for end in ("min", "max"))

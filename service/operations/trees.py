@@ -24,7 +24,7 @@ from service.summaries import PartContent, part_content, tree_summary
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.documents.tables import with_points
-from substructures.errors import InvalidDocument, InvalidInput
+from substructures.errors import InvalidDocument, InvalidInput, among
 from substructures.part.parameters import counted
 from substructures.part.part import Part, derive
 from substructures.tree.document import Instance, TreeSpec
@@ -94,8 +94,9 @@ def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: st
     """One instance less, which must not carry another. Raises Refused 403, 404, 409 or 412."""
     base, spec = _existing(store, viewer, text, if_match)
     instances = spec.get("instances", [])
-    if all(each["name"] != instance for each in instances):
-        raise not_found(f"the tree '{text}' has no instance '{instance}'", "unknown-instance")
+    known = [each["name"] for each in instances]
+    if instance not in known:
+        raise not_found(f"the tree '{text}' has no instance '{instance}'{among(instance, known)}", "unknown-instance")
     carried = [each["name"] for each in instances if each.get("at", "").partition(".")[0] == instance]
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
@@ -118,7 +119,8 @@ def unload(store: Store, viewer: Viewer, text: str, name: str, if_match: str | N
     loads = spec.get("loads", [])
     kept = [each for each in loads if each["name"] != name]
     if len(kept) == len(loads):
-        raise not_found(f"the tree '{text}' has no load '{name}'", "unknown-load")
+        known = [each["name"] for each in loads]
+        raise not_found(f"the tree '{text}' has no load '{name}'{among(name, known)}", "unknown-load")
     changed = {key: value for key, value in spec.items() if key != "loads"} | ({"loads": kept} if kept else {})
     return TreeChange(changed, base, is_pinned(text), "")
 
@@ -302,6 +304,5 @@ def find(connection: Connection, viewer: Viewer, text: str) -> trees.Tree:
     ref = parse_reference(text)
     tree = None if ref is None else trees.resolve(connection, viewer, ref)
     if tree is None:
-        like = owners.candidates(connection, viewer, "tree", text)
-        raise not_found(f"there is no tree '{text[:160]}'{like}", "unknown-tree")
+        raise not_found(owners.absent_tree(connection, viewer, text), "unknown-tree")
     return tree

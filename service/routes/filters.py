@@ -8,16 +8,19 @@ from fastapi import Depends, Query
 from pydantic import StringConstraints
 
 from service.queries.search import SORTS
+from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME
 
 PortName = Annotated[str, StringConstraints(pattern=NAME)]
+JOINTS = "^[RPrp]*$"
+PATTERNS[JOINTS] = lambda _: "joints are R (revolute) and P (prismatic) in order, as in RRP"
 SORTED = ", ".join(SORTS)
 
 
 async def _narrow(
     dof_min: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     dof_max: Annotated[int | None, Query(ge=0, le=10**6)] = None,
-    joints: Annotated[str | None, Query(pattern="^[RP]*$", max_length=1000)] = None,
+    joints: Annotated[str | None, Query(pattern=JOINTS, max_length=1000)] = None,
     mass_min: Annotated[float | None, Query(ge=0, allow_inf_nan=False, description="kg, of all bodies")] = None,
     mass_max: Annotated[float | None, Query(ge=0, allow_inf_nan=False, description="kg, of all bodies")] = None,
     owner: Annotated[str | None, Query(max_length=64)] = None,
@@ -25,6 +28,7 @@ async def _narrow(
 ) -> dict[str, Any]:
     """Fields of a search by their names."""
     masses = {"mass_min": mass_min, "mass_max": mass_max}
+    joints = joints and joints.upper()
     return {"dof_min": dof_min, "dof_max": dof_max, "joints": joints, **masses, "owner": owner, "sort": sort}
 
 

@@ -22,14 +22,16 @@ from service.schemas.resources import FormulaIndex
 from service.store import Store
 from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
-from substructures.errors import meant
+from substructures.errors import among, meant
 from substructures.export import first_index, interface_of_part
 from substructures.part.outputs import with_own_inertia
 from substructures.part.parameters import described_inputs
+from substructures.part.part import INTERNAL, Part
 from substructures.tree.glossary import part_glossary
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
+ADVICE = "; its index lists all"
 INERTIA = "own: as the part stands alone; symbols: as stored, with the inertia of what may be mounted left open"
 Filter = Annotated[str | None, Query(max_length=200)]
 
@@ -81,6 +83,18 @@ async def get_formula(
     return await in_time(request, lambda: _formula(ref, quantity, request, store, viewer, style, chosen), advice)
 
 
+def _absent(part: Part, quantity: str, chosen: Chosen) -> str:
+    """What a part does not have, and what was meant or where to look."""
+    known = sorted({name.partition(".")[0] for name in part.program.outputs if name not in INTERNAL})
+    if not {quantity, *models.quantities(quantity)} & {*known, *part.program.outputs}:
+        return f"formula of '{quantity[:80]}'{meant(quantity, known) or ADVICE}"
+    places = ("body", chosen.body, (*part.bodies, *part.ports)), ("coordinate", chosen.coordinate, part.coordinates)
+    for what, name, names in places:
+        if name is not None and name not in names:
+            return f"{what} '{name[:80]}'{among(name, names)}"
+    return f"such formula of '{quantity[:80]}'{ADVICE}"
+
+
 def _formula(
     ref: str, quantity: str, request: Request, store: Store, viewer: Viewer, style: models.Style, chosen: Chosen
 ) -> Response:
@@ -93,13 +107,8 @@ def _formula(
         part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, chosen.body, chosen.coordinate, chosen.component)
     found = models.part_formulas(part, rows, wanted, first_index(style.format))
-    if found is None and not rows:
-        with store.database.read() as connection:
-            known = sorted({row.quantity for row in index.list_formulas(connection, version.digest)})
-        advice = meant(quantity, known) or "; its index lists all"
-        raise not_found(f"'{ref}' has no formula of '{quantity[:80]}'{advice}", "unknown-formula")
     if found is None:
-        raise not_found(f"'{ref}' has no such formula of '{quantity[:80]}'; its index lists all", "unknown-formula")
+        raise not_found(f"'{ref}' has no {_absent(part, quantity, chosen)}", "unknown-formula")
     identity = str((chosen.body, chosen.coordinate, chosen.component, chosen.inertia))
     style = style.of(f"{version.name}, version {version.version}", quantity)
     tag = etag(version.digest, version.program, quantity, identity, *style.identity)

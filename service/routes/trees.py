@@ -18,6 +18,7 @@ from service.operations.job_results import BASE_REVISION, IS_EXACT
 from service.paging import limited
 from service.queries.tree_search import TreeSearch
 from service.queries.words import words_of
+from service.refusals import unprocessable
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf
@@ -88,6 +89,9 @@ def list_trees(
     page_token: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """A page of trees, the latest revision of each. Words that are nowhere are taken for the most similar ones."""
+    if uses is not None and "@" in uses:
+        detail = f"'uses' is the name of a part alone; GET /v1/substructures/{uses}/uses tells what uses one version"
+        raise unprocessable("bare-name-expected", detail, "/query/uses")
     wanted = searches.checked(TreeSearch(words_of(q), **narrow, uses=uses))
     size = limited(page_size, store.settings.limits)
     with store.database.read() as connection:

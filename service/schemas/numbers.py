@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, SkipValidation, StrictBool, V
 from service.schemas.measured import WithUnits
 from service.schemas.shapes import Digest, Shape, Warned
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument, InvalidInput
+from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
 from substructures.quantities.measured import si_values
@@ -136,7 +136,8 @@ def _faults(error: ValidationError, data: Mapping[str, Any]) -> list[Fault]:
     for found in error.errors(include_url=False, include_context=False, include_input=False):
         pointer, name = "".join(map(pointer_step, found["loc"])), str(found["loc"][-1])
         if found["type"] == "extra_forbidden":
-            faults.append(Fault(pointer, "unknown-field", f"unknown field '{name[:80]}'"))
+            like = meant(name, EvaluationRequest.model_fields)
+            faults.append(Fault(pointer, "unknown-field", f"unknown field '{name[:80]}'{like}"))
         elif name != "quantities":
             faults.append(Fault(pointer, "missing", _NEEDED.get(name, found["msg"])))
     try:

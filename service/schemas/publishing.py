@@ -9,11 +9,10 @@ from pydantic import Field
 from service.schemas.entries import DERIVED_FROM, NOTE, VISIBILITY, Visibility
 from service.schemas.resources import VersionView
 from service.schemas.shapes import Shape
-from substructures.documents.fields import LibraryName, Name, Number
+from substructures.documents.fields import LibraryName, Name, Number, TagName
 from substructures.tree.document import REFERENCE
 from substructures.tree.load_document import FrameOfTree
 
-Tag = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")]
 ParameterOfTree = Annotated[str, Field(max_length=129)]
 
 
@@ -23,7 +22,7 @@ class PublishRequest(Shape):
     name: LibraryName | None = Field(None, description="of the part (default: that of the tree)")
     title: str = Field("", max_length=200)
     description: str = Field("", max_length=20_000)
-    tags: list[Tag] = Field([], max_length=32)
+    tags: list[TagName] = Field([], max_length=32)
     license: str = Field("", max_length=200)
     source: str = Field("", max_length=4000)
     ports: dict[Name, FrameOfTree] | None = Field(

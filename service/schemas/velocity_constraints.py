@@ -10,7 +10,7 @@ from service.schemas.measured import METRES
 from service.schemas.parts import RequestPart
 from substructures.analysis.equations import velocity_constraints as science
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, PlainNumber
+from substructures.documents.fields import BY_TYPE, Name, PlainNumber
 
 FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
@@ -67,7 +67,7 @@ class Closed(RequestPart):
         return science.Closed(self.name)
 
 
-Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type")]
+Constraint = Annotated[Linear | KnifeEdge | Rolling | Closed, Field(discriminator="type"), BY_TYPE]
 
 
 class VelocityConstraints(DocumentPart):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
@@ -12,16 +13,19 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from substructures.documents.schema import PATTERNS, DocumentPart
+from substructures.documents.faults import PATTERNS
+from substructures.documents.schema import DocumentPart
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 
 NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 LIBRARY_NAME = r"^[a-z0-9][a-z0-9-]{0,63}$"
+TAG = r"^[a-z0-9][a-z0-9-]{0,31}$"
 
 
-def _suggested(text: str, wrong: str, filling: str) -> str:
+def _suggested(text: str, wrong: str, filling: str, most: int = 64) -> str:
     """The text as a name, where that can be had by small changes."""
-    name = re.sub(wrong, filling, text.strip()).strip(filling)[:64]
+    plain = "".join(c for c in unicodedata.normalize("NFKD", text.strip()) if not unicodedata.combining(c))
+    name = re.sub(wrong, filling, plain).strip(filling)[:most]
     return f"; for example '{name}'" if name and name[0].isascii() and name[0].isalnum() else ""
 
 
@@ -32,6 +36,9 @@ PATTERNS[NAME] = lambda text: (
 PATTERNS[LIBRARY_NAME] = lambda text: (
     "a name here is up to 64 of a to z, 0 to 9 and '-', the first no '-'"
     + _suggested(text.lower(), r"[^a-z0-9-]+", "-")
+)
+PATTERNS[TAG] = lambda text: (
+    "a tag is up to 32 of a to z, 0 to 9 and '-', the first no '-'" + _suggested(text.lower(), r"[^a-z0-9-]+", "-", 32)
 )
 
 #: a number or a product or quotient of them, pi among them; how a unit begins
@@ -80,12 +87,18 @@ def unit_advice(text: str) -> str:
     >>> unit_advice("500g")
     '; a number with a unit is written {"value": 500, "unit": "g"}'
     """
+    found = with_unit(text)
+    return f'; a number with a unit is written {{"value": {found.value}, "unit": "{found.unit}"}}' if found else ""
+
+
+def with_unit(text: str) -> Quantity | None:
+    """A number and a known unit behind it, also without a space between them; None of any other text."""
     match = _WITH_UNIT.fullmatch(text.strip())
     try:
         read_unit(match[2] if match else "")
     except UnknownUnitError:
-        return ""
-    return f'; a number with a unit is written {{"value": {match[1]}, "unit": "{match[2]}"}}' if match else ""
+        return None
+    return Quantity(value=match[1], unit=match[2]) if match else None
 
 
 def unit_of(text: str) -> Unit:
@@ -151,3 +164,13 @@ Positive = Annotated[Real, Field(gt=0)]
 NumberVector = tuple[Number, Number, Number]
 Name = Annotated[str, Field(pattern=NAME)]
 LibraryName = Annotated[str, Field(pattern=LIBRARY_NAME)]
+TagName = Annotated[str, Field(pattern=TAG)]
+
+
+def _with_type(data: Any) -> Any:
+    """An object without a type has the empty one, so that it is told which types there are."""
+    return {"type": "", **data} if isinstance(data, Mapping) and "type" not in data else data
+
+
+#: of unions whose field 'type' says which it is
+BY_TYPE = BeforeValidator(_with_type)

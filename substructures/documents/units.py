@@ -16,6 +16,8 @@ from importlib import import_module
 from threading import Lock
 from typing import Any
 
+from substructures.errors import meant
+
 #: exponents of m, kg, s, A, K, mol, cd
 Dimension = tuple[Fraction | int, ...]
 BASE = ("m", "kg", "s", "A", "K", "mol", "cd")
@@ -35,6 +37,8 @@ _SI: dict[str, tuple[int, int, int, int]] = {
     "Nm/rad": (2, 1, -2, -1), "N m s/rad": (2, 1, -1, -1), "Nms/rad": (2, 1, -1, -1), "N/rad": (1, 1, -2, -1),
     "N m s/rad^2": (2, 1, -1, -2), "N s/m^2": (-1, 1, -1, 0),
 }  # fmt: skip
+#: other units that may have been meant by one that is not known
+_USUAL = ("mm", "cm", "km", "inch", "g", "t", "ms", "min", "deg", "deg/s", "rpm", "kN", "N mm", "bar", "N/mm")
 _WRITTEN: dict[Dimension, str] = {}
 for _text, _exponents in _SI.items():
     _WRITTEN.setdefault(_exponents, _text)
@@ -128,7 +132,7 @@ def _read_by_pint(text: str) -> Unit:
         one, none = (pint.Quantity(Fraction(n), pint.parse_units(words)).to_root_units() for n in (1, 0))
         factor, roots = Fraction(one.magnitude), {str(name): Fraction(n) for name, n in one.unit_items()}
     except Exception:  # whatever pint raises: undefined names, logarithmic units, unbalanced parentheses
-        raise UnknownUnitError(f"the unit '{text}' is not known") from None
+        raise UnknownUnitError(f"the unit '{text}' is not known{meant(text, [*_SI, *_USUAL])}") from None
     if none.magnitude != 0:
         raise UnknownUnitError(f"the unit '{text}' counts from a zero of its own and has no factor to SI")
     exponents, radians = [Fraction(0)] * len(BASE), roots.pop("radian", Fraction(0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, signature
 from substructures.export.packed import Indices, packed
 from substructures.expr.graph import Graph
@@ -199,7 +199,7 @@ def exported_part(
     known = [output for output in part.program.outputs if output not in INTERNAL]
     for quantity in quantities:
         if quantity not in known:
-            message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known)}"
+            message = f"there is no quantity '{quantity[:80]}'{among(quantity, known)}"
             raise InvalidArgument.at("/quantities", "unknown-quantity", message)
     programs = {q: with_own_inertia(part, part.program.select([q])) for q in dict.fromkeys(quantities)}
     return _exported(programs, interface, name, bind, together, packed)
@@ -233,7 +233,7 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
     if quantity == "christoffel":
         require_stored(model.program, wanted)
     if any(name not in model.program.outputs for name in wanted):
-        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known_quantities(model))}"
+        message = f"there is no quantity '{quantity[:80]}'{among(quantity, known_quantities(model))}"
         raise InvalidArgument.at("/quantities", "unknown-quantity", message)
     return model.program.select(list(wanted))
 

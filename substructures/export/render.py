@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import prod
 
 from substructures.display import shown
-from substructures.errors import InvalidArgument, InvalidDocument, TooLarge
+from substructures.errors import InvalidArgument, InvalidDocument, TooLarge, meant
 from substructures.export.exported import Exported, Function, check_name
 from substructures.export.interface import Interface
 from substructures.export.languages.c import C
@@ -85,7 +85,8 @@ def render(
     and for a quantity that depends on what its signature does not have.
     """
     if format not in FORMATS:
-        raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
+        message = f"{format[:40]!r} is not one of {', '.join(FORMATS)}{meant(format, FORMATS)}"
+        raise InvalidDocument.at("/format", "unknown-format", message)
     if format not in LANGUAGES:
         text = write(program, format, form, name, limit, definitions, glossary)
         return shown(text, format, lambda: write(program, "latex", form, name, limit, definitions, glossary))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import orjson
 
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, meant
 from substructures.export import written
 from substructures.export.c_files import c_files
 from substructures.export.casadi import casadi
@@ -40,7 +40,7 @@ class Target:
 def files(exported: Exported, target: str, limit: int) -> Files:
     """The files of a target. Raises InvalidArgument for an unknown one, TooLarge for more than ``limit`` nodes."""
     if target not in TARGETS:
-        message = f"{target[:40]!r} is not one of {', '.join(TARGETS)}"
+        message = f"{target[:40]!r} is not one of {', '.join(TARGETS)}{meant(target, TARGETS)}"
         raise InvalidArgument.at("/target", "unknown-target", message)
     return TARGETS[target].make(exported, limit)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidDocument, TooLarge, among
 from substructures.expr.exact import MAX_BITS
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
@@ -72,7 +72,7 @@ def _bindings(
     for name, value in sorted(values.items()):
         try:
             if name not in known:
-                raise _Fault("unknown-name", f"there is no symbol '{name[:80]}'")
+                raise _Fault("unknown-name", f"there is no symbol '{name[:80]}'{among(name, known, len(faults))}")
             bound[name] = parse(graph, value, lookup) if isinstance(value, str) else _number(graph, value)
         except ExpressionError as error:
             faults.append(Fault(pointer(name), "expression", str(error)))

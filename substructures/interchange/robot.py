@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from substructures.errors import among
 from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple
 from substructures.interchange.report import Place, Report, refuse
 
@@ -146,6 +147,7 @@ def _ancestors(link: Link, by_name: Mapping[str, Link], known: Mapping[str, Link
             raise refuse(link.place, "cycle", f"the link '{link.name}' is on or behind a cycle of joints")
         found[here.name] = here
         if here.parent is not None and here.parent not in by_name:
-            raise refuse(here.place, "unknown-link", f"the parent '{here.parent}' is not in the file")
+            message = f"the parent '{here.parent}' is not in the file{among(here.parent, by_name)}"
+            raise refuse(here.place, "unknown-link", message)
         here = None if here.parent is None else by_name[here.parent]
     return list(found.values())

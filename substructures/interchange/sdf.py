@@ -14,6 +14,7 @@ from decimal import Decimal
 import numpy as np
 
 from substructures.array import Array
+from substructures.errors import among
 from substructures.interchange.bindings import mimic_of, single_coordinates
 from substructures.interchange.merge import vector
 from substructures.interchange.numbers import ZERO, Number, Triple, decimal_of, number_of, triple, value
@@ -63,7 +64,7 @@ class _Frames:
                 self._known[""] = np.eye(3), np.zeros(3)
                 continue
             if here not in self.given:
-                raise refuse(place, "unknown-frame", f"there is no frame '{here}'")
+                raise refuse(place, "unknown-frame", f"there is no frame '{here}'{among(here, self.given)}")
             if here in chain:
                 raise refuse(place, "cycle", f"the frame '{here}' is placed relative to itself")
             chain.append(here)
@@ -169,7 +170,7 @@ class _Reader:
         over = None if parent == WORLD else prefix + parent
         for name in (child, over):
             if name is not None and name not in self.links:
-                raise refuse(node.place, "unknown-link", f"there is no link '{name}'")
+                raise refuse(node.place, "unknown-link", f"there is no link '{name}'{among(name, self.links)}")
         here = self.frames.pose(child, node.place)
         R, r = (np.eye(3), np.zeros(3)) if over is None else self.frames.pose(over, node.place)
         position, rpy = vector(R.T @ (here[1] - r)), to_rpy(R.T @ here[0])

@@ -21,6 +21,7 @@ from typing import Any
 
 from substructures.documents.text import decoded
 from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.errors import meant
 from substructures.interchange.names import Names, library_name
 from substructures.interchange.numbers import number_of
 from substructures.interchange.report import Place, Report, refuse
@@ -101,7 +102,8 @@ def read_table(document: Mapping[str, Any], symbolic: bool = True) -> tuple[dict
 def _known(place: Place, names: list[str]) -> None:
     for name in names:
         if name not in _COLUMNS:
-            raise refuse(place, "unknown-column", f"unknown column '{name[:40]}'; there are {', '.join(_COLUMNS)}")
+            there = f"; there are {', '.join(_COLUMNS)}{meant(name, _COLUMNS)}"
+            raise refuse(place, "unknown-column", f"unknown column '{name[:40]}'{there}")
     if len(set(names)) < len(names) or not {"a", "alpha", "d", "theta"} <= set(names):
         raise refuse(place, "missing-column", "the columns a, alpha, d and theta are needed, each once")
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from substructures.errors import among, meant
 from substructures.interchange.bindings import mimic_of
 from substructures.interchange.numbers import (
     ONE,
@@ -88,7 +89,8 @@ def _joints(root: Node, links: dict[str, Node]) -> Iterator[_Joint]:
         if name in seen:
             raise refuse(node.place, "duplicate-name", f"a second joint '{name}': give it another name")
         if kind not in _TYPES:
-            raise refuse(node.place, "unknown-type", f"type '{kind[:40]}' is none of {', '.join(_TYPES)}")
+            message = f"type '{kind[:40]}' is none of {', '.join(_TYPES)}{meant(kind, _TYPES)}"
+            raise refuse(node.place, "unknown-type", message)
         seen.add(name)
         ends = [_end(node, tag, links) for tag in ("parent", "child")]
         if ends[1] in children:
@@ -104,7 +106,7 @@ def _end(node: Node, tag: str, links: dict[str, Node]) -> str:
         raise refuse(node.place, "missing-element", f"<{tag} link='...'/> is needed")
     name = found.text_of("link")
     if name not in links:
-        raise refuse(found.place, "unknown-link", f"there is no link '{name}'")
+        raise refuse(found.place, "unknown-link", f"there is no link '{name}'{among(name, links)}")
     return name
 
 

@@ -13,7 +13,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationInfo, fiel
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
-from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, unit_of
+from substructures.documents.fields import BY_TYPE, LibraryName, Name, Number, NumberVector, Quantity, TagName, unit_of
 from substructures.documents.tables import with_points
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import InvalidDocument
@@ -300,6 +300,7 @@ def _without_mapping(schema: dict[str, Any]) -> None:
 Load = Annotated[
     _Force | _Torque | SpringLoad | BushingLoad | JointLoad | PotentialLoad | FrictionLoad,
     Field(discriminator="type", json_schema_extra=_without_mapping),
+    BY_TYPE,
 ]
 
 
@@ -340,7 +341,7 @@ class Definition(WithTables):
     name: LibraryName
     title: str = Field("", max_length=200)
     description: str = Field("", max_length=20_000)
-    tags: tuple[Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")], ...] = Field((), max_length=32)
+    tags: tuple[TagName, ...] = Field((), max_length=32)
     license: str = Field("", max_length=200)
     source: str = Field("", max_length=4000)
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from substructures.errors import among
 from substructures.expr.graph import Expr
 from substructures.expr.syntax import measured
 from substructures.mechanics.linear3 import ZERO, Vector, apply, sub, transpose
@@ -104,7 +105,7 @@ def read_loads(m: Mechanism) -> Loads:
 def _body(m: Mechanism, body: str, pointer: str) -> Frame | None:
     frame = m.bodies.get(body)
     if frame is None:
-        m.scope.fault(pointer, "unknown-body", f"unknown body '{body}'")
+        m.scope.fault(pointer, "unknown-body", f"unknown body '{body}'{among(body, m.bodies)}")
     return frame
 
 
@@ -203,7 +204,8 @@ def _potential(names: OwnNames, load: PotentialLoad, pointer: str, found: Loads)
 def _joint_force(names: OwnNames, load: JointLoad, pointer: str, found: Loads) -> None:
     m, place = names.m, f"{pointer}/force"
     if load.coordinate not in m.topology.coordinates:
-        m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", f"unknown coordinate '{load.coordinate}'")
+        message = f"unknown coordinate '{load.coordinate}'{among(load.coordinate, m.topology.coordinates)}"
+        m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", message)
         return
     a, lookup = m.topology.coordinates.index(load.coordinate), names.at(place)
     found.joint_forces[a] = found.joint_forces.get(a, m.graph.zero) + m.scope.read(load.force, place, lookup)

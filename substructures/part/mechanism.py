@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.documents.fields import in_si
-from substructures.errors import meant
+from substructures.errors import among
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.laws import tanh
 from substructures.expr.operations import Symbol
@@ -126,7 +126,7 @@ def mechanism(definition: Definition) -> Mechanism:
         ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
     for i, load in enumerate(definition.loads):
         if isinstance(load, FrictionLoad) and load.coordinate not in layout.coordinates:
-            message = f"unknown coordinate '{load.coordinate}'{meant(load.coordinate, layout.coordinates)}"
+            message = f"unknown coordinate '{load.coordinate}'{among(load.coordinate, layout.coordinates)}"
             scope.fault(f"/loads/{i}/coordinate", "unknown-coordinate", message)
     scope.finish()
     return Mechanism(

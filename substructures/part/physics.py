@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -15,13 +13,10 @@ from substructures.expr.exact import nearest_float
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.mechanics.linear3 import dense
-from substructures.part.definition import Definition
 from substructures.part.mechanism import Mechanism
 from substructures.part.scope import Scope, no_names
 
 PhysicsFault = tuple[str, str]  #: code, message
-ANGLES = ("psi", "theta")
-TURNS = 10  # rad
 
 
 @dataclass(frozen=True)
@@ -53,18 +48,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
         else:
             m.scope.fault(pointer, problem[0], text)
     m.scope.finish()
-    return [*warnings, *_angle_warnings(m.definition)]
-
-
-def _angle_warnings(definition: Definition) -> Iterator[dict[str, str]]:
-    """Angles of joint rows that are plain numbers of more than TURNS rad: who writes 90 means degrees."""
-    for i, body in enumerate(definition.bodies):
-        for name in ANGLES:
-            value = getattr(body.joint, name)
-            if isinstance(value, int | Decimal) and abs(float(value)) >= TURNS:
-                text = f"{name} = {value} rad is {abs(float(value)) / (2 * math.pi):.1f} turns"
-                message = f'{text}; degrees are written {{"value": {value}, "unit": "deg"}}'
-                yield {"pointer": f"/bodies/{i}/joint/{name}", "code": "angle-in-degrees", "message": message}
+    return warnings
 
 
 def _checks(m: Mechanism) -> Iterator[_Check]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidDocument, TooLarge, among
 from substructures.expr.syntax import RESERVED
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Body, Definition
@@ -144,7 +144,8 @@ def _name_faults(definition: Definition) -> list[Fault]:
             faults.append(Fault(f"/ports/{i}/name", "duplicate-name", f"duplicate port or body name '{port.name}'"))
         ports.add(port.name)
         if port.body not in seen:
-            faults.append(Fault(f"/ports/{i}/body", "unknown-body", f"unknown body '{port.body}'"))
+            message = f"unknown body '{port.body}'{among(port.body, seen, i)}"
+            faults.append(Fault(f"/ports/{i}/body", "unknown-body", message))
     for kind, names in (("parameters", definition.parameters), ("inputs", definition.inputs)):
         for name in names:
             if name in RESERVED:
@@ -156,11 +157,12 @@ def _name_faults(definition: Definition) -> list[Fault]:
 
 def _order(definition: Definition) -> tuple[list[int], list[Fault]]:
     """Bodies with parents first, otherwise in the order given; faults for unknown parents and cycles."""
-    names = {body.name for body in definition.bodies}
+    names = dict.fromkeys([BASE, *(body.name for body in definition.bodies)])
+    orphans = [(i, body) for i, body in enumerate(definition.bodies) if body.parent not in names]
     faults = [
-        Fault(f"/bodies/{i}/parent", "unknown-parent", f"unknown parent '{body.parent}' of body '{body.name}'")
-        for i, body in enumerate(definition.bodies)
-        if body.parent != BASE and body.parent not in names
+        Fault(f"/bodies/{i}/parent", "unknown-parent", f"unknown parent '{body.parent}' of body '{body.name}'{like}")
+        for k, (i, body) in enumerate(orphans)
+        for like in [among(body.parent, names, k)]
     ]
     children: dict[str, list[int]] = {}
     for i, body in enumerate(definition.bodies):

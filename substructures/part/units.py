@@ -15,6 +15,7 @@ from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.syntax import measured
 from substructures.expr.unit_check import Place, UnitCheck, dimension_of
+from substructures.part.angles import angle_warnings
 from substructures.part.definition import (
     Definition,
     FrictionLaw,
@@ -97,6 +98,7 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     check.check(parameter_places(definition.parameters), True)
     check.check(input_places(definition.inputs), True)
     check.check(places.bodies(), True)
+    check.warnings += angle_warnings(places.bodies(), definition.parameters)
     check.names = lambda name: names[name] if name in names else moving.get(name) or dimension_of_measure(name)
     check.check(places.loads(), False)
     return check

@@ -10,9 +10,9 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
+from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
-from substructures.documents.schema import PATTERNS
-from substructures.errors import listed, meant
+from substructures.errors import among, listed, meant
 from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
 from substructures.tree.load_document import AT, TreeLoad
 
@@ -26,6 +26,9 @@ MOUNT = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 
 PATTERNS[AT] = lambda text: f"{PLACE}{_example(text)}"
 PATTERNS[MOUNT] = PATTERNS[AT]
+#: the same text as COORDINATE
+PATTERNS[FRAME] = lambda text: f"a name with its instance is needed, as 'instance.name'{_example(text)}"
+PATTERNS[REFERENCE] = lambda _: "a reference is a name with its version, as in arm@2, or a name alone"
 
 
 def _example(text: str) -> str:
@@ -42,8 +45,9 @@ def misplaced(at: str, frames: Mapping[str, Collection[str]]) -> tuple[str, str]
         near = [each for each in places if at in each.split(".")]
         return "place", f"'{at}' is none: {PLACE}; there are {listed(near or places) or 'no instances'}"
     if host not in frames:
-        return "unknown-instance", f"unknown instance '{host}'{meant(host, frames)}"
-    return "unknown-port", f"'{host}' has no port or body '{frame}'; it has {', '.join(frames[host])}"
+        return "unknown-instance", f"unknown instance '{host}'{among(host, frames)}"
+    there = f"it has {listed(frames[host])}{meant(frame, frames[host])}"
+    return "unknown-port", f"'{host}' has no port or body '{frame}'; {there}"
 
 
 class Instance(DocumentPart):

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, RootModel
 
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number, NumberVector
+from substructures.documents.fields import BY_TYPE, Name, Number, NumberVector
 from substructures.part.definition import FrictionLaw
 
 NONE: NumberVector = (0, 0, 0)
@@ -97,6 +97,7 @@ class TreePotential(_OfTree):
 TreeLoad = Annotated[
     TreeSpring | Bushing | TreeForce | TreeTorque | TreeJointLoad | TreePotential | TreeFriction,
     Field(discriminator="type"),
+    BY_TYPE,
 ]
 
 

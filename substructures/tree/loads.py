@@ -23,6 +23,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.errors import listed, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.syntax import measured
 from substructures.mechanics.linear3 import Vector, dot
@@ -143,8 +144,8 @@ def _in_world(names: LoadNames, load: TreeForce | TreeTorque, pointer: str, pair
 def _coordinate(names: LoadNames, load: TreeJointLoad | TreeFriction, pointer: str) -> int | None:
     a = names.coordinates.get(load.coordinate)
     if a is None:
-        known = ", ".join(names.coordinates) or "none"
-        message = f"unknown coordinate '{load.coordinate}'; there are {known}"
+        known = f"there are {listed(names.coordinates) or 'none'}{meant(load.coordinate, names.coordinates)}"
+        message = f"unknown coordinate '{load.coordinate}'; {known}"
         names.assembly.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", message)
     return a
 

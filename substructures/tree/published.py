@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument, listed, meant
+from substructures.errors import Fault, InvalidDocument, among, listed
 from substructures.part.definition import Definition
 from substructures.part.parameters import counted
 from substructures.part.part import Part
@@ -176,7 +176,7 @@ def _require_places(parts: Mapping[str, Part], wanted: Mapping[str, str]) -> Non
     """Raises InvalidDocument for places that the tree does not have."""
     known = [f"{name}.{frame}" for name, part in parts.items() for frame in part.frames]
     faults = [
-        Fault(f"/ports/{port}", "unknown-port", f"the tree has no place '{place[:160]}'{meant(place, known)}")
+        Fault(f"/ports/{port}", "unknown-port", f"the tree has no place '{place[:160]}'{among(place, known)}")
         for port, place in wanted.items()
         if place not in known
     ]

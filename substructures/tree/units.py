@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from typing import Any
 
-from substructures.documents.units import Dimension, read_unit
+from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.program import Program
 from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
+from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part
@@ -57,6 +58,8 @@ def check_tree_units(
     check.check(_places(spec), True)
     dimensions = {name: x.dimension for name, x in known.items() if isinstance(x, Dimensioned)}
     check.check(_bindings(spec, dimensions), True)
+    radians = {name: NUMBER for name, unit in units.items() if unit == RAD}
+    check.warnings += angle_warnings([*_places(spec), *_bindings(spec, radians)], spec.parameters)
     if spec.loads:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)

@@ -60,6 +60,9 @@ class MemoryLibrary:
     def own(self, kind: str) -> list[str]:
         return self.trees() if kind == "tree" else self.catalogue()
 
+    def absent(self, kind: str, reference: str) -> str:
+        return f"there is no {kind} '{reference}'"
+
     def may_change(self, kind: str, name: str) -> bool:
         return (kind, name) != ("substructure", "other")
 

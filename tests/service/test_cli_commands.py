@@ -84,8 +84,24 @@ def test_commands_that_change_answer_programs(run: Runner, tmp_path: Path) -> No
 
 
 def test_a_parameter_that_is_no_number(run: Runner) -> None:
-    told = run("evaluate", "cell", "metric", "--set", "arm.m=500 g", code=2)
-    assert "a number in SI units is needed for 'arm.m', found '500 g'" in told
+    told = " ".join(run("evaluate", "cell", "metric", "--set", "arm.m=heavy", code=2).replace("│", " ").split())
+    assert "a number is needed for 'arm.m', in SI units or with its unit, as in arm.m='500 mm'; found 'heavy'" in told
+
+
+@pytest.mark.parametrize("mass", ["500 g", "500g", "0.5"])
+def test_parameters_may_have_units(run: Runner, mass: str) -> None:
+    found = json.loads(run("evaluate", "cell", "metric", "--set", f"arm.m={mass}", "--set", "arm.l=2", "--json"))
+    assert found["metric"] == [[pytest.approx(0.5 * 4 * 1.1)]]
+    told = run("evaluate", "cell", "metric", "--set", "arm.m=500 gg", code=1)
+    assert "the unit 'gg' is not known; did you mean 'g'?" in told
+
+
+def test_parts_are_coupled_with_parameters_in_units(run: Runner) -> None:
+    run("tree", "measured", "--part", "a=pendulum")
+    run("couple", "measured", "pendulum", "--name", "b", "--at", "a.tip", "--set", "l=500 mm")
+    tree = json.loads(run("show", "measured", "--json"))
+    assert tree["instances"][1]["parameters"] == {"l": {"value": "500", "unit": "mm"}}
+    run("rm", "measured")
 
 
 def test_a_tree_grows_and_goes(run: Runner) -> None:

@@ -164,7 +164,8 @@ def test_faults_of_files_have_line_and_column(tmp_path: Path, capsys: pytest.Cap
         "syntax.json": ('{"name": "x",\n "bodies": [1,,2]}', "(line 2, column 15)"),
         "parent.yaml": (
             "name: x\nbodies:\n  - name: a\n    joint: {type: fixed}\n    parent: basse\n",
-            "parent.yaml#/bodies/0/parent: unknown parent 'basse' of body 'a' (line 5, column 13)",
+            "parent.yaml#/bodies/0/parent: unknown parent 'basse' of body 'a'; did you mean 'base'?"
+            " (line 5, column 13)",
         ),
         "mass.json": (
             '{"name": "x", "bodies": [{"name": "a", "parent": "base",\n  "joint": {"type": "fixed"}, "mass": "2*k"}]}',

@@ -23,7 +23,7 @@ from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram
+from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram, among, meant
 
 __all__ = ["KINDS", "Library", "expand", "given", "resolve", "run"]
 
@@ -52,7 +52,8 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
     versions of the catalogue. Raises InvalidDocument with pointers into the submission.
     """
     if kind not in _KINDS:
-        raise InvalidDocument.at("/kind", "unknown-kind", f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}")
+        message = f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}{meant(kind, KINDS)}"
+        raise InvalidDocument.at("/kind", "unknown-kind", message)
     items: list[ItemDocument] = []
     for pointer, one in given(request, limits.job_items):
         if not isinstance(one, dict):
@@ -71,7 +72,10 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
 
 def given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
     """The items as given or put together, each with the place of its faults."""
-    faults = [Fault(f"/{key}", "unknown-field", f"unknown field '{key[:80]}'") for key in request if key not in FIELDS]
+    faults = [
+        Fault(f"/{key}", "unknown-field", f"unknown field '{key[:80]}'{among(key, FIELDS, k)}")
+        for k, key in enumerate(key for key in request if key not in FIELDS)
+    ]
     if ("items" in request) == ("template" in request):
         faults.append(Fault("/items", "missing", "give either 'items', or a 'template' with 'choices'"))
     if faults:

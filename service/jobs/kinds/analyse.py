@@ -22,7 +22,7 @@ from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidDocument, meant
 
 #: analyses that begin at one state, and those whose coordinates are only where something is looked for
 MOTIONS = ("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states")
@@ -55,12 +55,12 @@ def _check(item: ItemDocument) -> None:
     name, form = item["analysis"], item["format"]
     if name not in tuple(ANALYSES):
         what = f"unknown analysis '{name[:40]}'" if isinstance(name, str) else "the analysis is no text"
-        message = f"{what}; there are {', '.join(ANALYSES)}"
+        message = f"{what}; there are {', '.join(ANALYSES)}{meant(str(name), ANALYSES)}"
         raise InvalidDocument.at("/analysis", "unknown-analysis", message)
     known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
     if form not in known:
         what = f"unknown format '{form[:40]}'" if isinstance(form, str) else "the format is no text"
-        message = f"{what}; '{name}' can be {', '.join(known)}"
+        message = f"{what}; '{name}' can be {', '.join(known)}{meant(str(form), known)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
 
 

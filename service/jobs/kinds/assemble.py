@@ -14,7 +14,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
+from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
@@ -41,7 +41,7 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
     spec = TreeSpec.stored(item["tree"]) if is_stored else TreeSpec.read(item["tree"])
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
     faults = [
-        Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance))
+        Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance, library))
         for k, instance in enumerate(spec.instances)
         if instance.name in versions and versions[instance.name] is None
     ]
@@ -79,7 +79,7 @@ def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Libr
         if definition is not None:
             for name in instance.parameters:
                 if name not in definition.parameters:
-                    message = f"'{definition.name}' has no parameter '{name}'{meant(name, definition.parameters)}"
+                    message = f"'{definition.name}' has no parameter '{name}'{among(name, definition.parameters)}"
                     yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
         # of a host that cannot be read this is told elsewhere
         found = misplaced(instance.at, frames) if instance.at.partition(".")[0] not in unread else None
@@ -100,8 +100,8 @@ def _definition(instance: Instance, versions: Mapping[str, StoredVersion], libra
     return found
 
 
-def _unknown(instance: Instance) -> str:
-    return f"instance '{instance.name}': there is no substructure '{instance.substructure}'"
+def _unknown(instance: Instance, library: Library) -> str:
+    return f"instance '{instance.name}': {library.absent('substructure', instance.substructure or '')}"
 
 
 def _pin(instance: Instance, version: StoredVersion | None) -> Instance:

@@ -14,7 +14,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument, TooLarge
+from substructures.errors import Fault, InvalidDocument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
@@ -67,7 +67,7 @@ def _faults(text: str, pointer: str, known: Collection[str]) -> Iterator[Fault]:
         return  # deriving tells
     else:
         if unknown:
-            yield Fault(pointer, "unknown-name", f"unknown name '{unknown[0][:80]}'")
+            yield Fault(pointer, "unknown-name", f"unknown name '{unknown[0][:80]}'{meant(unknown[0], known)}")
 
 
 @lru_cache(maxsize=10_000)

@@ -33,7 +33,7 @@ from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.compile.kernel import NO_PLACES, Places
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, meant
 from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
@@ -103,8 +103,9 @@ def _request(item: ItemDocument, model: Model) -> EvaluationRequest:
     if len(described) + ("q" in request) > 1 or (described and "qd" in request):
         raise InvalidDocument.at("/request", "states", "states come from 'q' and 'qd', or a 'grid', or a 'sample'")
     if item.get("format", "npz") not in tuple(FORMATS):
-        known = ", ".join(FORMATS)
-        raise InvalidDocument.at("/format", "unknown-format", f"unknown format; there are {known}")
+        given = str(item["format"])
+        message = f"unknown format '{given[:40]}'; there are {', '.join(FORMATS)}{meant(given, FORMATS)}"
+        raise InvalidDocument.at("/format", "unknown-format", message)
     if item.get("format") == "arrow" and find_spec("pyarrow") is None:
         message = "Arrow needs the extra 'arrow' on the server: pip install 'substructures[arrow]'"
         raise InvalidDocument.at("/format", "not-installed", message)

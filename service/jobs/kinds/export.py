@@ -59,7 +59,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step
 from substructures.documents.fields import Quantity, quantity_of
-from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, among
+from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, among, meant
 from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
@@ -87,7 +87,8 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
         if given[name] not in tuple(known):
             text = given[name]
             what = f"unknown {name} '{text[:40]}'" if isinstance(text, str) else f"the {name} is no text"
-            faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; there are {', '.join(known)}"))
+            there = f"there are {', '.join(known)}{meant(str(text), known)}"
+            faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; {there}"))
     if not isinstance(given["group"], bool):
         faults.append(Fault("/group", "boolean-expected", "true or false is needed"))
     if not _is_options(given["options"]):
@@ -112,7 +113,8 @@ def _spread_target(item: ItemDocument) -> ItemDocument:
         if not isinstance(given[name], str)
     ]
     if given["target"] not in ALL_TARGETS:
-        message = f"unknown target '{str(given['target'])[:40]}'; there are {', '.join(ALL_TARGETS)}"
+        target = str(given["target"])
+        message = f"unknown target '{target[:40]}'; there are {', '.join(ALL_TARGETS)}{meant(target, ALL_TARGETS)}"
         faults.append(Fault("/target", "unknown-target", message))
     names = given["quantities"]
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
@@ -144,7 +146,7 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
         names = dict.fromkeys(
             [*outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
         )
-        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}"
+        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}{meant(quantity, names)}"
         yield Fault("/quantity", "unknown-quantity", message)
         return
     if item["group"] and quantity not in GROUPED:
@@ -152,7 +154,7 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
     known = tuple(OPTIONS) if quantity in QUANTITIES else options_of_quantity(quantity)
     for name, texts in options.items():
         if texts and name not in known:
-            message = f"'{quantity}' has no option '{name[:80]}'"
+            message = f"'{quantity}' has no option '{name[:80]}'{among(name, known)}"
             yield Fault("/options" + pointer_step(name), "unknown-option", message)
 
 

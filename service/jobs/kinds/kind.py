@@ -13,7 +13,7 @@ from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step, read_json
-from substructures.errors import Fault, InvalidDocument, InvalidInput
+from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
 
 Blobs = Mapping[str, bytes]
@@ -47,10 +47,10 @@ def inside(place: str) -> Iterator[None]:
 
 def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
     """Raise InvalidDocument for fields that are missing or unknown."""
+    known = (*required, *optional)
     faults = [
-        Fault(pointer_step(key), "unknown-field", f"unknown field '{key[:80]}'")
-        for key in item
-        if key not in (*required, *optional)
+        Fault(pointer_step(key), "unknown-field", f"unknown field '{key[:80]}'{among(key, known, k)}")
+        for k, key in enumerate(key for key in item if key not in known)
     ]
     faults += [Fault(pointer_step(key), "missing", f"'{key}' is needed") for key in required if key not in item]
     if faults:
@@ -78,7 +78,7 @@ def known_tree(item: ItemDocument, library: Library) -> StoredTree:
     reference = item["tree"]
     tree = library.tree(reference) if isinstance(reference, str) else None
     if tree is None:
-        raise InvalidDocument.at("/tree", "unknown-tree", f"there is no tree '{str(reference)[:160]}'")
+        raise InvalidDocument.at("/tree", "unknown-tree", library.absent("tree", str(reference)))
     return tree
 
 
@@ -87,6 +87,6 @@ def known_part(item: ItemDocument, library: Library) -> StoredVersion:
     reference = item["substructure"]
     version = library.version(reference) if isinstance(reference, str) else None
     if version is None:
-        message = f"there is no substructure '{str(reference)[:160]}'"
+        message = library.absent("substructure", str(reference))
         raise InvalidDocument.at("/substructure", "unknown-substructure", message)
     return version

@@ -40,6 +40,9 @@ class Library(Protocol):
     def tree(self, reference: str) -> StoredTree | None:
         """The revision of a tree that a reference means."""
 
+    def absent(self, kind: str, reference: str) -> str:
+        """Why a reference to a ``substructure`` or a ``tree`` means nothing, and what may help."""
+
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not yanked."""
 

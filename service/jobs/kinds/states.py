@@ -15,7 +15,7 @@ from service.jobs.kinds.kind import inside
 from service.schemas.state_sets import Grid, Sample
 from substructures.array import Array
 from substructures.documents import pointer_step, read_model
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import Fault, InvalidDocument, among
 from substructures.quantities.measured import PlaceUnits, si_values
 
 NamedAxis = tuple[str, list[float]]
@@ -39,10 +39,10 @@ def axis_units(given: Mapping[str, Any], known: Mapping[str, str]) -> PlaceUnits
 
 
 def _check_names(pointer: str, given: Mapping[str, Any], known: Collection[str]) -> None:
+    what = "the tree has no coordinate, parameter or input"
     faults = [
-        Fault(pointer + pointer_step(name), "unknown-name", f"the tree has no coordinate, parameter or input '{name}'")
-        for name in given
-        if name not in known
+        Fault(pointer + pointer_step(name), "unknown-name", f"{what} '{name[:80]}'{among(name, known, k)}")
+        for k, name in enumerate(name for name in given if name not in known)
     ]
     if faults:
         raise InvalidDocument(faults)

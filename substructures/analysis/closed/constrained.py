@@ -32,7 +32,7 @@ from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
@@ -286,4 +286,5 @@ def require_fixed(model: Model, fixed: Sequence[str]) -> None:
     """Raises InvalidArgument (``/fixed/i``) for names that are no coordinates of the model."""
     for i, name in enumerate(fixed):
         if name not in model.coordinates:
-            raise InvalidArgument.at(f"/fixed/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+            message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates)}"
+            raise InvalidArgument.at(f"/fixed/{i}", "unknown-coordinate", message)

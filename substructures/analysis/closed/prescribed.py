@@ -13,6 +13,7 @@ from substructures.analysis.motion.signals import Signal, Table, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
+from substructures.errors import among
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Symbol, array, program
@@ -39,7 +40,8 @@ class Prescribed:
         for k, (name, one) in enumerate(given.items()):
             pointer = f"/prescribed/{escape(name)}"
             if name not in model.coordinates:
-                scope.fault(pointer, "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+                message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates, k)}"
+                scope.fault(pointer, "unknown-coordinate", message)
             elif isinstance(one, Table):
                 require_covered(one, span, pointer)
                 self._tables.append((k, _spline(np.array(one.times), np.array(one.values))))

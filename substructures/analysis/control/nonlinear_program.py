@@ -19,7 +19,7 @@ from substructures.analysis.control.problem import ControlProblem, initial_state
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
 from substructures.tree.model import Model
 
@@ -180,9 +180,8 @@ def _demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[i
         given = dict(zip(model.coordinates, given, strict=True))
     for name in given:
         if name not in model.coordinates:
-            raise InvalidArgument.at(
-                f"{pointer}/{escape(name)}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'"
-            )
+            message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates)}"
+            raise InvalidArgument.at(f"{pointer}/{escape(name)}", "unknown-coordinate", message)
     pairs = ((a, given.get(name)) for a, name in enumerate(model.coordinates))
     return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
 
@@ -193,7 +192,8 @@ def _bounds(controls: Sequence[str], wanted: Demands) -> tuple[Array, Array]:
     for name, (least, most) in wanted.bounds.items():
         pointer = f"/bounds/{escape(name)}"
         if name not in controls:
-            raise InvalidArgument.at(pointer, "unknown-input", f"'{name[:80]}' is not one of the controls")
+            message = f"'{name[:80]}' is not one of the controls{among(name, controls)}"
+            raise InvalidArgument.at(pointer, "unknown-input", message)
         i = controls.index(name)
         low[i], high[i] = -np.inf if least is None else least, np.inf if most is None else most
         if not low[i] <= high[i]:

@@ -20,7 +20,7 @@ from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import StateArray, numbers, require_known, unknown
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument
+from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.part.scope import Scope
@@ -102,7 +102,7 @@ def require_solvable(model: Model, problem: ControlProblem) -> None:
     require_open(model.closures, LINEAR)
     known, controls = inputs_of(model), problem.controls
     faults = [
-        Fault(f"/controls/{i}", "unknown-input", f"unknown input '{str(name)[:80]}'; there are {', '.join(known)}")
+        Fault(f"/controls/{i}", "unknown-input", f"unknown input '{str(name)[:80]}'{among(name, known, i)}")
         for i, name in enumerate(controls)
         if name not in known
     ]

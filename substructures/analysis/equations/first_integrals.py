@@ -21,7 +21,7 @@ from substructures.analysis.equations.formulas import ModelFormulas, multipliers
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.symmetries import Direction, directions
 from substructures.certificate.integrals import constant
-from substructures.errors import Fault, InvalidArgument, listed
+from substructures.errors import Fault, InvalidArgument, among, listed
 from substructures.expr.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
@@ -82,9 +82,7 @@ def first_integrals(model: Model, inputs: Iterable[str] | None = None, zero: Ite
     known = model.input_names
     inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
     faults = [
-        Fault(
-            f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'; there are {listed(some)}"
-        )
+        Fault(f"/{field}", f"unknown-{field[:-1]}", f"unknown {field[:-1]} '{str(name)[:80]}'{among(name, some)}")
         for field, names, some in (("inputs", inputs, known), ("parameters", zero, model.parameters))
         for name in names
         if name not in some

@@ -9,7 +9,7 @@ import numpy as np
 
 from substructures.analysis.arguments import require_read
 from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
@@ -71,7 +71,8 @@ def quasi_velocity_rows(
         chosen = _chosen(f, rows.rows, near) if independent is None else list(independent)
         for i, name in enumerate(chosen):
             if name not in coordinates:
-                f.scope.fault(f"/independent/{i}", "unknown-coordinate", f"unknown coordinate '{name[:80]}'")
+                message = f"unknown coordinate '{name[:80]}'{among(name, coordinates, i)}"
+                f.scope.fault(f"/independent/{i}", "unknown-coordinate", message)
         require_read(f.scope)
         index = [coordinates.index(name) for name in chosen]
         # v_i = q'^a: rows of the unit matrix

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.analysis.arguments import NumberOrExpression, exact, one_of, require_read
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
@@ -110,8 +110,7 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
         elif isinstance(constraint, Closed):
             _close(f, constraint.name, f"{pointer}/name", result)
         elif constraint.frame not in f.model.frames:
-            known = ", ".join(f.model.frames[:20])
-            message = f"unknown frame '{constraint.frame}'; there are {known}"
+            message = f"unknown frame '{constraint.frame}'{among(constraint.frame, f.model.frames)}"
             scope.fault(f"{pointer}/frame", "unknown-frame", message)
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
@@ -158,8 +157,8 @@ def _require_closed(f: Workspace, constraints: Sequence[Constraint]) -> None:
 def _close(f: Workspace, name: str, pointer: str, result: VelocityRows) -> None:
     names = [(rows.name, row) for rows in f.model.closures for row in rows.rows]
     if name not in {closure for closure, _ in names}:
-        known = ", ".join(rows.name for rows in f.model.closures) or "none"
-        f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'; there are {known}")
+        known = [rows.name for rows in f.model.closures]
+        f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'{among(name, known)}")
         return
     found = f.outputs(["closure.jacobian", "closure.residual"])
     zero = f.graph.zero

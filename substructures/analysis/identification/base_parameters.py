@@ -34,7 +34,7 @@ from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.regressed import base_outputs
 from substructures.certificate.states import states_between
-from substructures.errors import InvalidArgument, TooLarge, VerificationFailed
+from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
 from substructures.expr.bind import bind
 from substructures.expr.direct import ball
 from substructures.expr.expand import expand
@@ -118,7 +118,7 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
     for i, name in enumerate(drives):
         if name not in DRIVES:
-            message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}"
+            message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}{meant(name, DRIVES)}"
             raise InvalidArgument.at(f"/drives/{i}", "unknown-drive", message)
     columns = _Columns(Y, tuple(dict.fromkeys(drives)))
     found = dependencies(columns.functions())

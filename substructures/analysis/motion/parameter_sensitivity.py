@@ -52,10 +52,11 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
     Raises InvalidInput for unknown parameters (``/parameters/i``) and quantities, and forces without derivative.
     """
     _require_parameters(model, parameters, "parameters")
+    known = list(model.program.outputs)
     faults = [
-        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity '{str(name)[:80]}'")
+        Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity '{str(name)[:80]}'{among(name, known, i)}")
         for i, name in enumerate(quantities)
-        if name not in model.program.outputs
+        if name not in known
     ]
     if faults:
         raise InvalidArgument(faults)

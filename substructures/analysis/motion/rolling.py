@@ -29,7 +29,7 @@ from substructures.analysis.motion.zeros import Watch
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.compile import compile_program
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.quantities.limits import reached
 from substructures.quantities.measured import numeric
@@ -233,7 +233,7 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
     if isinstance(given, Mapping):
         unknown = [name for name in given if name not in names]
         if unknown:
-            message = f"unknown velocity '{str(unknown[0])[:80]}'; there are {', '.join(names)}"
+            message = f"unknown velocity '{str(unknown[0])[:80]}'{among(unknown[0], names)}"
             raise InvalidArgument.at("/v", "unknown-velocity", message)
         given = [given.get(name, 0) for name in names]
     v = numeric(given, "/v")

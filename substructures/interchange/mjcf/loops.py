@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from substructures.array import Array
+from substructures.errors import among
 from substructures.interchange.bindings import mimic_of, single_coordinates
 from substructures.interchange.merge import vector
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
@@ -71,7 +72,7 @@ def _loop(node: Node, name: str, poses: dict[str | None, Pose]) -> Loop:
     first, second = node.text_of("body1"), node.attributes.get("body2")
     for body in (first, second):
         if body not in poses:
-            raise refuse(node.place, "unknown-link", f"there is no body '{body}'")
+            raise refuse(node.place, "unknown-link", f"there is no body '{body}'{among(body, filter(None, poses))}")
     if node.tag == "connect":
         anchor = np.array([value(x) for x in node.numbers("anchor", 3)])
         return _ball(name, first, second, anchor, poses)

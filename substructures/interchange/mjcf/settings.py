@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.errors import among
 from substructures.interchange.numbers import Number, decimal_of, multiple_of_pi, value
 from substructures.interchange.report import refuse
 from substructures.interchange.rotations import from_axis_angle, from_quaternion, from_z_axis, turn
@@ -113,7 +114,8 @@ class Defaults:
         """The element with the attributes of its class. Raises InvalidDocument for a class that is not there."""
         name = node.attributes.get("class", childclass or MAIN)
         if name not in self._classes:
-            raise refuse(node.place, "unknown-class", f"there is no default class '{name[:60]}'")
+            message = f"there is no default class '{name[:60]}'{among(name, self._classes)}"
+            raise refuse(node.place, "unknown-class", message)
         attributes = dict(self._classes[name].get(node.tag, {}))
         if any(k in node.attributes for k in _ORIENTATIONS):
             attributes = {k: v for k, v in attributes.items() if k not in _ORIENTATIONS}
