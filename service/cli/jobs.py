@@ -16,10 +16,11 @@ from service.cli.choices import one_of
 from service.cli.documents import named, read_document, read_from
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, table
-from service.cli.progress import counted, follow
+from service.cli.progress import follow
 from substructures.client import Client
 from substructures.client.connection import step
 from substructures.client.jobs import FORMATS, PATIENCE
+from substructures.client.progress import counted
 from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
@@ -76,7 +77,8 @@ def submit(
     document: 'substructures openapi', or /openapi.json of a server.
 
     With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was
-    cancelled.
+    cancelled, 6 when all succeeded but those that were skipped ("on_invalid": "skip"). A motion that fails or violates
+    a first integral is an item that failed.
     """
     with server.client() as client:
         document = read_document(file)

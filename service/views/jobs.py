@@ -36,6 +36,7 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         "progress": {
             "done": job.done,
             "failed": job.failed,
+            "skipped": job.skipped,
             "total": job.total,
             "fraction": round(progress.fraction, 6),
             "rate": progress.rate,

@@ -32,6 +32,7 @@ def test_export(filled: TestClient, store: Store) -> None:
     assert view["progress"] | {"rate": None} == {
         "done": 2,
         "failed": 0,
+        "skipped": 0,
         "total": 2,
         "fraction": 1,
         "rate": None,
