@@ -24,8 +24,9 @@ from substructures.client.progress import counted
 from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
+from substructures.quantities.evaluation import QUANTITIES
 
-Id = Annotated[str, typer.Argument(metavar="ID")]
+Id = Annotated[str, typer.Argument(metavar="ID", autocompletion=completion.jobs)]
 Wait = Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")]
 Patience = Annotated[
     float,
@@ -97,7 +98,11 @@ def retry(server: Server, id: Id, wait: Wait = False, patience: Patience = PATIE
 
 
 @with_server
-def remove(server: Server, ids: Annotated[list[str], typer.Argument(metavar="ID...")], json: Json = False) -> int:
+def remove(
+    server: Server,
+    ids: Annotated[list[str], typer.Argument(metavar="ID...", autocompletion=completion.jobs)],
+    json: Json = False,
+) -> int:
     """Remove jobs that have ended, with their results."""
     with server.client() as client:
         for job in ids:
@@ -115,7 +120,12 @@ def evaluate(
         Path,
         typer.Argument(metavar="FILE", help="States: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml."),
     ],
-    quantities: Annotated[str, typer.Option(help="metric,forces,... (default: those in the file).")] = "",
+    quantities: Annotated[
+        str,
+        typer.Option(
+            help="metric,forces,... (default: those in the file).", autocompletion=completion.listed(QUANTITIES)
+        ),
+    ] = "",
     format: Annotated[str, one_of(FORMATS, help="Of the results: npz or arrow.")] = "npz",  # noqa: A002 -- an option
     wait: Wait = False,
     patience: Patience = PATIENCE,
