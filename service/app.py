@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 
@@ -17,7 +17,7 @@ from service.http.away import Away
 from service.http.middleware import Conventions
 from service.http.short_way import ShortWay
 from service.metrics import Metrics
-from service.operations.seed import import_catalogue
+from service.operations.seed import Told, import_catalogue
 from service.pages import account
 from service.pages import routes as pages
 from service.queries import idempotency
@@ -77,24 +77,32 @@ DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: 
 
 
 @contextmanager
-def open_store(settings: Settings, kept: Kept | None = None) -> Iterator[Store]:
+def open_store(
+    settings: Settings,
+    kept: Kept | None = None,
+    require: Callable[[Store], None] = lambda _store: None,
+    progress: Told = lambda _done, _all: None,
+) -> Iterator[Store]:
     """The store of a server: claimed, migrated and with the shipped catalogue in it before anybody can ask.
 
-    ``kept``: what this process shares with others of the server. Raises DatabaseError, MigrationError.
+    ``kept``: what this process shares with others of the server; ``require`` refuses a store before anything is stored
+    in it; ``progress``: as ``told`` of :func:`import_catalogue`. Raises DatabaseError, MigrationError, and what
+    ``require`` does.
     """
     kept = kept or Kept()
     database = Database(settings.database, claim=kept.claim)
     label = str(kept.number) if settings.processes > 1 else ""
     store = Store(settings, database, Metrics(label))
     try:
+        require(store)
         if kept.number == 0:
-            _prepare(store, is_alone=kept.is_start or (settings.processes == 1 and not kept.path))
+            _prepare(store, kept.is_start or (settings.processes == 1 and not kept.path), progress)
         yield store
     finally:
         store.close()
 
 
-def _prepare(store: Store, is_alone: bool) -> None:
+def _prepare(store: Store, is_alone: bool, progress: Told) -> None:
     """``is_alone``: no other process of this server is at work."""
     settings, database = store.settings, store.database
     try:
@@ -102,7 +110,7 @@ def _prepare(store: Store, is_alone: bool) -> None:
             with database.write() as connection:
                 idempotency.forget(connection, timedelta(hours=settings.limits.idempotency_hours), timedelta(0))
         if settings.catalogue:
-            import_catalogue(store)
+            import_catalogue(store, progress)
     except DBAPIError as error:
         raise DatabaseError(f"cannot use the database {database.url}: {told(error)}") from None
 

@@ -23,6 +23,7 @@ from service.app import create_app, open_store
 from service.http.away import Away
 from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engine import Engine
+from service.operations.seed import Told
 from service.queries.keys import any_key
 from service.queue.engines import engine_of
 from service.queue.supervisor import Supervisor
@@ -40,14 +41,14 @@ NICE = 5  # of processes that compute for others: those that answer go first, jo
 AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
 
-def serve(settings: Settings) -> None:
-    """Serve until interrupted. Raises SettingsError rather than to listen beyond loopback without API keys."""
+def serve(settings: Settings, told: Told = lambda _done, _all: None) -> None:
+    """Serve until interrupted; ``told``: as of ``import_catalogue``. Raises SettingsError rather than to listen beyond
+    loopback without API keys.
+    """
     kept.computes, kept.of = kept.number >= settings.processes, kept.number - settings.processes
     if kept.is_start:
         _require_free(settings)
-    with open_store(settings, kept) as store:
-        _check_processes(store)
-        check_exposure(store)
+    with open_store(settings, kept, _require, told) as store:
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
         _prepare_to_answer()
         # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
@@ -68,6 +69,12 @@ def _cannot_listen(settings: Settings, error: OSError) -> SettingsError:
     where = f"{settings.host}:{settings.port}"
     another = "; is another server running? --port takes another one" if error.errno == errno.EADDRINUSE else ""
     return SettingsError(f"cannot listen on {where}: {error.strerror or error}{another}")
+
+
+def _require(store: Store) -> None:
+    """Raise SettingsError for a store that cannot be served as it is wanted."""
+    _check_processes(store)
+    check_exposure(store)
 
 
 def _check_processes(store: Store) -> None:
@@ -141,10 +148,10 @@ def check_exposure(store: Store) -> None:
 
 
 @contextmanager
-def background(settings: Settings) -> Iterator[str]:
-    """A server in a thread on a free port of loopback; gives its address."""
+def background(settings: Settings, told: Told = lambda _done, _all: None) -> Iterator[str]:
+    """A server in a thread on a free port of loopback; gives its address. ``told``: as of ``import_catalogue``."""
     with (
-        open_store(settings) as store,
+        open_store(settings, progress=told) as store,
         supervised(store, engine_of(settings)),
         socket.create_server(("127.0.0.1", 0)) as listener,
     ):

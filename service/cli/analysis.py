@@ -113,6 +113,7 @@ def analyse(
     text = _formula(wanted, what, Style("json" if json else format, form, bind, name), chosen)
     if out is not None:
         out.write_bytes(text)
+        print(f"{out}: {len(text)} bytes", file=sys.stderr)
     else:
         print(text.decode().rstrip("\n"))
     return 0

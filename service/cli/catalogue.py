@@ -60,6 +60,8 @@ def read(server: Server, folder: Folder, owner: Owner = "", private: Private = F
     With --private a change of a part that is public is refused.
     """
     files = sorted(path for path in folder.iterdir() if path.suffix in DOCUMENTS)
+    if not files:
+        print(f"{folder} has no definition in it ({', '.join(f'*{suffix}' for suffix in DOCUMENTS)})", file=sys.stderr)
     found = {path: _definition(path) for path in files}
     wanted = {"visibility": PRIVATE} if private else {}
     names = [each[0].name for each in found.values() if each is not None]

@@ -15,7 +15,7 @@ from time import perf_counter
 from typing import Any
 
 from service.cli.options import Json
-from service.cli.output import print_json
+from service.cli.output import print_json, shipped
 from service.server import background
 from service.settings import Settings
 from substructures.client import Client
@@ -52,7 +52,7 @@ def _job() -> list[dict[str, Any]]:
     with tempfile.TemporaryDirectory(prefix="substructures-demo-") as folder:
         settings = Settings(database=f"sqlite:///{Path(folder) / 'demo.db'}")
         start = perf_counter()
-        with background(settings) as address, Client(address) as client:
+        with shipped() as told, background(settings, told) as address, Client(address) as client:
             print(f"Server with the shipped catalogue on {address} ({_ms(start)}, temporary database).\n")
             _show_stored(client)
             checks = [_check_robot(client)]

@@ -19,6 +19,7 @@ from service.cli.trees import values
 from substructures.client.connection import step
 from substructures.quantities.evaluation import QUANTITIES
 from substructures.quantities.evaluation import evaluate as evaluated
+from substructures.quantities.states import STATE, wrong_length
 
 Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
 
@@ -70,6 +71,7 @@ def evaluate(
 
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
     source = local_source(path)
+    _check_lengths(request, source.model.coordinates)
     sources = source.sources()
     given = {"q": np.zeros(source.model.dof), **request}
     quantities = given.pop("quantities")
@@ -81,7 +83,15 @@ def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
 def _there(server: Server, tree: str, request: Mapping[str, Any]) -> dict[str, Any]:
     with server.client() as client:
         known = client.request("GET", f"/v1/trees/{step(tree)}").json()
+        _check_lengths(request, known["coordinates"])
         return dict(client.evaluate(tree, **{"q": [0.0] * known["dof"], **request}))
+
+
+def _check_lengths(request: Mapping[str, Any], coordinates: Sequence[str]) -> None:
+    """One state is meant, also of one coordinate, where requests may have many. Raises BadParameter."""
+    for name in STATE:
+        if name in request and len(request[name]) != len(coordinates):
+            raise typer.BadParameter(f"--{name}: {wrong_length(len(request[name]), coordinates)}")
 
 
 def _numbers(text: str) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from errno import EISDIR
 from pathlib import Path
 from typing import Annotated
 
@@ -31,7 +32,9 @@ def export(
         ),
     ],
     target: Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")],
-    quantities: Annotated[str, typer.Option(help="name,... (metric, christoffel, forces).")] = "",
+    quantities: Annotated[
+        str, typer.Option(help="name,... (metric, christoffel, forces).", autocompletion=completion.exported)
+    ] = "",
     name: Annotated[str, typer.Option(help="Prefix of functions (the name of the tree).")] = "",
     bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
     together: Annotated[
@@ -53,6 +56,8 @@ def export(
 ) -> int:
     """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
     names = tuple(text for text in quantities.split(",") if text)
+    if out is not None and out.is_dir():
+        raise IsADirectoryError(EISDIR, "a folder", str(out))
     request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import httpx2
 from sqlalchemy.exc import DBAPIError
 
@@ -29,6 +31,12 @@ def told_of(error: Exception) -> list[str] | None:
             return [line + ("; without TLS an address begins with http://" if url.scheme == "https" else "")]
         case httpx2.HTTPError():
             return [f"no answer from the server: {error}"]
+        case IsADirectoryError() if error.filename:
+            return [f"{error.filename} is a folder; the name of a file is needed"]
+        case NotADirectoryError() | FileExistsError() if error.filename:
+            return [f"{error.filename} is a file; the name of a folder is needed"]
+        case FileNotFoundError() if error.filename and not Path(str(error.filename)).parent.is_dir():
+            return [f"{error.filename}: there is no folder {Path(str(error.filename)).parent}"]
         case OSError():
             return [f"{error.filename or 'error'}: {error.strerror or error}"]
         case ValueError() | OverflowError():

@@ -16,15 +16,17 @@ from service.cli.choices import one_of
 from service.cli.documents import named, read_document, read_from
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, table
-from service.cli.progress import counted, follow
+from service.cli.progress import follow
 from substructures.client import Client
 from substructures.client.connection import step
 from substructures.client.jobs import FORMATS, PATIENCE
+from substructures.client.progress import counted
 from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
+from substructures.quantities.evaluation import QUANTITIES
 
-Id = Annotated[str, typer.Argument(metavar="ID")]
+Id = Annotated[str, typer.Argument(metavar="ID", autocompletion=completion.jobs)]
 Wait = Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")]
 Patience = Annotated[
     float,
@@ -76,7 +78,8 @@ def submit(
     document: 'substructures openapi', or /openapi.json of a server.
 
     With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was
-    cancelled.
+    cancelled, 6 when all succeeded but those that were skipped ("on_invalid": "skip"). A motion that fails or violates
+    a first integral is an item that failed.
     """
     with server.client() as client:
         document = read_document(file)
@@ -95,7 +98,11 @@ def retry(server: Server, id: Id, wait: Wait = False, patience: Patience = PATIE
 
 
 @with_server
-def remove(server: Server, ids: Annotated[list[str], typer.Argument(metavar="ID...")], json: Json = False) -> int:
+def remove(
+    server: Server,
+    ids: Annotated[list[str], typer.Argument(metavar="ID...", autocompletion=completion.jobs)],
+    json: Json = False,
+) -> int:
     """Remove jobs that have ended, with their results."""
     with server.client() as client:
         for job in ids:
@@ -113,7 +120,12 @@ def evaluate(
         Path,
         typer.Argument(metavar="FILE", help="States: .npz or .arrow with q, qd, t, inputs.<name>, ...; .json, .yaml."),
     ],
-    quantities: Annotated[str, typer.Option(help="metric,forces,... (default: those in the file).")] = "",
+    quantities: Annotated[
+        str,
+        typer.Option(
+            help="metric,forces,... (default: those in the file).", autocompletion=completion.listed(QUANTITIES)
+        ),
+    ] = "",
     format: Annotated[str, one_of(FORMATS, help="Of the results: npz or arrow.")] = "npz",  # noqa: A002 -- an option
     wait: Wait = False,
     patience: Patience = PATIENCE,

@@ -65,6 +65,13 @@ def show(database: Store = None, json: Json = False) -> int:
     if json:
         print_json([{name: x for name, x in asdict(key).items() if name != "secret_hash"} for key in found])
         return 0
+    if not found:
+        advice = "'substructures key create --owner TEAM --scope admin' makes the first"
+        print(
+            f"there are no keys, so the server is open to all of this machine, and to no other; {advice}",
+            file=sys.stderr,
+        )
+        return 0
     rows = [(key.id, key.owner, key.scopes, key.created[:10], _state(key), key.label) for key in found]
     table(("id", "owner", "scopes", "created", "state", "label"), rows)
     return 0

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from service.cli import completion
 from service.cli.options import Json, OfTrees, Server, with_server
 from service.cli.output import print_json, table
 from service.cli.pages import items
@@ -31,7 +32,9 @@ def search(
     tree: OfTrees = False,
     joints: Annotated[str | None, typer.Option(help="Types of the joints in order, e.g. RRP.")] = None,
     tag: Annotated[str | None, typer.Option(help="Of parts.")] = None,
-    port: Annotated[str | None, typer.Option(help="Parts that have a port of this name.")] = None,
+    port: Annotated[
+        str | None, typer.Option(help="Parts that have a port of this name.", autocompletion=completion.ports)
+    ] = None,
     source: Annotated[str | None, typer.Option(help="Words in what a part says of its source.")] = None,
     uses: Annotated[str | None, typer.Option(help="Trees that have this part.")] = None,
     dof_min: Annotated[int | None, typer.Option(min=0, help="Coordinates at least.")] = None,

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from time import monotonic
 from typing import Any
 
 from rich.console import Console
+from rich.status import Status
 from rich.table import Table
 
 #: columns where there is no terminal: nothing is broken or cut there
 WIDE = 100_000
+QUICK = 1.0  # seconds for which nobody is told what is done
+#: lines for those who wait, as they are now on the terminal
+_shown: list[Status] = []
 
 
 def console(to_errors: bool = False) -> Console:
@@ -54,8 +59,43 @@ def waiting(what: str) -> Iterator[None]:
     if not sys.stderr.isatty():
         yield
         return
-    with console(to_errors=True).status(f"{what} ..."):
-        yield
+    with console(to_errors=True).status(f"{what} ...") as status:
+        _shown.append(status)
+        try:
+            yield
+        finally:
+            _shown.remove(status)
+
+
+@contextmanager
+def counting(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Give what is told how many of all are done. It says so from the first second on: on a terminal over and over, in
+    the line of who waits already if there is one; elsewhere once.
+    """
+    begun, is_said = monotonic(), False
+    with ExitStack() as own:
+
+        def told(done: int, of: int) -> None:
+            """Show it, unless it was quick or is over."""
+            nonlocal is_said
+            if done == of:
+                own.close()
+            elif monotonic() - begun >= QUICK:
+                if not sys.stderr.isatty():
+                    if not is_said:
+                        print(f"{what}: {done} of {of} ...", file=sys.stderr, flush=True)
+                elif _shown:
+                    _shown[-1].update(f"{what}: {done} of {of} ...")
+                else:
+                    own.enter_context(waiting(f"{what}: {done} of {of}"))
+                is_said = True
+
+        yield told
+
+
+def shipped() -> AbstractContextManager[Callable[[int, int], None]]:
+    """What tells of the first start of a store."""
+    return counting("first start, the shipped catalogue is derived and stored")
 
 
 def further(detail: str, more: str) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 from service import keys
+from service.cli.output import shipped
 from service.database.connections import Database
 from service.queries.keys import any_key
 from service.server import background
@@ -19,8 +20,11 @@ DAYS = 1 / 24
 @contextmanager
 def serving(settings: Settings) -> Iterator[Client]:
     """Of a store with keys by one that is made for this, and removed. Raises DatabaseError, MigrationError."""
-    with background(settings) as address, _key(settings.database) as key, Client(address, key) as client:
-        yield client
+    with ExitStack() as opened:
+        with shipped() as told:
+            address = opened.enter_context(background(settings, told))
+        key = opened.enter_context(_key(settings.database))
+        yield opened.enter_context(Client(address, key))
 
 
 @contextmanager

@@ -12,11 +12,12 @@ from typing import Any, TextIO
 from service.cli.output import WIDE, print_json
 from substructures.client import Client, ServerLost
 from substructures.client.jobs import PATIENCE
+from substructures.client.progress import counted
 
 WIDTH = 30
 SHOWN = 3  # items that failed
 #: exit codes of commands that wait for a job
-SOME_FAILED, ALL_FAILED, CANCELLED = 3, 4, 5
+SOME_FAILED, ALL_FAILED, CANCELLED, SOME_SKIPPED = 3, 4, 5, 6
 LINES = 10.0  # seconds between lines where there is no terminal
 
 
@@ -52,11 +53,15 @@ def became_job(client: Client, job: Mapping[str, Any], wait: bool, as_json: bool
 
 
 def outcome(job: Mapping[str, Any]) -> int:
-    """The exit code of a job that has ended: 0 all succeeded, 3 some items failed, 4 all did, 5 it was cancelled."""
+    """The exit code of a job that has ended: 0 all succeeded, 3 some items failed, 4 all did, 5 it was cancelled, 6 all
+    that were taken succeeded and others were left out.
+    """
+    progress = job["progress"]
     if job["state"] == "cancelled":
         return CANCELLED
-    progress = job["progress"]
-    return 0 if not progress["failed"] else ALL_FAILED if progress["failed"] == progress["total"] else SOME_FAILED
+    if progress["failed"]:
+        return ALL_FAILED if progress["failed"] == progress["total"] else SOME_FAILED
+    return SOME_SKIPPED if progress.get("skipped") else 0
 
 
 def summary(job: Mapping[str, Any]) -> str:
@@ -67,8 +72,9 @@ def summary(job: Mapping[str, Any]) -> str:
     counts = [f"{done:,} succeeded"]
     counts += [f"{progress['failed']:,} failed"] if progress["failed"] else []
     counts += [f"{left:,} cancelled"] if left else []
+    skipped = f"; {progress['skipped']:,} skipped" if progress.get("skipped") else ""
     name = f"{job['kind']} '{job['label']}'" if job.get("label") else job["kind"]
-    return f"{name}: {', '.join(counts)} of {progress['total']:,}"
+    return f"{name}: {', '.join(counts)} of {progress['total']:,}{skipped}"
 
 
 def _explain(client: Client, job: str) -> None:
@@ -149,13 +155,6 @@ def text(job: dict[str, Any]) -> str:
     if progress["eta_seconds"] is not None:
         words.append(f"{_time(progress['eta_seconds'])} left")
     return "  ".join(words)
-
-
-def counted(job: dict[str, Any]) -> str:
-    """How many items have ended."""
-    progress = job["progress"]
-    failed = f", {progress['failed']:,} failed" if progress["failed"] else ""
-    return f"{progress['done']:,} of {progress['total']:,}{failed}"
 
 
 def _time(seconds: float) -> str:

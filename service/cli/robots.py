@@ -95,7 +95,8 @@ def read(
     for line in _told(found):
         print(line, file=sys.stderr)
     if out:
-        out.write_bytes(write_json(document) + b"\n")
+        size = out.write_bytes(write_json(document) + b"\n")
+        print(f"{out}: {size} bytes", file=sys.stderr)
     answer = _submitted(server, found.tree is None, document) if submit else None
     if json:
         print(write_json({**found.plain(), "stored": answer}).decode())

@@ -8,6 +8,7 @@ import typer
 
 from service import logs
 from service.cli.options import Store, settings
+from service.cli.output import shipped
 from service.server import serve as serve_with
 from service.server import work
 
@@ -28,7 +29,8 @@ def serve(
     """Run the service until it is interrupted. Settings also come from SUBSTRUCTURES_* variables."""
     logs.configure()
     given = {"host": host, "port": port, "processes": processes, "engine": engine, "engine_address": engine_address}
-    serve_with(settings(**given, workers=workers, database=database))
+    with shipped() as told:
+        serve_with(settings(**given, workers=workers, database=database), told)
     return 0
 
 

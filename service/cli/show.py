@@ -26,7 +26,10 @@ def show(
         str,
         typer.Argument(help="Of a part, or else of a tree; also NAME@2.", autocompletion=completion.parts_and_trees),
     ],
-    quantity: Annotated[str, typer.Argument(help="A formula of it: metric, christoffel, forces, ...")] = "",
+    quantity: Annotated[
+        str,
+        typer.Argument(help="A formula of it: metric, christoffel, forces, ...", autocompletion=completion.formulas),
+    ] = "",
     tree: Annotated[bool, typer.Option("--tree", help="The tree, where there is a part of this name, too.")] = False,
     drawing: Annotated[bool, typer.Option("--drawing", help="Its structure, drawn in text.")] = False,
     svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Write its picture to this file.")] = None,

@@ -68,7 +68,10 @@ def couple(
     part: Annotated[
         str, typer.Argument(metavar="PART", help="Name in the catalogue; also NAME@2.", autocompletion=completion.parts)
     ],
-    at: Annotated[str, typer.Option(metavar="INSTANCE.PORT", help="Where it is mounted.")] = "world",
+    at: Annotated[
+        str,
+        typer.Option(metavar="INSTANCE.PORT", help="Where it is mounted.", autocompletion=completion.places),
+    ] = "world",
     name: Annotated[str | None, typer.Option(help="Of the instance (that of the part).")] = None,
     set: Set = None,  # noqa: A002 -- name of the option
     position: Vector = None,

@@ -148,7 +148,10 @@ def publish(
     server: Server,
     tree: Annotated[str, typer.Argument(help="name, or name@2.", autocompletion=completion.trees)],
     name: Annotated[str, typer.Option(help="Of the part (that of the tree).")] = "",
-    port: Annotated[list[str] | None, typer.Option(metavar="NAME=INSTANCE.PORT", help="May be repeated (all).")] = None,
+    port: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=INSTANCE.PORT", help="May be repeated (all).", autocompletion=completion.places),
+    ] = None,
     free: Annotated[
         list[str] | None, typer.Option(metavar="PARAMETER", help="That is bound to a number; may be repeated.")
     ] = None,

@@ -30,6 +30,7 @@ from sqlalchemy import (
     Text,
     false,
     text,
+    true,
 )
 
 from service.database.tables import metadata
@@ -66,6 +67,7 @@ jobs = Table(
     Column("owner", Text, nullable=False, server_default="local"),
     Column("label", Text, nullable=False, server_default=""),  # what it is for, in words
     Column("retry_of", Text, nullable=True),  # the job whose items are tried again
+    Column("skipped", Integer, nullable=False, server_default="0"),  # items of the submission that were left out
     _known("ck_jobs_state", JOB_STATES),
     CheckConstraint("failed <= done AND done <= total", name="ck_jobs_counts"),
     Index(None, "state", "id"),
@@ -107,6 +109,7 @@ results = Table(
     Column("created", Text, nullable=False),
     Column("principal", Text, nullable=False, server_default=""),  # whose job computed it
     Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of summary and files
+    Column("is_good", Boolean, nullable=False, server_default=true()),  # whether its items have succeeded
     Index(None, "principal", "size"),
 )
 

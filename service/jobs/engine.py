@@ -32,7 +32,9 @@ class Work:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of an item that was computed: a summary and files, or the problem document of its own failure."""
+    """What came of an item that was computed: a summary and files, or the problem document of its own failure; with
+    both the item has failed, and what there is of its result is kept beside the problem.
+    """
 
     summary: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, bytes] = field(default_factory=dict)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from service.database.connections import Connection
 from service.operations import catalogue, trees
 from service.operations.sources import tree_parts
 from service.queries.catalogue import Version
@@ -52,14 +53,27 @@ def of_versions(store: Store, a: Version, b: Version) -> Difference:
     return of_parts(parts[0], parts[1], admit)
 
 
-def of_revisions(store: Store, a: Tree, b: Tree) -> Difference:
-    """The difference of two revisions."""
+def of_revisions(store: Store, viewer: Viewer, a: Tree, b: Tree) -> Difference:
+    """The difference of two revisions, whose parts are called by their versions where the viewer sees these."""
     (first, ours), (second, theirs) = (tree_parts(store, tree) for tree in (a, b))
     with store.database.read() as connection:
         models = [store.model(connection, tree) for tree in (a, b)]
+        references = {x.substructure for spec in (first, second) for x in spec.instances if x.substructure is not None}
+        called = {each: _called(connection, viewer, each) for each in references}
     common = [
         (name, part, theirs[name])
         for name, part in ours.items()
         if name in theirs and part.definition.digest != theirs[name].definition.digest
     ]
-    return of_trees((first, models[0]), (second, models[1]), common)
+    return of_trees((first, models[0]), (second, models[1]), common, lambda given: called.get(given, given))
+
+
+def _called(connection: Connection, viewer: Viewer, reference: str) -> str:
+    """The version that a reference with a digest means, or the reference where the viewer does not see it."""
+    try:
+        version = catalogue.find(connection, viewer, reference)
+    except Refused as error:
+        if error.status != 404:
+            raise
+        return reference
+    return f"{version.name}@{version.version}"

@@ -60,7 +60,8 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
             stored = _upgraded(connection, viewer, read_json(attempt.item.encode()), outcome)
         case _:
             files = outcome.files
-    return results.Result(attempt.key, attempt.kind, write_json({**outcome.summary, **stored}).decode(), files)
+    told = write_json({**outcome.summary, **stored}).decode()
+    return results.Result(attempt.key, attempt.kind, told, files, is_good=outcome.problem is None)
 
 
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:

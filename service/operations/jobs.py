@@ -210,7 +210,7 @@ def require_room(connection: Connection, new: int, principal: str, limits: Limit
 def submit(connection: Connection, viewer: Viewer, submission: JobSubmission, limits: Limits) -> Job:
     """Queue a job. Raises Refused 503 when the queue is full."""
     require_room(connection, len(submission.items), viewer.key, limits)
-    about = submission.shared, submission.label, submission.retry_of
+    about = submission.shared, submission.label, submission.retry_of, len(submission.skipped)
     identifier = jobs.add_job(connection, submission.kind, viewer, submission.items, *about)
     uploads.refer(connection, identifier, submission.uploads)
     told = {"kind": submission.kind, "items": len(submission.items)}

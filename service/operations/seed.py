@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from time import perf_counter
 
 from service.operations import catalogue as operations
@@ -18,21 +19,29 @@ from substructures.part.definition import Definition
 _log = logging.getLogger(__name__)
 
 
-def import_catalogue(store: Store) -> int:
+#: is told how many of the shipped definitions are done, and of how many
+Told = Callable[[int, int], None]
+
+
+def import_catalogue(store: Store, told: Told = lambda _done, _all: None) -> int:
     """Store every shipped definition that is missing, each in a transaction; return how many were new.
 
-    A name that somebody else has stays theirs.
+    A name that somebody else has stays theirs. ``told`` hears of each that is new.
     """
-    start, added = perf_counter(), 0
-    for name in catalogue.names():
+    start, added, names = perf_counter(), 0, catalogue.names()
+    for done, name in enumerate(names, 1):
         definition = Definition.read(catalogue.load(name))
         if not _is_ours(store, definition):
             _log.warning("'%s' of the shipped catalogue is left out: the name belongs to somebody else", name)
             continue
         submission = operations.prepare(store, SHIPPED, definition, PLAIN, Origin("catalogue"))
         with store.database.write() as connection:
-            added += operations.submit(connection, SHIPPED, submission)[1]
+            is_new = operations.submit(connection, SHIPPED, submission)[1]
+        added += is_new
+        if is_new:
+            told(done, len(names))
     if added:
+        told(len(names), len(names))
         _log.info("imported %d catalogue entries in %.1f s", added, perf_counter() - start)
     return added
 

@@ -91,7 +91,7 @@ def _bar(progress: Progress) -> Html:
 
 def _counted(job: Job) -> Content:
     failed = tag("span", f", {job.failed:,} failed", class_="warn") if job.failed else None
-    return [f"{job.done:,} of {job.total:,}", failed]
+    return [f"{job.done:,} of {job.total:,}", failed, f", {job.skipped:,} skipped" if job.skipped else None]
 
 
 def _time(time: str | None) -> str | None:

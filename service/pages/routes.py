@@ -108,7 +108,7 @@ async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, vi
         """The page, made in a thread."""
         a, b = differences.revisions(store, viewer, ref, to)
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
-        return answer(request, difference_page("trees", *names, differences.of_revisions(store, a, b)))
+        return answer(request, difference_page("trees", *names, differences.of_revisions(store, viewer, a, b)))
 
     return await in_time(request, shown, ADVICE)
 

@@ -39,6 +39,7 @@ class Job:
     owner: str
     label: str
     retry_of: str | None
+    skipped: int
 
     def is_seen_by(self, viewer: Viewer) -> bool:
         """Whether the job is there for a viewer."""
@@ -91,6 +92,7 @@ def add_job(
     shared: bool = False,
     label: str = "",
     retry_of: str | None = None,
+    skipped: int = 0,
 ) -> str:
     """Queue a job. Items whose result is known already have succeeded at once."""
     share_results(connection)
@@ -98,6 +100,7 @@ def add_job(
     counts = {"total": len(items), "done": 0, "failed": 0, "attempts": 0}
     row = {"id": identifier, "kind": kind, "state": "queued", "created": now(), **counts}
     row |= {"principal": viewer.key, "owner": viewer.owner, "shared": shared, "label": label, "retry_of": retry_of}
+    row["skipped"] = skipped
     connection.execute(insert(jobs).values(**row))
     common = {"job": identifier, "state": "queued", "attempts": 0, "deaths": "[]", "fraction": 0.0}
     rows = [
@@ -122,7 +125,7 @@ def share_results(connection: Connection, exclusive: bool = False) -> None:
 
 def succeed_known(connection: Connection, job: str) -> list[int]:
     """Queued items of a locked job whose result is there succeed: their positions."""
-    chosen = and_(job_items.c.job == job, QUEUED, job_items.c.key.in_(select(results.c.key)))
+    chosen = and_(job_items.c.job == job, QUEUED, job_items.c.key.in_(select(results.c.key).where(results.c.is_good)))
     done = update(job_items).where(chosen).values(state="succeeded", fraction=1.0, finished=now())
     return sorted(connection.execute(done.returning(job_items.c.position)).scalars())
 
@@ -204,7 +207,8 @@ def page_jobs(
 def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[JobItem]:
     """Up to ``size`` items that follow the position ``after``."""
     names = [name for name in JobItem.__slots__ if name not in ("summary", "item")]
-    summary = case((job_items.c.state == "succeeded", results.c.summary))
+    is_its = results.c.is_good == (job_items.c.state == "succeeded")
+    summary = case((job_items.c.state.in_(("succeeded", "failed")) & is_its, results.c.summary))
     item = case((job_items.c.state == "failed", job_items.c.item))
     columns: list[Any] = [*(job_items.c[name] for name in names), item, summary]
     query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))

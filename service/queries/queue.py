@@ -87,7 +87,7 @@ def _take(
     # what was lost before goes behind the others, so that it neither holds them up nor uses its attempts up
     rows = connection.execute(query.order_by(job_items.c.attempts, job_items.c.position).limit(size)).all()
     keys = [row.key for row in rows]
-    known = set(connection.execute(select(results.c.key).where(results.c.key.in_(keys))).scalars())
+    known = set(connection.execute(select(results.c.key).where(results.c.key.in_(keys), results.c.is_good)).scalars())
     for found, positions in job_queries.succeed_equal(connection, [identifier], sorted(known)).items() if known else ():
         changes.add(found, "succeeded", positions)
     first = {row.key: row for row in reversed(rows) if row.key not in known}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, delete, select
 
 from service.database.job_tables import result_files, results
 from service.queries.common import now, put_all
@@ -22,13 +22,14 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of an item; ``summary`` is JSON."""
+    """What came of an item; ``summary`` is JSON. One that is not good is of an item that failed."""
 
     key: str
     kind: str
     summary: str
     files: Mapping[str, bytes]
     principal: str = ""
+    is_good: bool = True
 
     @property
     def size(self) -> int:
@@ -37,8 +38,12 @@ class Result:
 
 
 def put_results(connection: Connection, found: Sequence[Result]) -> None:
-    """Keep results; of equal ones the first stays."""
+    """Keep results; of equal ones the first stays, unless it is of an item that failed."""
     created = now()
+    bad = results.c.key.in_([each.key for each in found]) & ~results.c.is_good
+    if keys := list(connection.execute(select(results.c.key).where(bad)).scalars()):
+        for table in (result_files, results):
+            connection.execute(delete(table).where(table.c.key.in_(keys)))
     put_all(connection, results, [{**_row(each), "created": created} for each in found])
     files = [
         {"key": each.key, "name": name, "size": len(data), "content": data}
@@ -50,7 +55,7 @@ def put_results(connection: Connection, found: Sequence[Result]) -> None:
 
 def _row(result: Result) -> dict[str, str | int]:
     told: dict[str, str | int] = {"key": result.key, "kind": result.kind, "summary": result.summary}
-    return told | {"principal": result.principal, "size": result.size}
+    return told | {"principal": result.principal, "size": result.size, "is_good": result.is_good}
 
 
 def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]:

@@ -160,9 +160,9 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
             lost = held[each.attempt.id]
             _again(connection, lost, (*lost.deaths, each.death), changes)
     outcomes = [(each.attempt, each.outcome) for each in valid if each.outcome is not None]
-    good = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None]
+    kept = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None or outcome.files]
     problems = {attempt.id: outcome.problem for attempt, outcome in outcomes if outcome.problem is not None}
-    problems |= _keep(connection, good, round_.take)
+    problems |= _keep(connection, kept, round_.take)
     finished = [(a, _dump(problems[a.id]) if a.id in problems else None) for a, _ in outcomes]
     queue.finish(connection, finished)
     for attempt, problem_text in finished:
@@ -174,27 +174,27 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
 
 
 def _keep(
-    connection: Connection, good: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
+    connection: Connection, kept: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
 ) -> dict[str, Mapping[str, Any]]:
     """Keep outcomes, together or, when one of them cannot be kept, each for itself: the problems by attempt."""
-    fault = _fault(connection, good, take)
+    fault = _fault(connection, kept, take)
     if fault is None:
         return {}
-    if len(good) == 1:
-        return {good[0][0].id: fault}
-    faults = {each[0].id: _fault(connection, [each], take) for each in good}
+    if len(kept) == 1:
+        return {kept[0][0].id: fault}
+    faults = {each[0].id: _fault(connection, [each], take) for each in kept}
     return {identifier: each for identifier, each in faults.items() if each is not None}
 
 
 def _fault(
-    connection: Connection, good: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
+    connection: Connection, kept: Sequence[tuple[Attempt, Outcome]], take: job_results.Take | None
 ) -> Mapping[str, Any] | None:
     """Keep outcomes, all or none; the problem when they cannot be kept."""
-    if not good:
+    if not kept:
         return None
     try:
         with connection.begin_nested():
-            job_results.keep(connection, good, take)
+            job_results.keep(connection, kept, take)
     except StaleError as error:
         return problem(Refused(409, "conflict", str(error)))
     except Refused as error:
@@ -202,7 +202,7 @@ def _fault(
     except Exception as error:
         if is_outage(error):  # the database, not the item
             raise
-        _log.exception("outcomes cannot be kept: %s", ", ".join(attempt.id for attempt, _ in good))
+        _log.exception("outcomes cannot be kept: %s", ", ".join(attempt.id for attempt, _ in kept))
         return problem(Refused(500, "internal-error", "the result cannot be stored; the log says why"))
     return None
 

@@ -47,7 +47,9 @@ async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, vi
         is_fixed = is_pinned(ref) and is_pinned(to) and a.is_public and b.is_public
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
         tag = etag(a.digest, a.program, b.digest, b.program, "difference", *names)
-        return conditional(request, tag, is_fixed, lambda: _answer(names, differences.of_revisions(store, a, b)))
+        return conditional(
+            request, tag, is_fixed, lambda: _answer(names, differences.of_revisions(store, viewer, a, b))
+        )
 
     return await in_time(request, answered, ADVICE)
 

@@ -19,7 +19,7 @@ from service.queries import content, job_events, results
 from service.queries import jobs as rows
 from service.routes.bodies import binary
 from service.store import Store
-from service.views.jobs import event_text, item_view
+from service.views.jobs import event_text, file_name, item_view
 from service.views.resources import dump
 from substructures.documents import read_json
 
@@ -99,8 +99,8 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 
 @router.get("/archive", response_class=Response, responses=ZIP)
 def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
-    """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it; of a tree
-    or part that was stored all its formulas, ``<position>/program.json``."""
+    """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it with
+    the endings of their formats; of a tree or part that was stored all its formulas, ``<position>/program.json``."""
     with store.database.read() as connection:
         jobs.find(connection, viewer, job)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
@@ -134,7 +134,10 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
                 yield f"{item.position}/program.json", formulas
             for file in there:
                 with store.database.read() as connection:
-                    yield f"{item.position}/{file.name}", results.get_file(connection, file.key, file.name) or b""
+                    yield (
+                        f"{item.position}/{file_name(item, file.name)}",
+                        results.get_file(connection, file.key, file.name) or b"",
+                    )
         if len(items) < ITEMS:
             return
         after = items[-1].position

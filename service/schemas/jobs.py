@@ -81,7 +81,8 @@ class JobProgress(Shape):
     """How far a job is."""
 
     done: int = Field(description="items that succeeded or failed")
-    failed: int
+    failed: int = Field(description="also those of which a part of the result is there")
+    skipped: int = Field(description="items of the submission that were left out; `total` does not count them")
     total: int
     fraction: float = Field(description="0 to 1, with parts of running items")
     rate: float | None = Field(description="items per second, of late")

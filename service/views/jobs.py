@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import PurePath
 from typing import Any
 
 import orjson
@@ -12,11 +13,25 @@ from service.operations.jobs import Progress, Skipped
 from service.queries.job_events import JobEvent
 from service.queries.jobs import Job, JobItem
 from service.queries.results import File
+from substructures.export.render import LANGUAGES
 
 BINARY = "application/octet-stream"
 SHOWN = 6  # parts of a tree
 MEDIA_TYPES = {"certificate": "application/json", "result": "application/x-npz", "text": "text/plain; charset=utf-8"}
 MEDIA_TYPES |= {"archive": "application/zip"}
+#: endings of files by their media types
+ENDINGS = {
+    "application/json": ".json",
+    "application/x-npz": ".npz",
+    "application/vnd.apache.arrow.stream": ".arrow",
+    "application/zip": ".zip",
+    "text/csv": ".csv",
+    "image/svg+xml": ".svg",
+    "text/plain": ".txt",
+    "application/x-latex": ".tex",
+    "application/xhtml+xml": ".xhtml",
+    **{language.media.partition(";")[0]: language.suffix for language in LANGUAGES.values()},
+}
 
 
 def job_path(identifier: str) -> str:
@@ -36,6 +51,7 @@ def job_view(job: Job, progress: Progress) -> dict[str, Any]:
         "progress": {
             "done": job.done,
             "failed": job.failed,
+            "skipped": job.skipped,
             "total": job.total,
             "fraction": round(progress.fraction, 6),
             "rate": progress.rate,
@@ -104,6 +120,12 @@ def media_type(item: JobItem, name: str) -> str:
     """The media type of a file: what the item says of itself, or what is usual for the name."""
     said = orjson.loads(item.summary or "{}").get("media_type")
     return str(said) if said and name in ("result", "text") else MEDIA_TYPES.get(name, BINARY)
+
+
+def file_name(item: JobItem, name: str) -> str:
+    """What a file is called where it stands alone: with the ending of its target, or of its media type."""
+    target = str(orjson.loads(item.summary or "{}").get("name", ""))
+    return name + (PurePath(target).suffix or ENDINGS.get(media_type(item, name).partition(";")[0], ""))
 
 
 def event_text(event: JobEvent) -> bytes:

@@ -17,7 +17,7 @@ from substructures.client.answers import Answer, Referable
 from substructures.client.connection import KEY, Caller, step
 from substructures.client.numbers import Evaluation
 from substructures.client.problems import ProblemError, check
-from substructures.client.progress import Bar
+from substructures.client.progress import Bar, counted
 from substructures.client.results import part_of, require_result, result_of
 from substructures.client.retries import GATEWAY
 from substructures.formats import arrow
@@ -55,8 +55,7 @@ class Job(Answer):
         self._caller = caller
 
     def __repr__(self) -> str:
-        progress = self["progress"]
-        return f"Job {self['id']}: {self['kind']}, {self['state']}, {progress['done']:,} of {progress['total']:,}"
+        return f"Job {self['id']}: {self['kind']}, {self['state']}, {counted(self)}"
 
     @property
     def ref(self) -> str:
@@ -91,7 +90,8 @@ class Job(Answer):
 
     def results(self) -> Iterator[Any]:
         """What its items have found, in order, each as soon as it is there: evaluations, motions, answers, bytes of
-        other files. Raises ProblemError for an item that failed or was cancelled.
+        other files; also what there is of an analysis that failed, whose ``status`` or ``is_right`` says so. Raises
+        ProblemError for another item that failed, or was cancelled.
         """
         return self._caller.found(self, self["kind"])
 

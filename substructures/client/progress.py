@@ -40,9 +40,14 @@ def line(job: Mapping[str, Any]) -> str:
     """A bar, the state, how many items have ended, and the time that is left."""
     progress = job["progress"]
     done = int(WIDTH * progress["fraction"])
-    failed = f", {progress['failed']:,} failed" if progress["failed"] else ""
     left = progress.get("eta_seconds")
-    told = (
-        f"[{'#' * done}{'.' * (WIDTH - done)}]  {job['state']}  {progress['done']:,} of {progress['total']:,}{failed}"
-    )
+    told = f"[{'#' * done}{'.' * (WIDTH - done)}]  {job['state']}  {counted(job)}"
     return told if left is None else f"{told}  {left:.0f} s left"
+
+
+def counted(job: Mapping[str, Any]) -> str:
+    """How many items have ended, and what became of those that did not succeed; a server may count no skipped ones."""
+    progress = job["progress"]
+    cancelled = progress["total"] - progress["done"] if job["state"] == "cancelled" else 0
+    counts = (("failed", progress["failed"]), ("cancelled", cancelled), ("skipped", progress.get("skipped", 0)))
+    return ", ".join([f"{progress['done']:,} of {progress['total']:,}", *(f"{n:,} {word}" for word, n in counts if n)])

@@ -18,7 +18,9 @@ from substructures.formats.arrays import as_answer, flat, nested, placed, view_n
 
 
 def require_result(item: Mapping[str, Any]) -> None:
-    """Raises ProblemError for an item that failed or was cancelled."""
+    """Raises ProblemError for an item that failed, unless a part of its result is there, or was cancelled."""
+    if item["result"] is not None:
+        return
     if item["problem"] is not None:
         raise ProblemError(item["problem"]["status"], item["problem"])
     if item["state"] != "succeeded":

@@ -18,6 +18,11 @@ def symmetry_rule(symmetry: str, name: str = "x") -> str:
     return (rule.format(x=name) + "; " if rule else "") + "all other elements are 0"
 
 
+def elements_rule(array: Output, name: str = "x") -> str:
+    """What is said of the elements that are not written; of an array without any that there are none."""
+    return symmetry_rule(array.symmetry, name) if array.index else "all elements are 0"
+
+
 def assignments(
     array: Output, texts: Sequence[str], element: Callable[[tuple[int, ...]], str]
 ) -> Iterator[tuple[str, str]]:

@@ -9,7 +9,7 @@ from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.names import comment, formula_name, prefix
 from substructures.printers.numbers import decimal_text
-from substructures.printers.symmetry import symmetry_rule
+from substructures.printers.symmetry import elements_rule
 
 
 class Text(Language):
@@ -57,7 +57,7 @@ class Text(Language):
             title = comment(output)
             if array.shape:
                 shape = " x ".join(map(str, array.shape))
-                lines.append(f"# {title}: {shape}, indices from 1; {symmetry_rule(array.symmetry, title)}")
+                lines.append(f"# {title}: {shape}, indices from 1; {elements_rule(array, title)}")
             elif "[" in output:
                 lines.append(f"# {title}: one element, indices from 1")
             for index, text in zip(array.index, listing.entries[output], strict=True):

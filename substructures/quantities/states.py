@@ -6,7 +6,7 @@ inputs, parameters``. What is wrong with one is an InvalidArgument, whose pointe
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import lru_cache
@@ -34,6 +34,7 @@ StateInput = ArrayLike | Mapping[str, ArrayLike]
 ValueInput = Mapping[str, ArrayLike]
 NO_UNITS: Mapping[str, str] = {}
 STATE = ("q", "qd", "qdd")
+NAMED = 20  # coordinates in a message
 #: arguments by name
 ArgumentsByName = Mapping[str, Any]
 
@@ -61,7 +62,8 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
     # one q stands for as many states as anything else has
     count = longest(given) if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
-        raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}")
+        why = f", since {_count_of(model.coordinates)}" if limit == model.dof == 1 else ""
+        raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}{why}")
     if limit == 1 and not count:
         raise InvalidArgument.at("/q", "missing", "a state is needed")
     others = []
@@ -122,9 +124,29 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
         # one number for one coordinate, or one for each state, as MATLAB writes lists of one
         return values.reshape(-1, 1), values.ndim == 0
     if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
-        expected = f"(N, {model.dof}) or ({model.dof},)"
-        raise InvalidArgument.at(f"/{name}", "wrong-length", f"shape {values.shape} found, {expected} expected")
+        if values.ndim in (1, 2):
+            message = wrong_length(values.shape[-1], model.coordinates)
+        else:
+            expected = f"(N, {model.dof}) or ({model.dof},)"
+            message = f"shape {values.shape} found, {expected} expected, since {_count_of(model.coordinates)}"
+        raise InvalidArgument.at(f"/{name}", "wrong-length", message)
     return np.atleast_2d(values), values.ndim == 1
+
+
+def wrong_length(found: int, coordinates: Sequence[str]) -> str:
+    """What is said of a state that has another number of numbers than there are coordinates.
+
+    >>> wrong_length(1, ("x", "phi"))
+    '1 number found, but there are 2 coordinates: x, phi'
+    """
+    return f"{found} number{'' if found == 1 else 's'} found, but {_count_of(coordinates)}"
+
+
+def _count_of(coordinates: Sequence[str]) -> str:
+    count = len(coordinates)
+    more = ", ..." if count > NAMED else ""
+    named = f": {', '.join(coordinates[:NAMED])}{more}" if count else ""
+    return f"there {'is' if count == 1 else 'are'} {count} coordinate{'' if count == 1 else 's'}{named}"
 
 
 def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:

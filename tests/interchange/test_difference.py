@@ -101,6 +101,54 @@ def test_each_change_is_told_with_what_it_does_alone() -> None:
     assert words[2].endswith("changes no numbers of the equations of motion at the defaults")
 
 
+def test_a_default_that_is_gone_or_new_has_no_size() -> None:
+    document = copy.deepcopy(PUMA)
+    del document["parameters"]["m3"]["value"]
+    open_arm = derive(Definition.read(document))
+    found = of_parts(ARM, open_arm)
+    assert found.words == ("default of m3 4.8 kg -> none",)
+    assert all(not each.differing for each in found.quantities)
+    assert of_parts(open_arm, ARM).words == ("default of m3 none -> 4.8 kg",)
+    document["parameters"]["m2"]["value"] = 17.5
+    default, other = difference(document).words
+    assert {default.partition(":")[0], other.partition(":")[0]} == {
+        "parameter m2 17.4 -> 17.5 kg",
+        "default of m3 4.8 kg -> none",
+    }
+
+
+def test_sizes_are_not_made_of_random_numbers() -> None:
+    """Where a parameter has no default on either side nothing is known about how much a change does."""
+    document = copy.deepcopy(PUMA)
+    document["parameters"]["m9"] = {"unit": "kg"}
+    document["bodies"][1]["mass"] = "m9"
+    found = difference(document)
+    assert quantity(found, "metric")["moved"] > 0
+    assert quantity(found, "metric")["change"] is None
+    assert not any("%" in line or "tenfold" in line for line in found.words)
+
+
+def test_parts_of_different_size_are_compared_in_what_both_have() -> None:
+    document = copy.deepcopy(PUMA)
+    document["bodies"][0]["mass"] = 100
+    tip = {"type": "revolute", "coordinate": "q7"}
+    document["bodies"].append({"name": "tip", "parent": "link6", "joint": tip, "mass": "1/100", "com": [0, "1/10", 0]})
+    first, *_, last = difference(document).words
+    assert first == "coordinates 6 -> 7 (q7 new), compared in q1, q2, q3, q4, q5, q6"
+    assert last.startswith("together: changes entries of M, ")
+    alone = derive(Definition.read(catalogue.load("compound-pendulum")))
+    apart = of_parts(ARM, alone).words
+    assert apart[0].startswith("coordinates 6 -> 1 (")
+    assert apart[0].endswith("), with none in common to compare in")
+    assert not any(line.startswith("together") for line in apart)
+
+
+def test_a_unit_is_told_on_both_sides() -> None:
+    document = copy.deepcopy(PUMA)
+    document["parameters"]["m3"]["value"] = {"value": 4900, "unit": "g"}
+    assert difference(document).words[0].startswith("parameter m3 4.8 kg -> 4900 g: changes ")
+
+
 def test_formulas_by_fingerprint() -> None:
     """The same function, written in another way, is equal; one that is not is told by the names of its place."""
     document = copy.deepcopy(PUMA)
@@ -156,6 +204,32 @@ def test_trees() -> None:
     heavy = derive(Definition.read(changed(m3=5.1)))
     nested = of_trees(tree(mp=0.4), tree(mp=0.4), [("arm", ARM, heavy)])
     assert nested.definition[0].place == "/instances/arm/definition/parameters/m3/value"
+    assert nested.words[0].startswith("in instance arm: parameter m3 4.8 -> 5.1 kg")
+
+
+def test_where_an_instance_is_mounted() -> None:
+    arms = [{"name": name, "substructure": "puma560"} for name in ("a", "b")]
+    moved = TreeSpec.read({"name": "x", "instances": [arms[0], {**arms[1], "at": "a.elbow"}]})
+    still = TreeSpec.read({"name": "x", "instances": arms})
+    model = couple(still, {"a": ARM, "b": ARM})
+    (words,) = of_trees((still, model), (moved, model), []).words
+    assert words.startswith("instance b: at world -> a.elbow: ")
+
+
+def test_parts_of_trees_are_told_by_their_versions() -> None:
+    digests = {"arm@sha256:" + 64 * digit: f"arm@{digit}" for digit in "12"} | {"leg@sha256:" + 64 * "3": "leg@7"}
+    specs = [
+        TreeSpec.read({"name": "x", "instances": [{"name": "a", "substructure": reference}]}) for reference in digests
+    ]
+    model = couple(specs[0], {"a": ARM})
+    one, two, leg = ((spec, model) for spec in specs)
+    assert of_trees(one, two, [], digests.__getitem__).words == (
+        "instance a: arm version 1 -> 2: changes no numbers of the equations of motion at the defaults",
+    )
+    (words,) = of_trees(one, leg, [], digests.__getitem__).words
+    assert words.startswith("instance a: part arm@1 -> leg@7: ")
+    (unknown,) = of_trees(one, two, []).words
+    assert unknown.startswith("instance a: arm version sha256:11111111... -> sha256:22222222...: ")
 
 
 def test_changes_lead_from_one_document_to_the_other() -> None:

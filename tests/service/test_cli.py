@@ -54,7 +54,7 @@ def test_demo_notices_wrong_numbers(capsys: pytest.CaptureFixture[str]) -> None:
 def test_derive(definition: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["derive", str(definition)]) == 0
     shown = capsys.readouterr().out
-    assert shown.startswith("pendulum: 1 coordinates (R), bodies rod")
+    assert shown.startswith("pendulum: 1 coordinate (R), bodies rod")
     assert main(["derive", str(definition), "--show", "metric", "--format", "latex"]) == 0
     assert capsys.readouterr().out
     assert main(["derive", str(definition), "--show", "nothing"]) == 1
@@ -66,7 +66,7 @@ def test_derive_yaml(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         "name: rail\nbodies:\n  - {name: a, parent: base, joint: {type: prismatic, coordinate: x}, mass: 1.50}\n"
     )
     assert main(["derive", str(path)]) == 0
-    assert "rail: 1 coordinates (P)" in capsys.readouterr().out
+    assert "rail: 1 coordinate (P)" in capsys.readouterr().out
 
 
 def test_submit(definition: Path, settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
@@ -125,7 +125,7 @@ def test_the_key_of_a_client_is_no_setting(
     monkeypatch.setenv("SUBSTRUCTURES_KEY", "sub_x")
     address = f"sqlite:///{tmp_path / 'x.db'}"
     Database(address).close()
-    assert main(["key", "list", "--database", address]) == 0
+    assert main(["key", "list", "--json", "--database", address]) == 0
     assert main(["backup", str(tmp_path / "y.db"), "--database", address]) == 0
     assert not capsys.readouterr().err
 

@@ -73,6 +73,24 @@ def test_names_that_the_server_knows(offered: Shell) -> None:
     assert offered("rm", "cell", "c") == ["cell"]
 
 
+def test_quantities_ports_and_jobs(offered: Shell, address: str) -> None:
+    assert offered("show", "pendulum", "met") == ["metric"]
+    assert offered("show", "cell", "chr") == ["christoffel"]
+    assert offered("show", "--tree", "cell", "chr") == ["christoffel"]
+    assert offered("export", "cell", "--quantities", "metric,chr") == ["metric,christoffel"]
+    assert offered("derive", "x.yaml", "--show", "port.U") == ["port.U"]
+    assert offered("jobs", "evaluate", "cell", "x.npz", "--quantities", "metric,forw")[0] == "metric,forward_dynamics"
+    assert offered("couple", "cell", "pendulum", "--at", "arm.t") == ["arm.tip"]
+    assert offered("publish", "cell", "--port", "end=arm.t") == ["end=arm.tip"]
+    assert offered("search", "--port", "ti") == ["tip"]
+    with Client(address) as client:
+        item = {"tree": "cell", "quantity": "metric", "format": "text"}
+        job = client.submit_job({"kind": "export", "items": [item]}).id
+    for action in ("show", "watch", "cancel", "retry", "rm", "result"):
+        assert offered("jobs", action, job[:8]) == [job]
+    assert offered("jobs", "show", "x") == []
+
+
 def test_without_a_server_nothing_is_offered(offered: Shell, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert offered("show", "--server", address, "sl") == ["slider"]
     assert offered("show", "--server", "nowhere", "sl") == []

@@ -66,11 +66,18 @@ def test_friction_by_the_load_of_joints() -> None:
 
 def test_optimise(library: MemoryLibrary) -> None:
     request = {
-        "controls": ["tau.arm.q"], "cost": {"running": "tau.arm.q^2"}, "horizon": 1, "intervals": 4, "q": [0],
+        "controls": ["tau.arm.q"], "cost": {"running": "tau.arm.q^2"}, "horizon": 1, "intervals": 8, "q": [0],
         "end": {"qd": [0]},
     }  # fmt: skip
     (found,) = outcomes(library, "optimise", {"items": [{"tree": "cell", "request": request}]})
     assert json.loads(found.files["result"])["status"] == found.summary["status"] == "optimal"
+    coarse = {"tree": "cell", "request": {**request, "intervals": 4}}
+    (wrong,) = (
+        run("optimise", item, library.blobs, lambda _: None) for item in library.items("optimise", {"items": [coarse]})
+    )
+    assert wrong.problem is not None
+    assert wrong.problem["code"] == "analysis-wrong"
+    assert json.loads(wrong.files["result"])["is_right"] is wrong.summary["is_right"] is False
 
 
 def test_any_analysis(library: MemoryLibrary) -> None:

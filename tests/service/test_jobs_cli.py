@@ -78,8 +78,49 @@ def test_what_was_skipped_is_told(address: str, tmp_path: Path, capsys: pytest.C
     told = capsys.readouterr().err
     assert told.startswith("skipped: item 1: ")
     assert "there is no substructure 'pendulun'" in told
-    assert main(["jobs", "submit", str(file), "--json", "--wait", "--server", address]) == 0
-    assert [each["item"] for each in json.loads(capsys.readouterr().out)["skipped"]] == [1]
+    assert main(["jobs", "submit", str(file), "--json", "--wait", "--server", address]) == 6
+    shown = capsys.readouterr()
+    job = json.loads(shown.out)
+    assert [each["item"] for each in job["skipped"]] == [1]
+    assert "succeeded  1 of 1, 1 skipped" in shown.err
+    assert "assemble: 1 succeeded of 1; 1 skipped" in shown.err
+    assert main(["jobs", "show", job["id"], "--server", address]) == 0
+    assert json.loads(capsys.readouterr().out)["progress"]["skipped"] == 1
+    assert main(["jobs", "list", "--server", address]) == 0
+    assert "1 of 1, 1 skipped" in capsys.readouterr().out
+    assert main(["jobs", "watch", job["id"], "--server", address]) == 6
+    with Client(address) as client:
+        assert str(client.job(job["id"])).endswith("succeeded, 1 of 1, 1 skipped")
+
+
+def test_a_motion_that_fails_is_an_item_that_failed(
+    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    swing = {"q": [1.0], "span": [0, 5], "count": 3}
+    fixed = {**swing, "fixed_step": {"step": 0.1, "method": "semi-implicit-euler"}}
+    file, server = tmp_path / "swings.json", ["--server", address]
+    requests = [swing, {**swing, "max_steps": 3}, fixed]
+    file.write_text(json.dumps({"kind": "simulate", "items": [{"tree": "cell@1", "requests": requests}]}))
+    assert main(["jobs", "submit", str(file), "--wait", *server]) == 3
+    shown = capsys.readouterr()
+    job = shown.out.strip()
+    assert "simulate: 1 succeeded, 2 failed of 3" in shown.err
+    assert "item 1 (cell): 'simulations' failed: 3 steps reached only" in shown.err
+    assert "item 2 (cell): 'simulations' is WRONG, a necessary condition is violated: energy, steps" in shown.err
+    with Client(address) as client:
+        found = client.job(job)
+        assert str(found).endswith("succeeded, 3 of 3, 2 failed")
+        states = [(each["state"], each["result"]["status"]) for each in found.each()]
+        assert states == [("succeeded", "finished"), ("failed", "failed"), ("failed", "finished")]
+        motions = list(found.results())
+        assert [(each["status"], each["is_right"]) for each in motions] == [
+            ("finished", True),
+            ("failed", None),
+            ("finished", False),
+        ]
+        again = found.retry().wait()
+        assert (again["state"], again["progress"]["failed"]) == ("failed", 2)
+        assert again["attempts"] == 2
 
 
 def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

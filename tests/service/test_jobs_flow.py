@@ -32,6 +32,7 @@ def test_export(filled: TestClient, store: Store) -> None:
     assert view["progress"] | {"rate": None} == {
         "done": 2,
         "failed": 0,
+        "skipped": 0,
         "total": 2,
         "fraction": 1,
         "rate": None,
@@ -44,7 +45,7 @@ def test_export(filled: TestClient, store: Store) -> None:
     assert text.text == filled.get("/v1/trees/cell/metric?format=text").text
     assert text.headers["content-type"].startswith("text/plain")
     with zipfile.ZipFile(io.BytesIO(filled.get(f"/v1/jobs/{job}/archive").content)) as archive:
-        assert archive.read("0/text") == text.content
+        assert archive.read("0/text.txt") == text.content
         assert json.loads(archive.read("1/item.json"))["state"] == "succeeded"
         assert archive.testzip() is None
     assert filled.get("/v1/jobs?kind=export&state=succeeded").json()["items"][0]["id"] == job
@@ -52,6 +53,25 @@ def test_export(filled: TestClient, store: Store) -> None:
     for position in (-(10**20), -1, 2, 2**31, 10**20):
         answer = filled.get(f"/v1/jobs/{job}/items/{position}/files/text")
         assert (answer.status_code, answer.json()["code"]) == (404, "unknown-item")
+
+
+def test_files_in_an_archive_have_the_endings_of_their_formats(filled: TestClient, store: Store) -> None:
+    formats = {"c": ".c", "latex": ".tex", "json": ".json", "python": ".py", "mathml": ".xhtml", "fortran": ".f90"}
+    swing = {"q": [0.5], "span": [0, 1], "count": 3}
+    exports = [{"tree": "cell", "quantity": "metric", "format": each} for each in formats]
+    targets = [{"tree": "cell", "target": each} for each in ("casadi", "c", "interface")]
+    motions = [{"tree": "cell", "request": swing, "format": each} for each in ("npz", "csv", "svg", "json")]
+    with running(store, FakeEngine()):
+        for kind, given, expected in (
+            ("export", exports, [f"text{ending}" for ending in formats.values()]),
+            ("export", targets, ["text.c", "archive.zip", "text.json"]),
+            ("simulate", motions, ["result.npz", "result.csv", "result.svg", "result.json"]),
+        ):
+            job = submitted(filled, {"kind": kind, "items": given})
+            assert finished(filled, job, 60)["progress"]["failed"] == 0
+            with zipfile.ZipFile(io.BytesIO(filled.get(f"/v1/jobs/{job}/archive").content)) as archive:
+                names = [name for name in archive.namelist() if not name.endswith("item.json")]
+            assert names == [f"{position}/{name}" for position, name in enumerate(expected)]
 
 
 def test_an_archive_has_the_formulas_of_trees_and_parts(filled: TestClient, store: Store) -> None:
@@ -143,7 +163,7 @@ def test_results_in_part(filled: TestClient, store: Store) -> None:
         assert filled.get(first["files"][0]["href"]).status_code == 200
         assert (second["result"], second["files"]) == (None, [])
         with zipfile.ZipFile(io.BytesIO(filled.get(f"/v1/jobs/{job}/archive").content)) as archive:
-            assert archive.namelist() == ["0/item.json", "0/text"]
+            assert archive.namelist() == ["0/item.json", "0/text.txt"]
         engine.open()
         finished(filled, job)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -29,14 +30,17 @@ def test_the_good_ones_are_taken(filled: TestClient, store: Store) -> None:
         assert answer.status_code == 202, answer.text
         job = answer.json()
         finished(filled, job["id"])
-    assert job["progress"]["total"] == 2
+    assert (job["progress"]["total"], job["progress"]["skipped"]) == (2, 3)
     assert [each["item"] for each in job["skipped"]] == [1, 3, 4]
     (fault,) = job["skipped"][0]["errors"]
     assert (fault["pointer"], fault["code"]) == ("/instances/1/at", "unknown-port")
     assert [item["state"] for item in items(filled, job["id"])] == ["succeeded", "succeeded"]
     assert filled.get("/v1/trees/three").status_code == 200
     assert filled.get("/v1/trees/two").status_code == 404
-    assert "skipped" not in filled.get(f"/v1/jobs/{job['id']}").json()
+    seen = filled.get(f"/v1/jobs/{job['id']}").json()
+    assert "skipped" not in seen
+    assert seen["progress"]["skipped"] == 3
+    assert "2 of 2, 3 skipped" in re.sub("<[^>]*>", "", filled.get(f"/jobs/{job['id']}").text)
 
 
 def test_combinations(filled: TestClient) -> None:

@@ -21,6 +21,7 @@ from service.database.connections import Database, DatabaseError
 from service.database.tables import tree_names
 from service.http.problems import as_refused
 from service.operations import trees
+from service.operations.seed import Told
 from service.queries.common import insert_missing, is_conflict, is_outage
 from service.settings import Settings
 from service.store import Store
@@ -130,7 +131,7 @@ def test_what_the_database_forbids_is_told_in_a_line(address: str) -> None:
 
 
 def test_an_import_that_the_database_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_store: Store) -> None:
+    def refuse(_store: Store, _progress: Told) -> None:
         raise OperationalError("INSERT", {}, sqlite3.OperationalError("disk I/O error"))
 
     monkeypatch.setattr(app, "import_catalogue", refuse)

@@ -199,11 +199,16 @@ def test_differences(filled: TestClient) -> None:
     stored(filled, TREE, PAIR)
     stored(filled, f"{TREE}/pair/couplings", {"name": "c", "substructure": "pendulum@1", "at": "b.tip"})
     trees = filled.get(f"{TREE}/pair@1/difference?to=pair@2")
-    assert trees.json()["words"][0].startswith("instance c is new: changes ")
+    size, mounted = trees.json()["words"]
+    assert size == "coordinates 2 -> 3 (c.q new), compared in a.q, b.q"
+    assert mounted.startswith("instance c is new: changes ")
     assert "immutable" in trees.headers["cache-control"]
     stored(filled, TREE, {**PAIR, "instances": [{**PAIR["instances"][0], "substructure": "pendulum@2"}]})
     nested = filled.get(f"{TREE}/pair@1/difference?to=pair@3").json()
     assert "/instances/a/definition/parameters/m/value" in [each["place"] for each in nested["definition"]]
+    assert "instance a: pendulum version 1 -> 2" in nested["words"]
+    assert "in instance a: parameter m 2 -> 2.1 kg" in nested["words"]
+    assert not any("sha256" in words for words in nested["words"])
 
 
 def test_a_withdrawn_part_is_told_two_levels_up(filled: TestClient) -> None:

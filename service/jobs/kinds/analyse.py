@@ -20,6 +20,7 @@ from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, ins
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
+from service.refusals import Refused, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import InvalidDocument, meant
@@ -89,7 +90,9 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
-    """File ``result``. Raises InvalidDocument (pointers into the request), MissingValue, TooLarge."""
+    """File ``result``, also of what has failed or is wrong, beside a problem that says so. Raises InvalidDocument
+    (pointers into the request), MissingValue, TooLarge.
+    """
     source, name = source_of(item, blobs, item["limits"]), item["analysis"]
     model = source.model
     result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
@@ -97,7 +100,20 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     data = written(result, media, model)
     told = orjson.loads(data if media == JSON else written(_brief(result), JSON, model))
     summary = {"tree": item["tree"], "analysis": name, "media_type": media, "bytes": len(data)}
-    return Outcome({**summary, **{key: told[key] for key in TOLD if key in told}}, {"result": data})
+    summary |= {key: told[key] for key in TOLD if key in told}
+    fault = fault_of(name, told)
+    return Outcome(summary, {"result": data}, None if fault is None else problem(fault))
+
+
+def fault_of(name: str, told: Mapping[str, Any]) -> Refused | None:
+    """What is wrong with a result, by what it says of itself: it ends early, or a necessary condition is violated."""
+    if told.get("status") == "failed":
+        return Refused(422, "analysis-failed", f"'{name}' failed: {told.get('message') or 'the result says no more'}")
+    if told.get("is_right") is False:
+        violated = [each["name"] for each in told.get("checks", ()) if each["holds"] is False]
+        which = f": {', '.join(violated)}" if violated else ""
+        return Refused(422, "analysis-wrong", f"'{name}' is WRONG, a necessary condition is violated{which}")
+    return None
 
 
 def _brief(found: Answered) -> Answered:

@@ -16,7 +16,7 @@ from substructures.expr.interpret import constant
 from substructures.expr.program import Output
 from substructures.printers.language import NEGATION, Language, Listing, Piece
 from substructures.printers.names import comment, identifier
-from substructures.printers.symmetry import assignments, symmetry_rule
+from substructures.printers.symmetry import assignments, elements_rule
 
 _WORDS = (
     "t q qd qdd u x p w work pi i j e d np math model sign auto break case char const continue default do double else",
@@ -163,7 +163,7 @@ def _outputs(function: Function, first: int) -> Iterator[str]:
     variables = _variables(list(function.program.outputs))
     for output, array in function.program.outputs.items():
         shape = " x ".join(map(str, array.shape)) or "scalar"
-        rule = f", indices from {first}; {symmetry_rule(array.symmetry)}" if array.shape else ""
+        rule = f", indices from {first}; {elements_rule(array)}" if array.shape else ""
         indices = function.packed.get(output)
         if indices is None:
             yield f"{variables[output]}  {comment(output)}: {shape}{rule}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from substructures.documents.fields import Quantity, in_si
@@ -11,6 +11,8 @@ from substructures.documents.units import read_unit
 
 #: fields that no formula depends on
 WORDS = frozenset(("name", "title", "description", "tags", "license", "source"))
+#: fields whose members have values and units
+DECLARED = ("parameters", "inputs")
 #: units of numbers of a definition, in words about a change
 UNITS = {
     **dict.fromkeys(("com", "position", "d", "sigma", "tau", "at", "length"), "m"),
@@ -50,17 +52,36 @@ class Change:
         """Whether it is about words alone."""
         return self.path[-1] in WORDS or self.path[0] in WORDS
 
-    def told(self, units: Mapping[str, str]) -> str:
-        """In words; ``units``: of parameters."""
-        name = _called(self.path)
+    @property
+    def is_default(self) -> bool:
+        """Whether a parameter or an input has a default on one side alone."""
+        return self.kind != "changed" and self.path[0] in DECLARED and self.path[2:] == ("value",)
+
+    def told(self, units: Mapping[str, str], reference: Callable[[str], str] = str) -> str:
+        """In words; ``units``: of parameters, ``reference``: how one with a digest is called."""
+        match self.path:
+            case ("instances", instance, "definition", _, *_):
+                own = {name.removeprefix(f"{instance}."): unit for name, unit in units.items()}
+                return f"in instance {instance}: {replace(self, path=self.path[3:]).told(own)}"
+            case ("instances", instance, "substructure"):
+                return f"instance {instance}: {_parts(*(reference(str(x)) for x in (self.a, self.b)))}"
+            case ("instances", instance, "at"):
+                return f"instance {instance}: at {self.a or 'world'} -> {self.b or 'world'}"
+        name, unit = _called(self.path), _unit(self.path, units)
+        if self.is_default:
+            a, b = ("none" if x is None else _with_unit(x, unit) for x in (self.a, self.b))
+            return f"default of {self.path[1]} {a} -> {b}"
         if self.kind != "changed":
             return f"{name} is {self.kind}" if self.kind == "gone" else f"{name} is new{_new(self.b)}"
-        unit = _unit(self.path, units) if _is_number(self.a) and _is_number(self.b) else ""
+        if isinstance(self.a, Mapping) or isinstance(self.b, Mapping):  # with a unit of its own
+            return f"{name} {_with_unit(self.a, unit)} -> {_with_unit(self.b, unit)}"
+        unit = unit if _is_number(self.a) and _is_number(self.b) else ""
         return f"{name} {_shown(self.a)} -> {_shown(self.b)}{unit}"
 
-    def plain(self, units: Mapping[str, str]) -> dict[str, Any]:
+    def plain(self, units: Mapping[str, str], reference: Callable[[str], str] = str) -> dict[str, Any]:
         """As JSON data."""
-        return {"place": self.place, "change": self.kind, "a": self.a, "b": self.b, "words": self.told(units)}
+        words = self.told(units, reference)
+        return {"place": self.place, "change": self.kind, "a": self.a, "b": self.b, "words": words}
 
 
 def changes(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Change]:
@@ -90,7 +111,7 @@ def _applied(given: Any, path: tuple[str | int, ...], change: Change) -> Any:
 
 
 def _changes(a: Any, b: Any, path: tuple[str | int, ...]) -> Iterator[Change]:
-    is_declared = len(path) == 2 and path[0] in ("parameters", "inputs")  # whose value and unit are fields
+    is_declared = len(path) == 2 and path[0] in DECLARED  # whose value and unit are fields
     if (_is_tree(a) and _is_tree(b)) or (is_declared and isinstance(a, Mapping) and isinstance(b, Mapping)):
         keys = [*a, *(key for key in b if key not in a)]
         yield from _members({key: (a.get(key), b.get(key), key in a, key in b) for key in keys}, path)
@@ -114,7 +135,7 @@ def _members(pairs: Mapping[Any, tuple[Any, Any, bool, bool]], path: tuple[str |
             yield from _changes(x, y, here)
         elif _is_list_of_trees(x or y) and (x or y):
             yield from _changes(x or [], y or [], here)
-        elif key in ("parameters", "inputs") and isinstance(x or y, Mapping):
+        elif key in DECLARED and isinstance(x or y, Mapping):
             yield from _changes(x or {}, y or {}, here)
         else:
             yield Change(here, "gone", x) if is_in_a else Change(here, "new", None, y)
@@ -166,6 +187,25 @@ def _called(path: tuple[str | int, ...]) -> str:
         kind = "" if path[0] == "bodies" else f"{ONE[str(path[0])]} "
         return f"{' '.join(map(str, path[2:]))} of {kind}{path[1]}"
     return " ".join(map(str, path))
+
+
+def _parts(a: str, b: str) -> str:
+    """Which part takes the place of which.
+
+    >>> _parts("arm@1", "arm@2"), _parts("arm@1", "leg@4")
+    ('arm version 1 -> 2', 'part arm@1 -> leg@4')
+    """
+    (name, _, old), (other, _, new) = a.partition("@"), b.partition("@")
+    return f"{name} version {_short(old)} -> {_short(new)}" if name == other else f"part {a} -> {b}"
+
+
+def _short(version: str) -> str:
+    """Of a digest the first digits."""
+    return f"{version[:15]}..." if version.startswith("sha256:") else version
+
+
+def _with_unit(given: Any, unit: str) -> str:
+    return _shown(given) + (unit if _is_number(given) else "")
 
 
 def _unit(path: tuple[str | int, ...], units: Mapping[str, str]) -> str:

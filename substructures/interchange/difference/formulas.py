@@ -5,8 +5,8 @@ Entries are found by what their axes mean (coordinates, bodies, ports by name): 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
 from math import prod
 from typing import Any
 
@@ -72,6 +72,10 @@ class QuantityDifference:
         """How many entries are ``changed``, ``new`` or ``gone``."""
         return sum(each.state == state for each in self.differing)
 
+    def without(self, labels: Collection[str | int]) -> QuantityDifference:
+        """The same but for entries at a place with one of these labels."""
+        return replace(self, differing=tuple(each for each in self.differing if not set(labels) & set(each.place)))
+
     @property
     def moved(self) -> int:
         """How many have other numbers."""
@@ -96,7 +100,9 @@ class QuantityDifference:
 
 
 def compared(graph: Graph, a: FormulaSet, b: FormulaSet) -> list[QuantityDifference]:
-    """All quantities that at least one of both has."""
+    """All quantities that at least one of both has; there is no size where it would depend on a parameter without a
+    default on either side.
+    """
     values = _values(a, b)
     names = [*a.formulas, *(name for name in b.formulas if name not in a.formulas)]
     return [_quantity(graph, name, a, b, values) for name in names]
@@ -108,15 +114,18 @@ def _quantity(
     x, y = a.formulas.get(name), b.formulas.get(name)
     is_alike = x is not None and y is not None and x.shape == y.shape and a.labels(name) == b.labels(name)
     ours, theirs = (_placed(f, side.labels(name), is_alike) if f else {} for f, side in ((x, a), (y, b)))
-    numbers = [
+    (numbers, used), (others, used_there) = (
         _numbers(graph, some, side.symbols, v) for some, side, v in zip((ours, theirs), (a, b), values, strict=True)
-    ]
+    )
+    has_size = all(s.kind != "parameter" or s.name in a.defaults or s.name in b.defaults for s in used | used_there)
     differing = []
     # an entry that is as good as zero beside the others is not compared with itself
-    least = NEGLIGIBLE * max((float(np.abs(v).max()) for some in numbers for v in some.values()), default=0.0)
+    least = NEGLIGIBLE * max((float(np.abs(v).max()) for some in (numbers, others) for v in some.values()), default=0.0)
     for place in {**ours, **theirs}:
         state = _state(graph, ours.get(place), theirs.get(place))
-        change = _change(numbers[0].get(place), numbers[1].get(place), least)
+        change = _change(numbers.get(place), others.get(place), least)
+        if not has_size and change is not None and change > TOLERANCE:
+            change = None
         if state != "equal" or change is None or change > TOLERANCE:
             differing.append(EntryDifference(place, state, change))
     size = max(_size(f, is_alike) for f in (x, y) if f is not None)
@@ -148,13 +157,13 @@ def _state(graph: Graph, x: Expr | None, y: Expr | None) -> str:
 
 def _numbers(
     graph: Graph, entries: Mapping[Place, Expr], symbols: Mapping[str, Symbol], values: Mapping[str, Array]
-) -> dict[Place, Array]:
-    """The elements at the random states."""
+) -> tuple[dict[Place, Array], set[Symbol]]:
+    """The elements at the random states, and what they depend on."""
     listed = Formulas((len(entries),), {(k,): x for k, x in enumerate(entries.values())})
     found = program(graph, {"entries": listed}, symbols)
     with np.errstate(all="ignore"):
         numbers = interpret_entries(found, {s.name: values[s.name] for s in found.symbols}, ["entries"])["entries"]
-    return dict(zip(entries, (np.broadcast_to(x, (STATES,)) for x in numbers), strict=True))
+    return dict(zip(entries, (np.broadcast_to(x, (STATES,)) for x in numbers), strict=True)), set(found.symbols)
 
 
 def _change(x: Array | None, y: Array | None, least: float) -> float | None:
@@ -169,7 +178,7 @@ def _change(x: Array | None, y: Array | None, least: float) -> float | None:
 
 def _values(a: FormulaSet, b: FormulaSet) -> tuple[dict[str, Array], dict[str, Array]]:
     """Random numbers for coordinates, velocities and accelerations, the same for both; 0 for inputs and the time;
-    defaults of parameters, or the same random number where there is none.
+    defaults of parameters, or that of the other side, or the same random number where there is none.
     """
     rng, common = np.random.default_rng(5), dict[str, Array]()
     kinds = {name: symbol.kind for side in (a, b) for name, symbol in sorted(side.symbols.items())}
@@ -181,4 +190,4 @@ def _values(a: FormulaSet, b: FormulaSet) -> tuple[dict[str, Array], dict[str, A
         else:
             common[name] = rng.uniform(-1.5, 1.5, STATES)
     ours, theirs = ({name: np.full(STATES, x) for name, x in side.defaults.items()} for side in (a, b))
-    return {**common, **ours}, {**common, **theirs}
+    return {**common, **theirs, **ours}, {**common, **ours, **theirs}

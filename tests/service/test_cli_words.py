@@ -1,0 +1,121 @@
+"""What commands say where something is missing, empty or of the wrong size, and that their JSON is JSON."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.cli.main import main
+from service.database.connections import Database
+
+from .conftest import PENDULUM, TREE
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An own directory with the documents of a part and of trees of one and of two of it."""
+    monkeypatch.chdir(tmp_path)
+    arm = TREE["instances"][0]
+    pair: dict[str, Any] = {**TREE, "name": "pair", "instances": [arm, {**arm, "name": "fore", "at": "arm.tip"}]}
+    for document in (PENDULUM, TREE, pair):
+        Path(f"{document['name']}.json").write_text(json.dumps(document))
+    return tmp_path
+
+
+class Run:
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+
+    def __call__(self, *words: str, code: int = 0) -> str:
+        """All that is printed."""
+        found = main(words)
+        shown = self._capsys.readouterr()
+        assert found == code, shown.err
+        return re.sub(r"[\s│]+", " ", shown.out + shown.err) if code else shown.out + shown.err
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    return Run(capsys)
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    ("tree", "option", "numbers", "expected"),
+    [
+        ("pair", "--q", "1", "--q: 1 number found, but there are 2 coordinates: arm.q, fore.q"),
+        ("pair", "--qd", "1,2,3,4", "--qd: 4 numbers found, but there are 2 coordinates: arm.q, fore.q"),
+        ("cell", "--q", "1,2", "--q: 2 numbers found, but there is 1 coordinate: arm.q"),
+    ],
+)
+def test_a_state_of_another_length(run: Run, tree: str, option: str, numbers: str, expected: str) -> None:
+    assert expected in run("evaluate", f"{tree}.json", "metric", option, numbers, code=2)
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_state_of_another_length_in_a_request(run: Run) -> None:
+    Path("request.json").write_text('{"q": [1, 2, 3], "span": [0, 1]}')
+    expected = "/q: 3 numbers found, but there are 2 coordinates: arm.q, fore.q"
+    assert expected in run("simulate", "pair.json", "request.json", code=1)
+    assert "3 states; the limit is 1, since there is 1 coordinate: arm.q" in run(
+        "simulate", "cell.json", "request.json", code=1
+    )
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_formula_as_json_is_json(run: Run) -> None:
+    found = json.loads(run("derive", "pendulum.json", "--show", "metric", "--json"))
+    assert list(found["outputs"]) == ["metric"]
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_certificate_is_told_in_words(run: Run) -> None:
+    told = run("derive", "pendulum.json")
+    assert not re.search(r"[{}']|\bTrue\b|\[\]", told)
+    assert re.search(r"direct_form: max_relative_error \S+ \(\S+\) of \d+ quantities", told)
+    assert "positive_definite: yes" in told
+
+
+@pytest.mark.usefixtures("folder")
+def test_indices_are_named_and_nothing_is_said_to_be_nothing(run: Run) -> None:
+    frames = run("derive", "pendulum.json", "--show", "frame")
+    assert frames.startswith("# frames: 1 base, 2 rod, 3 tip\n")
+    assert run("derive", "pendulum.json", "--show", "port.U").startswith("# ports: 1 tip\n# coordinates: 1 q\n")
+    assert run("derive", "pendulum.json", "--show", "r").startswith("# joints carry: 1 rod\n")
+    christoffel = run("derive", "pendulum.json", "--show", "christoffel")
+    assert "; all elements are 0\n" in christoffel
+    assert "other" not in christoffel
+    assert "all other elements are 0\n" in frames
+
+
+def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
+    (folder / "out").mkdir()
+    export = ["export", "cell.json", "--target", "c", "--out"]
+    assert run(*export, "out", code=1) == "substructures: out is a folder; the name of a file is needed "
+    assert "there is no folder nowhere" in run(*export, "nowhere/cell.zip", code=1)
+    store = ["--database", f"sqlite:///{folder / 'x.db'}"]
+    Database(store[1]).close()
+    assert "cell.json is a file; the name of a folder is needed" in run(
+        "catalogue", "export", "cell.json", *store, code=1
+    )
+    assert "out has no definition in it (*.yaml, *.yml, *.json)" in run("catalogue", "import", "out", *store)
+
+
+def test_no_keys_are_told_with_how_one_is_made(run: Run, folder: Path) -> None:
+    store = ["--database", f"sqlite:///{folder / 'x.db'}"]
+    Database(store[1]).close()
+    told = run("key", "list", *store)
+    assert "there are no keys" in told
+    assert "'substructures key create --owner TEAM --scope admin'" in told
+    assert json.loads(run("key", "list", "--json", *store)) == []
+
+
+@pytest.mark.usefixtures("folder")
+def test_files_that_are_written_are_named(run: Run) -> None:
+    Path("request.json").write_text('{"q": [1], "span": [0, 1], "count": 3}')
+    assert run("simulate", "cell.json", "request.json", "--out", "motion.csv").startswith("motion.csv: ")
+    assert "energy.txt: " in run("analyse", "cell.json", "kinetic_energy", "--out", "energy.txt")
