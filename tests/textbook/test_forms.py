@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from closed_trees import tree_model
 from random_trees import Plain
+from written_formula import formula
 
 from substructures import Model, Program, catalogue
 from substructures.errors import TooLarge
@@ -22,7 +23,6 @@ from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
 from substructures.printers import entries, render
-from substructures.printers.numbers import shortest_decimal
 from substructures.quantities.formulas import derived
 from substructures.textbook import AT_ONCE, Sum, Trig, read
 
@@ -186,18 +186,6 @@ def test_one_more_parameter_changes_only_the_lines_that_it_occurs_in(
     assert len(gone) == len(changed)
 
 
-def formula(text: str, **units: str) -> str:
-    """The textbook form of an expression; ``units`` of its parameters, coordinates are q1 ... q9, inputs tau_1 ..."""
-    graph = Graph()
-    expr = parse(graph, text, graph.symbol)
-    kinds = {"q": "coordinate", "t": "input"}
-    symbols = {
-        name: Symbol(name, "velocity" if name[-1] == "'" else kinds.get(name[0], "parameter"), units.get(name, "m"))
-        for name in graph.symbols
-    }
-    return str(entries(collect(graph, {"f": Formulas((), {(): expr})}, symbols), "f", form="textbook")[0]["formula"])
-
-
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -269,30 +257,6 @@ def test_small_formulas(text: str, expected: str) -> None:
 def test_quotients_have_factors_as_other_formulas(text: str) -> None:
     """Total masses, atoms, sums of atoms, cosines and sines by their angles; 1 - x^2 for (1 - x)*(1 + x)."""
     assert formula(text, m1="kg", m2="kg") == text
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "(a - 9.81*b*sin(q1))/(c + d)",
-        "-(a + 9.81*b - c)/(c + d)",
-        "(0.3*a + 0.2*b + 0.7*e)/(c + d)",
-        "(2*a + 0.6*b)/(c + d)",
-        "(1/2*a + 9.81*b)/(c + d)",
-        "(1/3*a + 9.81*b)/(c + d)",
-        "(a + 9.81*b)^2/(c + d)",
-        "a/(0.3*b + c)",
-        "0.3*(a + b)/(c + d)",
-        "9.81*(a + b + 2*e)/(c + d)",
-        "2*(a + b)/(c + d)",
-        "(2*a + b)/(2*(c + d))",
-        "(180*a + b + 900*c)/(180*(a + d))",
-        "(8*a + 3*b)/(24*(a + d))",
-    ],
-)
-def test_numbers_of_quotients_are_as_given(text: str) -> None:
-    """Not 0.01*(100*a - 981*b*sin(q1)); a number is taken out of a sum where that leaves fewer digits in all."""
-    assert formula(text) == text
 
 
 @pytest.mark.parametrize(
@@ -387,12 +351,6 @@ def test_random_rational_functions(seed: int) -> None:
 
 def _trig(graph: Graph, op: str, x: Expr) -> Expr:
     return parse(graph, f"{op}(x)", {"x": x}.__getitem__)
-
-
-def test_decimals() -> None:
-    assert shortest_decimal(Fraction("1200.50")) == ("1200.5", 0)
-    assert shortest_decimal(Fraction("0.00001230")) == ("1.23", -5)
-    assert shortest_decimal(Fraction(1, 7)) is None
 
 
 def test_what_does_not_fit_is_printed_compact_with_the_reason() -> None:

@@ -88,6 +88,8 @@ PUMA = "sum of the links' moments about axis 2, B. Armstrong, O. Khatib, J. Burd
 STEINER = "sum of the links' moments, m r^2 each and their own"
 ROPE = "a pendulum on a rope of length l0 + hoist below a trolley"
 
+DE_LEVA = "P. de Leva, Journal of Biomechanics 29(9), 1996, table 4 (male)"
+
 COORDINATES = [f"q{n}" for n in range(1, 7)]
 
 LINES = [
@@ -364,6 +366,25 @@ LINES = [
         "-1/2*cos(pitch)*(Ixx - (Iyy - Izz)*cos(2*roll))",
         "-Ixx*cos(pitch)/2 + (Iyy - Izz)*cos(pitch)*(cos(roll)^2 - sin(roll)^2)/2",
         "half the derivative of g by roll, pitch and yaw",
+    ),
+    Line(
+        "humanoid-head",
+        "forward_dynamics[2]",
+        "tau_neck_pitch/(0.024222337776*M*l^2) + 4.25*g*sin(neck_pitch)/(2.9679*l)"
+        " + 108527/138502*sin(neck_pitch)*cos(neck_pitch)*neck_yaw'^2",
+        # moments about the cervicale, with the mass centre at 0.4998 l and radii of gyration 0.303, 0.315 and 0.261 l
+        "(tau_neck_pitch + 0.0694*M*g*0.4998*l*sin(neck_pitch) + 0.0694*M*l^2*(0.303^2 + 0.4998^2 - 0.261^2)"
+        "*sin(neck_pitch)*cos(neck_pitch)*neck_yaw'^2)/(0.0694*M*l^2*(0.315^2 + 0.4998^2))",
+        DE_LEVA,
+    ),
+    Line(
+        "humanoid-head",
+        "forward_dynamics[1]",
+        "(6.25*tau_neck_yaw - 0.2372508747*M*l^2*sin(neck_pitch)*cos(neck_pitch)*neck_pitch'*neck_yaw')"
+        "/(0.015615*M*l^2*(9.48914 - 7.59689*cos(neck_pitch)^2))",
+        "(tau_neck_yaw - 2*0.0694*M*l^2*(0.303^2 + 0.4998^2 - 0.261^2)*sin(neck_pitch)*cos(neck_pitch)"
+        "*neck_pitch'*neck_yaw')/(0.0694*M*l^2*((0.303^2 + 0.4998^2)*sin(neck_pitch)^2 + 0.261^2*cos(neck_pitch)^2))",
+        DE_LEVA,
     ),
     Line(
         "flyball-governor",
