@@ -235,6 +235,24 @@ def test_one_more_parameter_changes_only_the_lines_that_it_occurs_in(
         # no shorter, or parentheses in parentheses
         ("m*b^2 + m*b*e*cos(q1)", "m*b^2 + m*b*e*cos(q1)"),
         ("e*(a + b)*cos(q1) + a*e*cos(q2)", "e*(a + b)*cos(q1) + a*e*cos(q2)"),
+        # springs are squares, where all terms of the square are there
+        ("e*q1 + k*q1^2/2 - k*a*q1 + k*a^2/2", "e*q1 + 1/2*k*(q1 - a)^2"),
+        ("k*(q1 - q2 - a)^2/2 + k*(q3 - a)^2/2 + e*q3", "e*q3 + 1/2*k*((q1 - a - q2)^2 + (q3 - a)^2)"),
+        ("k*(q1 + a - b)^2/2 + e*q1", "e*q1 + 1/2*k*(a - b + q1)^2"),
+        ("k*(q1 - 1/4)^2 + e*q1", "e*q1 + k*(q1 - 1/4)^2"),
+        ("k*(q1 - sqrt(2)*a)^2/2 + e*q1", "e*q1 + 1/2*k*(q1 - sqrt(2)*a)^2"),
+        ("k*(q1 - sqrt(a^2 + b^2))^2/2 + e*q1", "e*q1 + 1/2*k*(q1 - sqrt(a^2 + b^2))^2"),
+        ("k*(sqrt(a^2 + q1^2) - 3)^2 + e*q1", "e*q1 + k*(sqrt(a^2 + q1^2) - 3)^2"),
+        ("k*(sqrt(a^2 + q1^2) - sqrt(2)*a)^2/2 + e*q1", "e*q1 + 1/2*k*(sqrt(a^2 + q1^2) - sqrt(2)*a)^2"),
+        ("k*q1^2/2 - k*a*q1", "-a*k*q1 + 1/2*k*q1^2"),
+        ("k*(sqrt(a^2 + q1^2) - b)*q1/sqrt(a^2 + q1^2) + e*q1", "e*q1 + k*q1*(sqrt(a^2 + q1^2) - b)/sqrt(a^2 + q1^2)"),
+        ("k*(1 - 3/sqrt(a^2 + q1^2))*q1", "k*q1*(sqrt(a^2 + q1^2) - 3)/sqrt(a^2 + q1^2)"),
+        ("e*q1 - 2*a*e*q1/sqrt(c + q3^2)", "e*q1*(sqrt(c + q3^2) - 2*a)/sqrt(c + q3^2)"),
+        (
+            "e*q1 + b*q2 - a*(e*q1 + 3*b*q2)/sqrt(c + q3^2)",
+            "-a*(3*b*q2 + e*q1)/sqrt(c + q3^2) + b*q2 + e*q1",
+        ),
+        ("e*(b - a/sqrt(c + q1^2))*q1", "-a*e*q1/sqrt(c + q1^2) + b*e*q1"),
         # 1/2 and 1/3 stay where they are
         ("a*b*sin(q1)/2 + a*e*sin(q1)*cos(q2)/3", "a*sin(q1)*(1/2*b + 1/3*e*cos(q2))"),
     ],
@@ -318,7 +336,7 @@ def test_a_length_that_occurs_often_has_a_name() -> None:
     printed = lines(quantity("flyball-governor", "forces"))
     assert printed[0] == "t1 = sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right))"
     assert printed[1] == "t2 = sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(left))"
-    line = "a*kl*ll*(hv - lift)*sin(right)/t1 + tau_right - (mb*g*l + a*kl*(hv - lift))*sin(right)"
+    line = "tau_right - mb*g*l*sin(right) - a*kl*(hv - lift)*sin(right)*(t1 - ll)/t1"
     assert f"forces[2] = {line}" in printed
     # formulas that stand alone have no names for their parts
     assert all(
