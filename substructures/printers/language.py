@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple
 
 from substructures.expr.program import Program, Symbol
 from substructures.printers.meanings import Label
-from substructures.printers.numbers import shortest_decimal
+from substructures.printers.numbers import has_decimals, shortest_decimal
 
 SUM, NEGATION, PRODUCT, POWER, ATOM = range(5)
 
@@ -66,6 +66,8 @@ class Language(ABC):
         self._called: dict[int, Label | int] = {}
         #: numbers of the symbols that are said to occur; None: all of the program
         self.occurring: frozenset[int] | None = None
+        #: whether 1/2 is 0.5, since other numbers of the formula are decimal numbers
+        self.decimals = False
 
     @abstractmethod
     def render(self, listing: Listing, name: str) -> str:
@@ -130,20 +132,19 @@ class Language(ABC):
         return Piece("pi")
 
     def number(self, value: Fraction) -> Piece:
-        """An exact constant."""
-        if value < 0:
-            return Piece("-" + self.number(-value).text, NEGATION)
-        if value.denominator == 1:
-            return Piece(str(value.numerator))
-        return Piece(f"{value.numerator}/{value.denominator}", PRODUCT)
+        """An exact constant as people write it: an integer, a simple fraction, a decimal number where it is one."""
+        if value <= 0:
+            return self.neg(self.number(-value)) if value else self.scientific("0", 0)
+        found = shortest_decimal(value) if self.decimals or self.is_decimal(value) else None
+        return self.fraction(value.numerator, value.denominator) if found is None else self.scientific(*found)
 
-    def decimal(self, value: Fraction) -> Piece:
-        """An exact constant as people write it: simple fractions, integers, decimal numbers where there are any."""
-        found = None if 12 % value.denominator == 0 else shortest_decimal(abs(value))
-        if found is None:
-            return self.number(value)
-        piece = self.scientific(*found)
-        return piece if value > 0 else self.neg(piece)
+    def is_decimal(self, value: Fraction) -> bool:
+        """Whether it is an integer, or a decimal number and no simple fraction."""
+        return value.denominator == 1 or has_decimals([value])
+
+    def fraction(self, above: int, below: int) -> Piece:
+        """A quotient of integers."""
+        return Piece(f"{above}/{below}", PRODUCT)
 
     def scientific(self, mantissa: str, exponent: int) -> Piece:
         """mantissa * 10^exponent."""

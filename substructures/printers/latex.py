@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 from typing import ClassVar
 
 from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
 from substructures.printers.names import LETTERS, RAISED, comment, latex_names, letter_of, look
-from substructures.printers.numbers import decimal_text
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, solid, width
 
 _NAMED = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
@@ -87,14 +85,9 @@ class Latex(Language):
         """A whole formula on one line."""
         return solid(text)
 
-    def number(self, value: Fraction) -> Piece:
-        """A simple fraction, otherwise an exact decimal number where there is a short one."""
-        if value < 0:
-            return Piece("-" + self.number(-value).text, NEGATION)
-        if value.denominator == 1:
-            return Piece(str(value.numerator))
-        text = decimal_text(value) if 12 % value.denominator else None
-        return Piece(text) if text else Piece(rf"\frac{{{value.numerator}}}{{{value.denominator}}}", PRODUCT)
+    def fraction(self, above: int, below: int) -> Piece:
+        """One above the other."""
+        return Piece(rf"\frac{{{above}}}{{{below}}}", PRODUCT)
 
     def abbreviation(self, op: str, digits: str) -> Piece:
         """c_{12} of cos(q_1 + q_2)."""

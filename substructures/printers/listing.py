@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import reduce
 
@@ -14,6 +14,7 @@ from substructures.expr.program import Operation, Program, operands
 from substructures.expr.replay import replay
 from substructures.expr.walk import reachable
 from substructures.printers.language import SUM, Language, Listing, Piece
+from substructures.printers.numbers import has_decimals
 from substructures.printers.signs import Signed, signed
 
 
@@ -28,6 +29,7 @@ def compact(program: Program, language: Language, limit: int) -> Listing:
     needed = program.reachable()
     check_size(len(needed), limit)
     uses = _uses(program, needed, language.powers)
+    language.decimals = has_decimals(_constants(program, needed))
     written: dict[int, Signed] = {}
     pieces: dict[int, Piece] = {}
     temporaries: list[tuple[int, str]] = []
@@ -57,6 +59,7 @@ def inlined(program: Program, language: Language, limit: int) -> Listing:
     for i in needed:
         size[i] = 1 + sum(size[x] for x in operands(program.operations[i]))
     check_size(sum(size[e] for output in program.outputs.values() for e in output.entries), limit)
+    language.decimals = has_decimals(_constants(program, needed))
     pieces: dict[int, Piece] = {}
     for i in needed:
         pieces[i] = _operation(program, language, i, pieces)
@@ -75,6 +78,7 @@ def expanded(program: Program, language: Language, limit: int) -> Listing:
     forms = {e: expander.expand(e) for e in dict.fromkeys(nodes)} if expander else {}
     terms = [t for e in nodes for t in (*forms[e].terms, *forms[e].denominator)]
     check_size(sum(1 + len(t.powers) + 2 * len(t.angle) for t in terms), limit)
+    language.decimals = has_decimals(t.coefficient for t in terms)
     writer = _ExpandedWriter(program, language, terms, limit)
     texts = {e: writer.form(form).text for e, form in forms.items()}
     return Listing((), {name: tuple(texts[e] for e in some if isinstance(e, Expr)) for name, some in exprs.items()})
@@ -99,13 +103,21 @@ def _is_pi(program: Program, i: int) -> bool:
     return operation[0] == "acos" and program.operations[operation[1]] == ("int", "-1")
 
 
+def _constants(program: Program, needed: Iterable[int]) -> Iterator[Fraction]:
+    return (_constant(program.operations[i]) for i in needed if program.operations[i][0] in ("int", "rat"))
+
+
+def _constant(operation: Operation) -> Fraction:
+    return Fraction(*map(int, operation[1:]))
+
+
 def _operation(program: Program, language: Language, i: int, pieces: Mapping[int, Piece]) -> Piece:
     operation: Operation = program.operations[i]
     op = operation[0]
     if op == "sym":
         return language.symbol(operation[1])
     if op in ("int", "rat"):
-        return language.number(Fraction(int(operation[1]), int(operation[2]) if op == "rat" else 1))
+        return language.number(_constant(operation))
     if op == "powi":
         return language.power(pieces[operation[1]], operation[2])
     if op == "neg" and pieces[operation[1]].precedence == SUM and program.operations[operation[1]][0] == "sub":

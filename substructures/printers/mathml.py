@@ -16,7 +16,6 @@ from substructures.expr.program import Output, Program
 from substructures.printers.language import ATOM, NEGATION, POWER, PRODUCT, SUM, Language, Listing, Piece
 from substructures.printers.meanings import Label
 from substructures.printers.names import RAISED, comment, latex_names, letter_of, prefix
-from substructures.printers.numbers import decimal_text
 
 #: before every term of a sum that stands in no parentheses or fraction
 TERM = "\x1f"
@@ -118,16 +117,9 @@ class MathML(Language):
         """The Greek letter."""
         return Piece("<mi>&#x3C0;</mi>")
 
-    def number(self, value: Fraction) -> Piece:
-        """An integer, a simple fraction, otherwise an exact decimal number where there is a short one."""
-        if value < 0:
-            return self.neg(self.number(-value))
-        if value.denominator == 1:
-            return Piece(f"<mn>{value.numerator}</mn>")
-        text = decimal_text(value) if 12 % value.denominator else None
-        if text:
-            return Piece(f"<mn>{text}</mn>")
-        return Piece(f"<mfrac><mn>{value.numerator}</mn><mn>{value.denominator}</mn></mfrac>", PRODUCT)
+    def fraction(self, above: int, below: int) -> Piece:
+        """One above the other."""
+        return Piece(f"<mfrac><mn>{above}</mn><mn>{below}</mn></mfrac>", PRODUCT)
 
     def scientific(self, mantissa: str, exponent: int) -> Piece:
         """mantissa * 10^exponent."""

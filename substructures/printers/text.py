@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cached_property
 
 from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.names import comment, formula_name, prefix
-from substructures.printers.numbers import decimal_text
 from substructures.printers.symmetry import elements_rule
 
 
@@ -35,14 +33,6 @@ class Text(Language):
     def taken(self) -> frozenset[str]:
         """Names, and those within instances: c2 of an instance is not c2 = cos(q2), either."""
         return frozenset(x for s in self.program.symbols for x in (s.name, s.name.rpartition(".")[2]))
-
-    def number(self, value: Fraction) -> Piece:
-        """A simple fraction, otherwise an exact decimal number where there is a short one."""
-        if value > 0 and 12 % value.denominator:
-            text = decimal_text(value)
-            if text is not None:
-                return Piece(text)
-        return super().number(value)
 
     def render(self, listing: Listing, name: str) -> str:
         """Lines ``name[indices] = formula``; comments say what symbols are and how symmetric elements follow."""

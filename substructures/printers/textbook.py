@@ -12,8 +12,10 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.listing import check_size
+from substructures.printers.numbers import has_decimals
 from substructures.textbook import AT_ONCE, LIMITS, Limits, Reading, Sum, Term, Trig, read
-from substructures.textbook.forms import Factor, atoms_of, leaves
+from substructures.textbook.forms import Factor, atoms_of, leaves, numbers
+from substructures.textbook.scales import ratio
 
 #: so many angles q1, q2, ..., and c12 is written for cos(q1 + q2); parameters decide nothing, so that one more of them
 #: leaves the other lines as they are
@@ -25,6 +27,8 @@ LONG = 12
 #: elements and operations of small results, and products of terms of rational functions in these and in others: more of
 #: them in many elements are lines that nobody reads, and take long to write
 FEW, SMALL, WORK_OF_FEW, WORK_OF_MANY = 2, 400, 1_000_000, 100_000
+#: parts of a half turn that are written as such, pi/180
+DEGREES = 180
 _ANGLE = re.compile(r"q([0-9])", re.ASCII)
 
 
@@ -55,7 +59,9 @@ class TextbookTerms:
         self._writer = TextbookWriter(program, language, self.reading, short, named, divisors)
         before = [(language.abbreviation(t.op, n).text, self._writer.spelled_out(t)) for t, n in short.items()]
         before += [(piece.text, self._writer.formulas[f].text) for f, piece in named.items()]
-        entries = {name: tuple(self._writer.sum(f).text for f in some) for name, some in self.reading.outputs.items()}
+        entries = {
+            name: tuple(self._writer.formula(f).text for f in some) for name, some in self.reading.outputs.items()
+        }
         before += [(piece.text, text) for text, piece in (divisors or {}).items()]
         self.listing = Listing((), entries, tuple(before))
         # symbols that cancelled are in none of the forms
@@ -64,7 +70,7 @@ class TextbookTerms:
 
     def text(self, term: Term) -> str:
         """A term with its sign, in the names of the listing."""
-        return self._writer.sum(Sum((term,))).text
+        return self._writer.formula(Sum((term,))).text
 
 
 def at_once(program: Program) -> Limits:
@@ -103,6 +109,10 @@ def _repeated(reading: Reading) -> list[Expr]:
     return [f for f in reading.inside_out if counts[f] > 1 and sum(map(len, reading.functions[f])) >= REPEATED]
 
 
+def _has_decimals(forms: Iterable[Sum]) -> bool:
+    return has_decimals(x for form in forms for c in numbers(form) for x in ratio(c, True))
+
+
 class TextbookWriter:
     """Writes textbook forms; ``short`` are the cosines and sines that have names, ``named`` the functions.
 
@@ -124,7 +134,9 @@ class TextbookWriter:
         self.atoms: dict[Expr, Piece] = {}
         self.formulas: dict[Expr, Piece] = {}
         for function in reading.inside_out:
-            written = language.write(function.op, [self.sum(f) for f in reading.functions[function]])
+            inner = reading.functions[function]
+            language.decimals = _has_decimals(inner)
+            written = language.write(function.op, [self.sum(f) for f in inner])
             self.formulas[function] = written
             self.atoms[function] = named.get(function, written)
 
@@ -132,6 +144,11 @@ class TextbookWriter:
         if node.op == "sym":
             return self.language.symbol(self.number[str(node.value)])
         return self.language.pi() if node is node.graph.pi else self.atoms[node]
+
+    def formula(self, form: Sum) -> Piece:
+        """A whole formula; 1/2 is 0.5 beside decimal numbers."""
+        self.language.decimals = _has_decimals([form])
+        return self.sum(form)
 
     def sum(self, form: Sum) -> Piece:
         """A sum with the signs of its terms."""
@@ -153,10 +170,9 @@ class TextbookWriter:
         above = [self._power(f, n) for f, n in term.factors if n > 0]
         below = [self._power(f, -n) for f, n in term.factors if n < 0]
         c = term.coefficient
-        if below and self._is_ratio(c):
-            below.insert(0, self.language.number(Fraction(c.denominator)))
-            c = Fraction(c.numerator)
-        top = reduce(self.language.mul, [*([self.language.decimal(c)] if c != 1 or not above else []), *above])
+        c, divisor = ratio(c, bool(below))
+        below = [self.language.number(divisor), *below] if divisor != 1 else below
+        top = reduce(self.language.mul, [*([self.language.number(c)] if c != 1 or not above else []), *above])
         if not below:
             return top
         bottom = reduce(self.language.mul, below)
@@ -172,10 +188,6 @@ class TextbookWriter:
         name = self.language.temporary(self._first_divisor + len(self._divisors))
         piece = self._divisors.setdefault(self.sum(factor).text, name)
         return piece if n == 1 else self.language.power(piece, n)
-
-    def _is_ratio(self, c: Fraction) -> bool:
-        """Whether a number is written as a quotient of integers."""
-        return c.denominator != 1 and "." not in self.language.decimal(c).text
 
     def _power(self, factor: Factor, n: int) -> Piece:
         if isinstance(factor, Trig):
@@ -199,8 +211,11 @@ class TextbookWriter:
         return self.language.trig(trig.op, angle, n)
 
     def _multiple(self, c: Fraction, angle: Expr) -> Piece:
-        """A part of an angle: a multiple of an atom, or a number of radians."""
+        """A part of an angle: a multiple of an atom, or a number of radians; pi/5 of a half turn."""
         if angle.is_number:
             return self.language.number(c * Fraction(angle.value))
         atom = self._atom(angle)
+        if angle is angle.graph.pi and 1 < c.denominator <= DEGREES:
+            above = self._multiple(Fraction(c.numerator), angle)
+            return self.language.div(above, self.language.number(Fraction(c.denominator)))
         return atom if c == 1 else self.language.mul(self.language.number(c), atom)

@@ -10,8 +10,9 @@ follows from the function alone, never from how it was computed:
 4. :mod:`~substructures.textbook.layout` puts both together, and :mod:`~substructures.textbook.quotients` factors what
    is divided, with numbers as they were given (:mod:`~substructures.textbook.scales`), and leaves
    determinants as products but for one term (:mod:`~substructures.textbook.products`);
-5. :mod:`~substructures.textbook.tidy` takes common factors out of short sums;
-6. :mod:`~substructures.textbook.reading` does it for all outputs of a program.
+5. :mod:`~substructures.textbook.springs` finds squares of lengths that are stretched, and their forces;
+6. :mod:`~substructures.textbook.tidy` takes common factors out of short sums;
+7. :mod:`~substructures.textbook.reading` does it for all outputs of a program.
 
 A form equals the stored formula wherever both have values: common factors of numerator and denominator are gone.
 """

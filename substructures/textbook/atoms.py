@@ -6,10 +6,11 @@ other parameters next, what moves (coordinates, velocities, accelerations) last:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 from substructures.expr.generators import natural
@@ -22,6 +23,8 @@ _MOVING = ("coordinate", "velocity", "acceleration", "time")
 #: units of momenta, which change with time as velocities do
 _MOMENTA = ("kg m/s", "kg m^2/s")
 
+#: terms of what is under a root
+SHORT = 20
 #: powers of atoms, by their place in the order
 Monomial = tuple[tuple[int, int], ...]
 #: a polynomial (also with negative powers) in atoms
@@ -52,6 +55,13 @@ class Atoms:
         if not ranks:
             return NUMBER
         return MOVING if MOVING in ranks else PARAMETER
+
+    @cached_property
+    def roots(self) -> Mapping[int, Polynomial]:
+        """What the squares of roots are, which occur in their place: numbers, and sums of products of symbols."""
+        arguments = {i: e.args[0] for i, e in enumerate(self.exprs) if e.op == "sqrt"}
+        found = _polynomials(arguments.values(), self.place) if arguments else {}
+        return {i: found[arg] for i, arg in arguments.items() if arg in found}
 
     def is_rate(self, atom: Expr) -> bool:
         """Whether it changes with velocities, accelerations or time, or is a function of what moves."""
@@ -112,3 +122,37 @@ def times(a: Monomial, b: Monomial, power: int = 1) -> Monomial:
     for i, n in b:
         powers[i] = powers.get(i, 0) + n * power
     return tuple(sorted((i, n) for i, n in powers.items() if n))
+
+
+def multiplied(a: Polynomial, b: Polynomial) -> dict[Monomial, Fraction]:
+    """a * b."""
+    result: dict[Monomial, Fraction] = {}
+    for (m, v), (n, w) in product(a.items(), b.items()):
+        key = times(m, n)
+        result[key] = result.get(key, Fraction(0)) + v * w
+    return {m: c for m, c in result.items() if c}
+
+
+def _operation(op: str, args: Sequence[Polynomial]) -> Polynomial:
+    if op == "mul":
+        return multiplied(*args)
+    sign = 1 if op == "add" else -1
+    first = args[0] if len(args) > 1 else {}
+    found = {m: first.get(m, Fraction(0)) + sign * args[-1].get(m, Fraction(0)) for m in {*first, *args[-1]}}
+    return {m: c for m, c in found.items() if c}
+
+
+def _polynomials(exprs: Iterable[Expr], place: Mapping[Expr, int]) -> dict[Expr, Polynomial]:
+    """Those of the expressions, and of what they consist of, that are short sums of products of symbols."""
+    found: dict[Expr, Polynomial] = {}
+    for node in reachable(list(exprs)):
+        args = [found[a] for a in node.args if a in found]
+        if node in place and node.op == "sym":
+            found[node] = {((place[node], 1),): Fraction(1)}
+        elif node.is_number:
+            found[node] = {(): Fraction(node.value)}
+        elif node.op in ("add", "sub", "mul", "neg") and len(args) == len(node.args):
+            some = _operation(node.op, args)
+            if len(some) <= SHORT:
+                found[node] = some
+    return found

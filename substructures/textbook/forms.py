@@ -54,6 +54,15 @@ def leaves(form: Sum) -> Iterator[Expr | Trig]:
                 yield factor
 
 
+def numbers(form: Sum) -> Iterator[Fraction]:
+    """The coefficients of all terms."""
+    for term in form.terms:
+        yield term.coefficient
+        for factor, _ in term.factors:
+            if isinstance(factor, Sum):
+                yield from numbers(factor)
+
+
 def atoms_of(forms: Iterable[Sum]) -> list[Expr]:
     """The atoms of forms, those inside of cosines and sines included, each once."""
     found: dict[Expr, None] = {}

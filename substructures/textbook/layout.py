@@ -14,11 +14,12 @@ from functools import lru_cache
 from typing import Any
 
 from substructures.expr.graph import Expr
-from substructures.textbook.atoms import INPUT, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
+from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
 from substructures.textbook.collect import Collector, common_number, content, factored, is_fraction, length
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Harmonics, Mode, Wave, Waves, angle_key, normal, shortest, wave_key
+from substructures.textbook.springs import Square, squares
 
 #: monomial of all atoms -> harmonics of the angles
 Content = Mapping[Monomial, Harmonics]
@@ -41,7 +42,34 @@ class Layout:
         self.collect = Collector(atoms)
 
     def __call__(self, found: Content) -> Sum:
-        """The textbook form of a sum, over a common divisor if that is shorter: (a + b)/c for a/c + b/c."""
+        """The textbook form of a sum, with squares for what they are if that is shorter: 1/2*k*(q - l)^2."""
+        form = self._divided(found)
+        springs, rest = squares(found, self.atoms)
+        if not springs:
+            return form
+        terms = [*self._divided(rest).terms, *self._squares(springs)]
+        return min(form, Sum(tuple(terms)), key=len)
+
+    def _squares(self, springs: Iterable[Square]) -> Iterator[Term]:
+        """Terms of springs, those of the same stiffness as one: 1/2*k*((q1 - l1)^2 + (q2 - l2)^2)."""
+        same: dict[tuple[Fraction, Monomial], list[Term]] = {}
+        for number, stiffness, x, rest in springs:
+            is_moment = any(self.atoms.ranks[i] == MASS for i, _ in stiffness)
+            inner = self.distance(x, rest, is_moment)
+            same.setdefault((number, stiffness), []).append(Term(Fraction(1), ((inner, 2),)))
+        for (number, stiffness), some in same.items():
+            yield product(number, [*self.atoms.factors(stiffness), (Sum(tuple(some)), 1)])
+
+    def distance(self, x: int, rest: Polynomial, is_moment: bool = False) -> Sum:
+        """x - rest of springs, l0 + x and l1 - l2 - x of moments of inertia."""
+        terms = sorted(((m, -c) for m, c in rest.items()), key=lambda item: monomial_key(item[0]))
+        one: tuple[Monomial, Fraction] = ((x, 1),), Fraction(1)
+        written = [*terms, one] if is_moment or terms[0][1] > 0 else [one, *terms]
+        sign = -1 if written[0][1] < 0 else 1
+        return Sum(tuple(Term(sign * c, tuple(self.atoms.factors(m))) for m, c in written))
+
+    def _divided(self, found: Content) -> Sum:
+        """Over a common divisor if that is shorter: (a + b)/c for a/c + b/c."""
         form = self._apart(found)
         below: dict[int, int] = {}
         for i, n in (item for monomial in found for item in monomial):

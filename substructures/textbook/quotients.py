@@ -15,6 +15,7 @@ from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MOVING, Atoms, Monomial, times
+from substructures.textbook.collect import content as content_of
 from substructures.textbook.collect import is_fraction, length
 from substructures.textbook.exponentials import Complex, harmonics_of, power, spread, tangent
 from substructures.textbook.field import Field, to_fmpq
@@ -23,6 +24,7 @@ from substructures.textbook.harmonics import Mode, normal, polynomial_of
 from substructures.textbook.layout import Content, Layout
 from substructures.textbook.products import but_for_one_term
 from substructures.textbook.scales import divisors, primitive
+from substructures.textbook.springs import stretches
 
 #: terms of a polynomial that is factored
 FACTORED = 400
@@ -47,11 +49,30 @@ class Quotients:
 
     def __call__(self, expr: Expr) -> Sum:
         """The textbook form of one of the field's expressions."""
-        above, below = self.field.values[expr]
         terms: list[Term] = []
-        for top, bottom in self._parts(above, below):
-            terms += self._ratio(top, bottom)
+        for top, bottom in self._parts(*self.field.values[expr]):
+            numerator, denominator = self._contents(top, bottom)
+            monomial = _monomial(denominator)
+            if monomial is None:
+                terms.append(self._ratio(numerator, denominator))
+            else:
+                terms += self._sum(_divided(numerator, *monomial))
         return Sum(tuple(terms))
+
+    def _sum(self, content: Content) -> list[Term]:
+        """A sum, with k*(s - l)/s for k - k*l/s unless that is longer by more than what is said twice."""
+        whole = self.layout(content)
+        found, left = stretches(content, self.atoms)
+        if not found:
+            return list(whole.terms)
+        terms = list(self.layout(left).terms)
+        for force, s, (monomial, number) in found:
+            _, common = content_of(dict.fromkeys(force, Fraction(1)))
+            inner = self.layout({times(m, common, -1): h for m, h in force.items()})
+            stretched = self.layout.distance(s, {monomial: number})
+            factors: list[tuple[Factor, int]] = [(inner, 1), (stretched, 1), (self.atoms.exprs[s], -1)]
+            terms.append(product(Fraction(1), [*self.atoms.factors(common), *factors]))
+        return terms if len(Sum(tuple(terms))) <= len(whole) + len(found) else list(whole.terms)
 
     def _parts(self, above: Any, below: Any) -> list[tuple[Any, Any]]:
         """Parts with different sums in their denominators, the shortest denominator first.
@@ -86,17 +107,17 @@ class Quotients:
                 poly = quotient
         return poly / poly.leading_coefficient()
 
-    def _ratio(self, above: Any, below: Any) -> list[Term]:
+    def _contents(self, above: Any, below: Any) -> tuple[Content, Content]:
+        """Numerator and denominator in cosines and sines."""
         degrees = [max(a, b) for a, b in zip(above.degrees(), below.degrees(), strict=True)][self.size :]
         halves = [(max(int(n), 0) + 1) // 2 for n in degrees]
         numerator, denominator = (_content(p, self.size, self.places, halves) for p in (above, below))
-        if len(denominator) == 1:
-            ((monomial, waves),) = denominator.items()
-            if all(not any(k) for k in waves):
-                return list(self.layout(_divided(numerator, monomial, next(iter(waves.values()))[0])).terms)
+        return numerator, denominator
+
+    def _ratio(self, numerator: Content, denominator: Content) -> Term:
         number, above = self._factors(numerator)
         below_number, below = self._factors(denominator)
-        return [self._product(number / below_number, [*above, *((part, -n) for part, n in below)])]
+        return self._product(number / below_number, [*above, *((part, -n) for part, n in below)])
 
     def _factors(self, content: Content) -> tuple[Fraction, list[tuple[Any, int]]]:
         """A number and polynomials without content, irreducible unless they are large, with their powers."""
@@ -229,6 +250,12 @@ def _content(poly: Any, size: int, places: Sequence[int], halves: Sequence[int])
         spread(result.setdefault(monomial, {}), waves, _fraction(c))
     found = {m: harmonics_of(z) for m, z in result.items()}
     return {m: h for m, h in found.items() if h}
+
+
+def _monomial(content: Content) -> tuple[Monomial, Fraction] | None:
+    """The monomial and the number that content is, if it is no more."""
+    monomial, waves = next(iter(content.items()))
+    return (monomial, next(iter(waves.values()))[0]) if len(content) == 1 and not any(map(any, waves)) else None
 
 
 def _divided(content: Content, monomial: Monomial, number: Fraction) -> Content:

@@ -41,6 +41,10 @@ PUMA = "sum of the links' moments about axis 2, B. Armstrong, O. Khatib, J. Burd
 STEINER = "sum of the links' moments, m r^2 each and their own"
 ROPE = "a pendulum on a rope of length l0 + hoist below a trolley"
 
+LINK = "a spring between two points at a and hv - lift from the pin, with the law of cosines"
+SQUEEZER = "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 1996, section VI.9, (9.9)"
+DE_LEVA = "P. de Leva, Journal of Biomechanics 29(9), 1996, table 4 (male)"
+
 COORDINATES = [f"q{n}" for n in range(1, 7)]
 
 LINES = [
@@ -319,12 +323,79 @@ LINES = [
         "half the derivative of g by roll, pitch and yaw",
     ),
     Line(
+        "humanoid-head",
+        "forward_dynamics[2]",
+        "tau_neck_pitch/(0.024222337776*M*l^2) + 4.25*g*sin(neck_pitch)/(2.9679*l)"
+        " + 108527/138502*sin(neck_pitch)*cos(neck_pitch)*neck_yaw'^2",
+        # moments about the cervicale, with the mass centre at 0.4998 l and radii of gyration 0.303, 0.315 and 0.261 l
+        "(tau_neck_pitch + 0.0694*M*g*0.4998*l*sin(neck_pitch) + 0.0694*M*l^2*(0.303^2 + 0.4998^2 - 0.261^2)"
+        "*sin(neck_pitch)*cos(neck_pitch)*neck_yaw'^2)/(0.0694*M*l^2*(0.315^2 + 0.4998^2))",
+        DE_LEVA,
+    ),
+    Line(
+        "humanoid-head",
+        "forward_dynamics[1]",
+        "(6.25*tau_neck_yaw - 0.2372508747*M*l^2*sin(neck_pitch)*cos(neck_pitch)*neck_pitch'*neck_yaw')"
+        "/(0.015615*M*l^2*(9.48914 - 7.59689*cos(neck_pitch)^2))",
+        "(tau_neck_yaw - 2*0.0694*M*l^2*(0.303^2 + 0.4998^2 - 0.261^2)*sin(neck_pitch)*cos(neck_pitch)"
+        "*neck_pitch'*neck_yaw')/(0.0694*M*l^2*((0.303^2 + 0.4998^2)*sin(neck_pitch)^2 + 0.261^2*cos(neck_pitch)^2))",
+        DE_LEVA,
+    ),
+    Line(
         "flyball-governor",
         "forces[2]",
-        "a*kl*ll*(hv - lift)*sin(right)/t1 + tau_right - (mb*g*l + a*kl*(hv - lift))*sin(right)",
+        "tau_right - mb*g*l*sin(right) - a*kl*(hv - lift)*sin(right)*(t1 - ll)/t1",
         "tau_right - mb*g*l*sin(right) - kl*(sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right)) - ll)"
         "*a*(hv - lift)*sin(right)/sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right))",
-        "a spring between two points at a and hv - lift from the pin, with the law of cosines",
+        LINK,
+    ),
+    Line(
+        "flyball-governor",
+        "forces[4]",
+        "tau_lift - mv*g - k*lift + kl*(hv - a*cos(left) - lift)*(t2 - ll)/t2"
+        " + kl*(hv - a*cos(right) - lift)*(t1 - ll)/t1",
+        "tau_lift - mv*g - k*lift + kl*(1 - ll/sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(left)))"
+        "*(hv - lift - a*cos(left)) + kl*(1 - ll/sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right)))"
+        "*(hv - lift - a*cos(right))",
+        LINK,
+    ),
+    Line(
+        "flyball-governor",
+        "potential_energy",
+        "-mv*g*hv - mb*g*l*(cos(left) + cos(right)) + mv*g*lift + 1/2*k*lift^2"
+        " + 1/2*kl*((sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(left)) - ll)^2"
+        " + (sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right)) - ll)^2)",
+        "k*lift^2/2 - mv*g*(hv - lift) - mb*g*l*cos(left) - mb*g*l*cos(right)"
+        " + kl*(sqrt((hv - lift - a*cos(left))^2 + a^2*sin(left)^2) - ll)^2/2"
+        " + kl*(sqrt((hv - lift - a*cos(right))^2 + a^2*sin(right)^2) - ll)^2/2",
+        LINK,
+    ),
+    Line(
+        "drill-spindle",
+        "potential_energy",
+        "1/2*m*g*l + m*g*feed + 1/2*k*(feed - r)^2",
+        "m*g*(feed + l/2) + k*(feed - r)^2/2",
+        "a weight on a spring that is unloaded at r",
+    ),
+    Line(
+        "andrews-squeezer",
+        "potential_energy",
+        "-mom*beta + 1/2*c0*(sqrt(sc^2 + sd^2 + (xb - xc)^2 + (yb - yc)^2 - 2*(sc*yb - sc*yc - sd*xb"
+        " + sd*xc)*cos(gamma) + 2*(sc*xb - sc*xc + sd*yb - sd*yc)*sin(gamma)) - l0)^2",
+        "-mom*beta + c0*(sqrt((sd*cos(gamma) + sc*sin(gamma) + xb - xc)^2 + (sd*sin(gamma) - sc*cos(gamma)"
+        " + yb - yc)^2) - l0)^2/2",
+        SQUEEZER,
+    ),
+    Line(
+        "andrews-squeezer",
+        "forces[3]",
+        "tau_gamma - c0*((sc*xb - sc*xc + sd*yb - sd*yc)*cos(gamma) + (sc*yb - sc*yc - sd*xb + sd*xc)*sin(gamma))"
+        "*(t1 - l0)/t1",
+        # F = c0*(L - l0)/L, and F*(xD - xc), F*(yD - yc) on the point D
+        "tau_gamma - c0*(1 - l0/sqrt((sd*cos(gamma) + sc*sin(gamma) + xb - xc)^2 + (sd*sin(gamma) - sc*cos(gamma) + yb"
+        " - yc)^2))*((sd*cos(gamma) + sc*sin(gamma) + xb - xc)*(sc*cos(gamma) - sd*sin(gamma))"
+        " + (sd*sin(gamma) - sc*cos(gamma) + yb - yc)*(sd*cos(gamma) + sc*sin(gamma)))",
+        SQUEEZER,
     ),
 ]
 
