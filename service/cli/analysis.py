@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -146,9 +147,9 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
 def _numbers(wanted: _Wanted, name: str, given: Path | None) -> int:
     request = {} if given is None else read_document(given)
     media = _media(wanted.out, name)
-    with waiting(name):
-        if is_document(wanted.tree):
-            source = local_source(Path(wanted.tree))
+    source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
+    with waiting(name), nullcontext() if given is None else named(given):
+        if source is not None:
             result = ANALYSES[name].compute(source, request, lambda _: None)
             told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
         else:

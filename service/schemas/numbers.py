@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, SkipValidation, StrictBool, V
 
 from service.schemas.measured import WithUnits
 from service.schemas.shapes import Digest, Shape, Warned
-from substructures.documents import pointer_step
+from substructures.documents import pointer_step, require_object
 from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
@@ -84,8 +84,7 @@ class EvaluationRequest(Shape):
 
         Raises InvalidDocument for fields that are missing or unknown, with the faults of the quantities.
         """
-        if not isinstance(data, dict):
-            raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+        require_object(data)
         try:
             request = cls.model_validate(data)
         except ValidationError as error:
