@@ -86,7 +86,10 @@ def message_of(error: Mapping[str, Any], model: type[BaseModel] | None = None) -
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
     if kind == "extra_forbidden":
         fields = () if model is None else _field_names(model)
-        return f"unknown field '{str(name)[:80]}'" + ("" if name in fields else meant(str(name), fields))
+        like = "" if name in fields else meant(str(name), fields)
+        known = () if model is None or len(error["loc"]) > 1 else _schema(model).get("properties", ())
+        there = f"; there are {listed(known)}" if known else ""
+        return f"unknown field '{str(name)[:80]}'{like or there}"
     if "below" in error.get("ctx", ()):
         return str(error["msg"])
     if kind == "model_type" and model is not None:

@@ -100,6 +100,14 @@ def test_in_trees(filled: TestClient, change: dict[str, Any], words: str) -> Non
             "did you mean 'kg'?",
         ),
         ("simulations", {"q": [0], "span": [0, 1], "prescribed": {"arm.p": 1}}, "did you mean 'arm.q'?"),
+        ("simulations", {"q": [0], "span": [0, 1], "series": {"e": "am.q"}}, "did you mean 'arm.q'?"),
+        ("equilibria", {"fixed": ["x"]}, "unknown field 'fixed'; there are "),
+        ("evaluations", {"quantities": ["metric"], "q": [0], "float32": "yess"}, "true or false is needed"),
+        (
+            "evaluations",
+            {"quantities": ["reactions"], "q": [0], "joints": 3},
+            "a list is needed, as in [1, 2, 3], found 3",
+        ),
     ],
 )
 def test_in_requests(filled: TestClient, path: str, body: dict[str, Any], words: str) -> None:
@@ -142,3 +150,23 @@ def test_a_part_whose_versions_are_all_withdrawn_is_told_as_such_in_jobs_too(fil
     item = {"a": "slider", "b": "cell"}
     assert why in said(filled.post("/v1/jobs", json={"kind": "compare", "items": [item]}))
     assert why in said(filled.post("/v1/equivalences", json=item))
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"name": "a", "type": "spring", "to": "arm.tp"},
+        {"name": "a", "type": "joint", "coordinate": "arm.q", "force": "distance(world, arm.tp)"},
+    ],
+)
+def test_nothing_else_is_said_of_a_load_whose_end_is_not_known(load: dict[str, Any], filled: TestClient) -> None:
+    answer = filled.post("/v1/trees/cell/loads", json=load)
+    (fault,) = answer.json()["errors"]
+    assert fault["message"] == "'arm' has no port or body 'tp'; it has base, rod, tip; did you mean 'tip'?"
+
+
+def test_names_of_aliases(filled: TestClient) -> None:
+    told = said(filled.put("/v1/substructures/pendulum/aliases/new", json={"version": 7}))
+    assert "there is no substructure 'pendulum@7'; the last version is pendulum@1" in told
+    told = said(filled.put("/v1/substructures/pendulm/aliases/new", json={"version": 1}))
+    assert "there is no substructure 'pendulm'; did you mean 'pendulum'?" in told
