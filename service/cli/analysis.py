@@ -29,6 +29,7 @@ from service.operations.analyses import printed
 from service.operations.models import Style
 from service.settings import Limits
 from substructures.client.connection import step
+from substructures.errors import meant
 from substructures.export import interface_of_model
 from substructures.part.part import Part
 from substructures.printers import FORMS
@@ -109,7 +110,7 @@ def analyse(
     if what in ANALYSES:
         return _numbers(wanted, what, request)
     if request is not None:
-        raise ValueError(f"'{what}' is a formula: it has options, but no request")
+        raise ValueError(f"'{what}' is a formula: it has options, but no request{meant(what, ANALYSES)}")
     chosen = {name: tuple(",".join(texts).split(",")) for name, texts in options.items() if texts}
     text = _formula(wanted, what, Style("json" if json else format, form, bind, name), chosen)
     if out is not None:
