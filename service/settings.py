@@ -139,10 +139,10 @@ class Settings(BaseModel):
 
 
 def from_environment(environment: Mapping[str, str], **overrides: object) -> Settings:
-    """Settings from ``SUBSTRUCTURES_*`` variables; ``overrides`` that are not None win.
+    """Settings from ``SUBSTRUCTURES_*`` variables; ``overrides`` that are not None win, from options of that name.
 
     Variables of the client are left alone, those of the compiler are checked only. Raises SettingsError naming the
-    variable, also for one that no setting has (a typing error would go unnoticed).
+    variable or option, also for one that no setting has (a typing error would go unnoticed).
     """
     given = {name[len(PREFIX) :].lower(): text for name, text in environment.items() if name.startswith(PREFIX)}
     given = {name: text for name, text in given.items() if name not in (*CLIENT, *COMPILER)}
@@ -158,7 +158,10 @@ def from_environment(environment: Mapping[str, str], **overrides: object) -> Set
         return Settings.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
-        raise SettingsError(f"{_variable(first['loc'])}: {message_of(first)}") from None
+        name = str(first["loc"][0])
+        of_command_line = overrides.get(name) is not None
+        place = f"--{name.replace('_', '-')}" if of_command_line else _variable(first["loc"])
+        raise SettingsError(f"{place}: {message_of(first)}") from None
     except ValueError as error:
         raise SettingsError(str(error)) from None
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from service.schemas.measured import read_measured
 from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.parts import RequestPart
-from substructures.errors import InvalidDocument
+from substructures.documents import require_object
 from substructures.tree.model import Model
 
 
@@ -19,8 +19,7 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
 
     Raises InvalidInput with pointers.
     """
-    if not isinstance(body, Mapping):
-        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    require_object(body)
     is_closed = model is not None and bool(model.closures)
     return read_measured(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body, model)
 

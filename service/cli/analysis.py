@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -28,6 +29,7 @@ from service.operations.analyses import printed
 from service.operations.models import Style
 from service.settings import Limits
 from substructures.client.connection import step
+from substructures.errors import meant
 from substructures.export import interface_of_model
 from substructures.part.part import Part
 from substructures.printers import FORMS
@@ -108,7 +110,7 @@ def analyse(
     if what in ANALYSES:
         return _numbers(wanted, what, request)
     if request is not None:
-        raise ValueError(f"'{what}' is a formula: it has options, but no request")
+        raise ValueError(f"'{what}' is a formula: it has options, but no request{meant(what, ANALYSES)}")
     chosen = {name: tuple(",".join(texts).split(",")) for name, texts in options.items() if texts}
     text = _formula(wanted, what, Style("json" if json else format, form, bind, name), chosen)
     if out is not None:
@@ -147,9 +149,9 @@ def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> 
 def _numbers(wanted: _Wanted, name: str, given: Path | None) -> int:
     request = {} if given is None else read_document(given)
     media = _media(wanted.out, name)
-    with waiting(name):
-        if is_document(wanted.tree):
-            source = local_source(Path(wanted.tree))
+    source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
+    with waiting(name), nullcontext() if given is None else named(given):
+        if source is not None:
             result = ANALYSES[name].compute(source, request, lambda _: None)
             told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
         else:

@@ -11,7 +11,7 @@ from typing import IO, Any
 
 from service.schemas.entries import PartEntry
 from substructures.client import ProblemError
-from substructures.documents import places, read_json, read_yaml
+from substructures.documents import places, read_json, read_yaml, require_object
 from substructures.documents.tables import with_tables
 from substructures.errors import Fault, InvalidInput
 from substructures.part.definition import Definition
@@ -27,9 +27,11 @@ def is_document(given: str) -> bool:
 
 
 def read_document(path: Path) -> Any:
-    """A document in JSON or YAML. Raises InvalidDocument naming the file."""
+    """A document in JSON or YAML, which is an object. Raises InvalidDocument naming the file."""
     with path.open("rb") as file, named(path):
-        return with_tables(read_from(path, file), path.parent)
+        document = read_from(path, file) if path.stat().st_size else None
+        require_object(document)
+        return with_tables(document, path.parent)
 
 
 def read_from(path: Path, file: IO[bytes]) -> Any:

@@ -136,7 +136,7 @@ def _tell_mirrored(client: Client, job: str) -> None:
 
 
 def _other(url: str, key: str | None) -> Server:
-    return Server(url, key, key_from="--other-key KEY, or the variable SUBSTRUCTURES_OTHER_KEY")
+    return Server(url, key, key_from="--other-key KEY, or the variable SUBSTRUCTURES_OTHER_KEY", is_other=True)
 
 
 def _bundle(client: Client, refs: Sequence[str]) -> bytes:

@@ -12,6 +12,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, Concatenate, ParamSpec
 
+import httpx2
 import typer
 
 from service.settings import Settings, SettingsError, from_environment
@@ -51,12 +52,13 @@ _TALKING = {
 
 @dataclass(frozen=True)
 class Server:
-    """Who is talked to: a server by its address and key, or a store."""
+    """Who is talked to: a server by its address and key, or a store; ``is_other``: the second one of a command."""
 
     address: str | None = None
     key: str | None = None
     database: str | None = None
     key_from: str = "--key KEY, or the variable SUBSTRUCTURES_KEY"
+    is_other: bool = False
 
     @contextmanager
     def client(self) -> Iterator[Client]:
@@ -71,23 +73,37 @@ class Server:
             return
         known = kept()
         address = self.address or known.get("server") or SERVER
-        if "://" not in address:
-            raise SettingsError(f"an address begins with http:// or https://: write http://{address}")
-        with Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client, self._advised():
+        with (
+            Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client,
+            self._advised(address),
+        ):
             yield client
 
     @contextmanager
-    def _advised(self) -> Iterator[None]:
-        """Say of a key that does not do how one is given. Raises ProblemError."""
+    def _advised(self, address: str) -> Iterator[None]:
+        """Say of a key that does not do how one is given, and of an address what it should be. Raises ProblemError,
+        ValueError.
+        """
         try:
             yield
         except ProblemError as error:
-            if error.status != 401:
+            code = error.problem.get("code")
+            if error.status == 401:
+                ended = code in ("key-expired", "key-revoked")
+                new = "ask whoever runs the server for a new one ('substructures key create') and " if ended else ""
+                advice = f"{new}give it by {self.key_from}"
+            elif error.status == 404 and code in (None, "not-found"):
+                advice = f"'{address}' should be the address of such a server, as in {SERVER}, without a path"
+            else:
                 raise
-            ended = error.problem.get("code") in ("key-expired", "key-revoked")
-            new = "ask whoever runs the server for a new one ('substructures key create') and " if ended else ""
-            detail = f"{error.problem.get('detail')}; {new}give it by {self.key_from}"
+            detail = f"{error.problem.get('detail')}; {advice}"
             raise ProblemError(error.status, {**error.problem, "detail": detail}) from None
+        except httpx2.ConnectError:
+            if not self.is_other:
+                raise
+            tls = "; without TLS it begins with http://" if address.startswith("https") else ""
+            message = f"nothing answers at {address}: is this the URL of the other server, and does it run?{tls}"
+            raise ValueError(message) from None
 
 
 def kept_in() -> Path:

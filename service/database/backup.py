@@ -45,6 +45,8 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
 
     Raises DatabaseError for a damaged file, and for a store that is there unless it may be overwritten.
     """
+    if not source.is_file():
+        raise DatabaseError(f"there is no file {source}; 'substructures backup FILE' makes one of a store")
     target = _file(
         address,
         "for PostgreSQL stop all servers and workers, then use pg_restore --clean --if-exists --dbname=URL FILE",
@@ -70,8 +72,6 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
 
 
 def _check_backup(source: Path) -> None:
-    if not source.is_file():
-        raise DatabaseError(f"there is no file {source}; 'substructures backup FILE' makes one of a store")
     if not _is_sqlite(source):
         raise DatabaseError(f"{source} is no backup")
     try:

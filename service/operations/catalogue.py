@@ -126,7 +126,8 @@ def set_alias(
     owners.require(viewer, owner, name, "moves its aliases")
     target = catalogue.resolve(connection, viewer, Reference(name, number=version))
     if target is None:
-        raise unprocessable("unknown-version", f"there is no substructure '{name}@{version}'", "/version")
+        why = owners.absent_part(connection, viewer, f"{name}@{version}")
+        raise unprocessable("unknown-version", why, "/version")
     current = aliases.get_alias(connection, name, alias)
     if current is not None and if_match is None:
         detail = f"the alias '{alias}' exists; send its ETag in If-Match to move it"
@@ -147,7 +148,7 @@ def check_name(connection: Connection, viewer: Viewer, name: str) -> str:
     first = catalogue.resolve(connection, viewer, Reference(name, number=1))
     if first is not None:
         return first.owner
-    raise not_found(f"there is no substructure '{name[:80]}'", "unknown-substructure")
+    raise not_found(owners.absent_part(connection, viewer, name), "unknown-substructure")
 
 
 def alias_tag(alias: aliases.Alias) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.operations import trees
-from service.operations.owners import absent_part, absent_tree
+from service.operations.owners import absent_either
 from service.operations.sources import tree_parts
 from service.queries import catalogue
 from service.queries import trees as stored_trees
@@ -61,6 +61,5 @@ def _stored(store: Store, viewer: Viewer, reference: str) -> Part | Parts:
             return store.required_part(connection, version.digest)
         tree = None if ref is None else stored_trees.resolve(connection, viewer, ref)
         if tree is None:
-            absent = (describe(connection, viewer, reference) for describe in (absent_part, absent_tree))
-            raise InvalidDocument.at("", "unknown-reference", "; ".join(absent))
+            raise InvalidDocument.at("", "unknown-reference", absent_either(connection, viewer, reference))
     return tree_parts(store, tree)

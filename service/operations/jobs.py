@@ -19,7 +19,7 @@ from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
 from service.store import Store
 from service.viewer import Viewer
-from substructures.documents import write_json
+from substructures.documents import require_object, write_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions, of which every item names one
@@ -64,8 +64,7 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
 
     Raises InvalidDocument or Refused 422 with pointers to the items; nothing is queued then.
     """
-    if not isinstance(body, Mapping):
-        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    require_object(body)
     kind = body.get("kind")
     if not isinstance(kind, str):
         raise InvalidDocument.at("/kind", "missing", f"'kind' is needed: one of {', '.join(kinds.KINDS)}")
@@ -222,7 +221,8 @@ def find(connection: Connection, viewer: Viewer, identifier: str) -> Job:
     """A job. Raises Refused 404 for what the viewer does not see."""
     job = jobs.get_job(connection, identifier)
     if job is None or not job.is_seen_by(viewer):
-        raise not_found(f"there is no job '{identifier[:80]}'", "unknown-job")
+        advice = "GET /v1/jobs, or 'substructures jobs list', tells which there are"
+        raise not_found(f"there is no job '{identifier[:80]}'; {advice}", "unknown-job")
     return job
 
 
@@ -259,7 +259,8 @@ def remove(connection: Connection, viewer: Viewer, identifier: str) -> None:
     """Remove a job with its results and uploads. Raises Refused 404, 403, 409 for one that has not ended."""
     job = _own(connection, viewer, identifier, "removes it")
     if not job.is_final:
-        raise Refused(409, "job-not-ended", f"the job {job.id} is {job.state}: cancel it first (POST .../cancel)")
+        advice = f"cancel it first (POST /v1/jobs/{job.id}/cancel, or 'substructures jobs cancel {job.id}')"
+        raise Refused(409, "job-not-ended", f"the job {job.id} is {job.state}: {advice}")
     remove_job(connection, job.id, job.principal)
     audit.note(connection, viewer, "job.remove", f"job {job.id}", items=job.total)
 

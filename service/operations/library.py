@@ -8,7 +8,7 @@ from functools import lru_cache
 from service.database.connections import Connection
 from service.jobs.kinds.kind import ENTRY
 from service.jobs.kinds.library import StoredTree, StoredVersion
-from service.operations.owners import absent_part, absent_tree, private_parts, wanted
+from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, private_parts, wanted
 from service.operations.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
@@ -54,7 +54,7 @@ class StoreLibrary:
 
     def absent(self, kind: str, reference: str) -> str:
         """Why a reference means nothing, and what may help."""
-        absent = absent_tree if kind == "tree" else absent_part
+        absent = {"tree": absent_tree, EITHER: absent_either}.get(kind, absent_part)
         return absent(self._connection, self._viewer, reference)
 
     def catalogue(self) -> Sequence[str]:

@@ -14,6 +14,9 @@ from service.schemas.entries import Entry
 from service.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
 from substructures.errors import Fault, meant
 
+#: what a reference means that may be one to a part or a tree
+EITHER = "substructure or tree"
+
 
 def wanted(connection: Connection, viewer: Viewer, kind: Kind, name: str, entry: Entry) -> Ownership:
     """Whose a name is or would be. Raises Refused 403 for one of others, 409 for one of another visibility."""
@@ -63,22 +66,28 @@ def candidates(connection: Connection, viewer: Viewer, kind: Kind, text: str) ->
     return meant(name, [each for each in owners.names_like(connection, viewer, kind, name) if each != text])
 
 
-def absent_part(connection: Connection, viewer: Viewer, text: str) -> str:
-    """Why a reference to a part means nothing that the viewer sees, and what may help."""
+def absent_part(connection: Connection, viewer: Viewer, text: str, what: str = "substructure") -> str:
+    """Why a reference to a part means nothing that the viewer sees, and what may help; ``what``: it could be."""
     ref = parse_reference(text)
     last = None if ref is None else catalogue.last(connection, viewer, ref.name)
     if ref is not None and last is not None and ref.number is not None:
-        return f"there is no substructure '{text[:80]}'; the last version is {last.name}@{last.version}"
+        return f"there is no {what} '{text[:80]}'; the last version is {last.name}@{last.version}"
     if last is not None and text == last.name:
         why = f": {last.yank_reason}" if last.yank_reason else ""
         instead = f"; take {last.successor}" if last.successor else ""
         return f"all versions of '{last.name}' are withdrawn, the last one as {last.name}@{last.version}{why}{instead}"
-    return f"there is no substructure '{text[:80]}'{candidates(connection, viewer, 'substructure', text)}"
+    return f"there is no {what} '{text[:80]}'{candidates(connection, viewer, 'substructure', text)}"
 
 
 def absent_tree(connection: Connection, viewer: Viewer, text: str) -> str:
     """Why a reference to a tree means nothing that the viewer sees, and what may help."""
     return f"there is no tree '{text[:160]}'{candidates(connection, viewer, 'tree', text)}"
+
+
+def absent_either(connection: Connection, viewer: Viewer, text: str) -> str:
+    """As :func:`absent_part` of a reference that could mean a tree, too."""
+    why = absent_part(connection, viewer, text, EITHER)
+    return why if why.endswith("?") else why + candidates(connection, viewer, "tree", text)
 
 
 def seen(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> Ownership:

@@ -90,7 +90,8 @@ def list_trees(
 ) -> Response:
     """A page of trees, the latest revision of each. Words that are nowhere are taken for the most similar ones."""
     if uses is not None and "@" in uses:
-        detail = f"'uses' is the name of a part alone; GET /v1/substructures/{uses}/uses tells what uses one version"
+        where = f"GET /v1/substructures/{uses}/uses, or 'substructures uses {uses}', tells what uses one version"
+        detail = f"'uses' is the name of a part alone; {where}"
         raise unprocessable("bare-name-expected", detail, "/query/uses")
     wanted = searches.checked(TreeSearch(words_of(q), **narrow, uses=uses))
     size = limited(page_size, store.settings.limits)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, SkipValidation, StrictBool, V
 
 from service.schemas.measured import WithUnits
 from service.schemas.shapes import Digest, Shape, Warned
-from substructures.documents import pointer_step
+from substructures.documents import message_of, pointer_step, require_object
 from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.quantities import derivative_directions
 from substructures.quantities.evaluation import read_quantities
@@ -84,8 +84,7 @@ class EvaluationRequest(Shape):
 
         Raises InvalidDocument for fields that are missing or unknown, with the faults of the quantities.
         """
-        if not isinstance(data, dict):
-            raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+        require_object(data)
         try:
             request = cls.model_validate(data)
         except ValidationError as error:
@@ -133,13 +132,13 @@ class EvaluationRequest(Shape):
 def _faults(error: ValidationError, data: Mapping[str, Any]) -> list[Fault]:
     """What is wrong with the fields, then with the quantities."""
     faults = []
-    for found in error.errors(include_url=False, include_context=False, include_input=False):
+    for found in error.errors(include_url=False):
         pointer, name = "".join(map(pointer_step, found["loc"])), str(found["loc"][-1])
         if found["type"] == "extra_forbidden":
             like = meant(name, EvaluationRequest.model_fields)
             faults.append(Fault(pointer, "unknown-field", f"unknown field '{name[:80]}'{like}"))
         elif name != "quantities":
-            faults.append(Fault(pointer, "missing", _NEEDED.get(name, found["msg"])))
+            faults.append(Fault(pointer, "missing", _NEEDED.get(name) or message_of(found)))
     try:
         read_quantities(given if isinstance(given := data.get("quantities"), list) else ())
     except InvalidInput as wrong:

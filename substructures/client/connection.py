@@ -9,7 +9,7 @@ from pathlib import Path
 from secrets import token_hex
 from types import TracebackType
 from typing import Any, Self, TypeVar
-from urllib.parse import quote, urlencode
+from urllib.parse import quote, urlencode, urlsplit
 
 import httpx2
 import numpy as np
@@ -35,13 +35,27 @@ def step(given: str | Referable) -> str:
     return quote(text, safe="@:")
 
 
+def require_address(address: str) -> None:
+    """Raise ValueError unless it is that of a server."""
+    if "://" not in address:
+        raise ValueError(f"an address begins with http:// or https://: write http://{address}")
+    try:
+        parts = urlsplit(address)
+        is_address = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # of the port, or of an IPv6 address
+        is_address = False
+    if not is_address:
+        raise ValueError(f"'{address}' is no address of a server: write http://HOST:PORT or https://HOST")
+
+
 class Caller:
     """Talks to one server. All methods raise ProblemError, and httpx2.HTTPError when there is no answer."""
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0, retries: int = RETRIES) -> None:
         """``timeout``: seconds without a byte; ``retries``: how often a request is sent again at most where the server
-        cannot be reached, is gone for a moment, or asks to wait; 0: never.
+        cannot be reached, is gone for a moment, or asks to wait; 0: never. Raises ValueError for what is no address.
         """
+        require_address(address)
         self.address, self.timeout = address, timeout
         self._retries = Retries(retries, timeout)
         self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}

@@ -10,7 +10,7 @@ are the bases of what is read from plain data by ``read_model``.
 Sources: RFC 8259 (JSON), RFC 6901 (pointers), YAML 1.2.2 section 10.3 (core schema).
 """
 
-from substructures.documents.faults import message_of
+from substructures.documents.faults import message_of, require_object
 from substructures.documents.from_json import read_json
 from substructures.documents.from_yaml import places, read_yaml
 from substructures.documents.numbers import MAX_DIGITS
@@ -31,6 +31,7 @@ __all__ = [
     "read_json",
     "read_model",
     "read_yaml",
+    "require_object",
     "write_json",
     "write_yaml",
 ]

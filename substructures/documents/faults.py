@@ -22,6 +22,14 @@ Step = int | str
 Error = Mapping[str, Any]
 
 
+def require_object(data: Any) -> None:
+    """Raise InvalidDocument for what is no object."""
+    if not isinstance(data, Mapping):
+        found = "; there is nothing" if data is None else _found(data)
+        message = f'an object of fields is needed, as in {{"name": "arm"}}{found}'
+        raise InvalidDocument.at("", "object-expected", message)
+
+
 def faults_of(error: ValidationError, data: Any, model: type[BaseModel]) -> list[Fault]:
     """The faults of a document; of what is none of several alternatives those of the one that it is most like."""
     return [
@@ -78,7 +86,10 @@ def message_of(error: Mapping[str, Any], model: type[BaseModel] | None = None) -
         return f"'{name}' is needed" if isinstance(name, str) else "an entry is missing here"
     if kind == "extra_forbidden":
         fields = () if model is None else _field_names(model)
-        return f"unknown field '{str(name)[:80]}'" + ("" if name in fields else meant(str(name), fields))
+        like = "" if name in fields else meant(str(name), fields)
+        known = () if model is None or len(error["loc"]) > 1 else _schema(model).get("properties", ())
+        there = f"; there are {listed(known)}" if known else ""
+        return f"unknown field '{str(name)[:80]}'{like or there}"
     if "below" in error.get("ctx", ()):
         return str(error["msg"])
     if kind == "model_type" and model is not None:
@@ -109,6 +120,10 @@ _EXPECTED = {
     "too_short": "at least {min_length} entries are needed",
     "string_too_long": "at most {max_length} characters are allowed",
     "string_too_short": "at least {min_length} characters are needed",
+    "less_than_equal": "at most {le} is allowed",
+    "greater_than_equal": "at least {ge} is needed",
+    "less_than": "less than {lt} is needed",
+    "greater_than": "more than {gt} is needed",
 }
 
 

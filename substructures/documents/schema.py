@@ -10,7 +10,7 @@ from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from substructures.documents.faults import faults_of
+from substructures.documents.faults import faults_of, require_object
 from substructures.documents.to_json import write_json
 from substructures.errors import InvalidDocument
 
@@ -63,8 +63,7 @@ def read_model(model: type[M], data: Any, *, stored: bool = False, context: Mapp
     ``context``: what else validators are told. A fault below of what a validator takes as a whole has ``below`` in its
     context: the rest of the pointer. What stands alone in the place of a list is a list of one, as MATLAB writes those.
     """
-    if not isinstance(data, Mapping):
-        raise InvalidDocument.at("", "object-expected", "expected a JSON object")
+    require_object(data)
     told = {**(context or {}), **({"stored": True} if stored else {})} or None
     try:
         return model.model_validate(data, context=told)

@@ -24,7 +24,7 @@ def load_names(scope: Scope, definition: Definition, topology: Topology) -> Look
     It becomes no name of the scope, so that what has to be constant cannot name it.
     """
     coordinates = topology.coordinates
-    scope.moving = (*coordinates, *(f"{name}'" for name in coordinates), *definition.inputs)
+    scope.more = (*coordinates, *(f"{name}'" for name in coordinates), *definition.inputs)
 
     def described(name: str, kind: str, unit: str) -> Expr:
         """The symbol of a name, with its description."""

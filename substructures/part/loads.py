@@ -105,7 +105,7 @@ def read_loads(m: Mechanism) -> Loads:
 def _body(m: Mechanism, body: str, pointer: str) -> Frame | None:
     frame = m.bodies.get(body)
     if frame is None:
-        m.scope.fault(pointer, "unknown-body", f"unknown body '{body}'{among(body, m.bodies)}")
+        m.scope.fault(pointer, "unknown-body", f"unknown body '{body}'{among(body, m.bodies, len(m.scope.faults))}")
     return frame
 
 
@@ -204,7 +204,8 @@ def _potential(names: OwnNames, load: PotentialLoad, pointer: str, found: Loads)
 def _joint_force(names: OwnNames, load: JointLoad, pointer: str, found: Loads) -> None:
     m, place = names.m, f"{pointer}/force"
     if load.coordinate not in m.topology.coordinates:
-        message = f"unknown coordinate '{load.coordinate}'{among(load.coordinate, m.topology.coordinates)}"
+        like = among(load.coordinate, m.topology.coordinates, len(m.scope.faults))
+        message = f"unknown coordinate '{load.coordinate}'{like}"
         m.scope.fault(f"{pointer}/coordinate", "unknown-coordinate", message)
         return
     a, lookup = m.topology.coordinates.index(load.coordinate), names.at(place)

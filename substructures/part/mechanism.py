@@ -126,7 +126,9 @@ def mechanism(definition: Definition) -> Mechanism:
         ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
     for i, load in enumerate(definition.loads):
         if isinstance(load, FrictionLoad) and load.coordinate not in layout.coordinates:
-            message = f"unknown coordinate '{load.coordinate}'{among(load.coordinate, layout.coordinates)}"
+            message = (
+                f"unknown coordinate '{load.coordinate}'{among(load.coordinate, layout.coordinates, len(scope.faults))}"
+            )
             scope.fault(f"/loads/{i}/coordinate", "unknown-coordinate", message)
     scope.finish()
     return Mechanism(

@@ -129,8 +129,9 @@ class Measures:
         kind, start, end = parts
         key = f"{kind}({start}, {end})"
         if key not in self._known:
+            faults = len(self.scope.faults)
             A, B = self.place(start, pointer), self.place(end, pointer)
-            if A is None or B is None:
+            if A is None or B is None or len(self.scope.faults) > faults:
                 return None
             pair = Pair(self.scope.graph, A, B)
             found = self._distance(pair, key, pointer) if kind == "distance" else self._angle(pair, key, pointer)

@@ -30,8 +30,8 @@ def no_names(_name: str) -> Expr | None:
 class Scope:
     """A graph with the symbols that expressions may name. Faults are collected; :meth:`finish` raises them.
 
-    ``notices``: what should be known about a document that can be used: pointer, code, message. ``moving``: names that
-    a lookup of its own may know beside: coordinates, velocities, inputs.
+    ``notices``: what should be known about a document that can be used: pointer, code, message. ``more``: names that
+    lookups may know beside those: coordinates, velocities, inputs.
     """
 
     graph: Graph
@@ -39,7 +39,7 @@ class Scope:
     symbols: dict[str, Symbol] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
     notices: list[dict[str, str]] = field(default_factory=list)
-    moving: Sequence[str] = ()
+    more: Sequence[str] = ()
 
     def declare(self, name: str, kind: str, unit: str = "", alias: str | None = None) -> Expr:
         """A symbol of the program, known in expressions by ``alias`` (default: its name)."""
@@ -74,7 +74,7 @@ class Scope:
             code = "unknown-name" if error.name is not None else "bad-expression"
             advice = "; measures of frames stand in loads" if measured(error.name or "") else unit_advice(str(value))
             if error.name is not None and lookup is not no_names and len(self.faults) < SOUGHT:
-                advice = advice or meant(error.name, [*self.names, *(() if lookup is None else self.moving)])
+                advice = advice or meant(error.name, [*self.names, *(() if lookup is None else self.more)])
             self.fault(pointer, code, str(error) + advice)
         except (ValueError, ArithmeticError) as error:
             self.fault(pointer, "bad-number", str(error))

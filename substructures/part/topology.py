@@ -132,19 +132,19 @@ def topology(definition: Definition) -> Topology:
 
 def _name_faults(definition: Definition) -> list[Fault]:
     faults = []
-    seen = {BASE}
+    seen = {BASE: True}
     for i, body in enumerate(definition.bodies):
         if body.name in seen:
             message = f"'{BASE}' is the interface frame" if body.name == BASE else f"duplicate body '{body.name}'"
             faults.append(Fault(f"/bodies/{i}/name", "duplicate-name", message))
-        seen.add(body.name)
+        seen[body.name] = True
     ports = set()
     for i, port in enumerate(definition.ports):
         if port.name in ports or port.name in seen:
             faults.append(Fault(f"/ports/{i}/name", "duplicate-name", f"duplicate port or body name '{port.name}'"))
         ports.add(port.name)
         if port.body not in seen:
-            message = f"unknown body '{port.body}'{among(port.body, seen, i)}"
+            message = f"unknown body '{port.body}'{among(port.body, seen, len(faults))}"
             faults.append(Fault(f"/ports/{i}/body", "unknown-body", message))
     for kind, names in (("parameters", definition.parameters), ("inputs", definition.inputs)):
         for name in names:

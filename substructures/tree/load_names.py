@@ -39,7 +39,7 @@ class LoadNames:
         pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
         names = [f"{i.name}.{joint.coordinate}" for i, m in pairs for joint in m.part.topology.joints]
         self.coordinates = {name: a for a, name in enumerate(names)}
-        self.assembly.scope.moving = (*names, *(f"{name}'" for name in names), *self.assembly.inputs)
+        self.assembly.scope.more = (*names, *(f"{name}'" for name in names), *self.assembly.inputs)
         self.measures = Measures(self.assembly.scope, self.place, self.plain, lambda: self.rates)
         self.units = [UNITS[j.s] for m in self.assembly.mounted for j in m.part.topology.joints]
 

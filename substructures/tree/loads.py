@@ -86,12 +86,15 @@ def _point(names: LoadNames, values: Sequence[object], pointer: str) -> tuple[Ex
 
 
 def _spring(names: LoadNames, load: TreeSpring, pointer: str) -> LoadFormulas:
+    faults = len(names.assembly.scope.faults)
     A = names.place(load.from_, f"{pointer}/from", _point(names, load.from_at, f"{pointer}/from_at"))
     B = names.place(load.to, f"{pointer}/to", _point(names, load.to_at, f"{pointer}/to_at"))
     k, c, l0 = (_read(names, getattr(load, x), f"{pointer}/{x}") for x in ("stiffness", "damping", "length"))
     graph: Graph = names.graph
     pair = Pair(graph, A, B)
     length2 = pair.length2()
+    if length2.is_zero and len(names.assembly.scope.faults) > faults:
+        return LoadFormulas(Reach({}), graph.zero)  # an end of it is not known
     if length2.is_zero:
         message = f"the ends of the spring '{load.name}' are one and the same point"
         names.assembly.scope.fault(pointer, "coincident-ends", message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -69,6 +70,17 @@ def test_steps_that_are_too_long(kind: str, monkeypatch: pytest.MonkeyPatch) -> 
     assert failed(wrong) == ["steps"]
     assert wrong.is_right is False
     assert 2 < len(calls) <= 1 + single_steps.STEPS + single_steps.RESULTS
+
+
+@pytest.mark.parametrize("count", [2, 101])
+def test_no_more_steps_are_told_of_than_there_are(count: int) -> None:
+    motion = simulate(shipped("simple-pendulum"), [0.5], (0, 0.1), count=count)
+    (check,) = (check for check in motion.checks if check.name == "steps")
+    done, of, ways = map(int, re.findall(r"\d+", check.reason)[:3])
+    assert f"{done} of the {of} steps, and {ways} ways from one to a result, done again" in check.reason
+    assert 0 < done <= of
+    assert done <= single_steps.STEPS
+    assert ways <= single_steps.RESULTS
 
 
 def test_steps_of_a_fixed_size_that_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -276,6 +276,11 @@ def test_addresses_that_do_not_do_come_with_a_remedy(run: Runner, address: str) 
     plain = address.removeprefix("http://")
     assert f"begins with http:// or https://: write {address} " in run("list", "--server", plain, code=1)
     assert f"write {address} " in run("pull", plain, "pendulum", code=1)
+    told = run("pull", f"{address}/v1/substructures", "pendulum", code=1)
+    assert f"'{address}/v1/substructures' should be the address of such a server, as in http://127" in told
+    told = run("pull", f"https://{plain}", "pendulum", code=1)
+    assert f"nothing answers at https://{plain}: is this the URL of the other server, and does it run?" in told
+    assert "without TLS it begins with http://" in told
     told = run("list", "--server", f"https://{plain}", code=1)
     assert f"nothing answers at https://{plain}; " in told
     assert "without TLS an address begins with http://" in told

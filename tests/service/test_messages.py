@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import socket
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,15 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.cli.main import main
+from substructures.client import Client
+from substructures.documents import write_yaml
 from substructures.errors import meant
 
 from .conftest import HAND, PENDULUM, TREE
 
 JOINT = {"type": "revolute", "coordinate": "q"}
+#: needs no server
+TREE_OF_ITS_OWN = {**TREE, "instances": [{"name": "arm", "definition": PENDULUM}]}
 EVALUATIONS = "/v1/trees/cell/evaluations"
 
 
@@ -182,11 +187,88 @@ def test_faults_of_files_have_line_and_column(tmp_path: Path, capsys: pytest.Cap
         assert said in capsys.readouterr().err
 
 
-def test_restoring_what_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("is_there", [False, True])
+def test_restoring_what_is_not_there(is_there: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    if is_there:
+        (tmp_path / "x.db").write_text("a store")
+    before = list(tmp_path.iterdir())
     database = ["--database", f"sqlite:///{tmp_path / 'x.db'}"]
     assert main(["restore", str(tmp_path / "nothing.db"), *database]) == 1
     assert "there is no file" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
+    assert list(tmp_path.iterdir()) == before
+
+
+def test_settings_are_named_as_they_were_given(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["serve", "--port", "99999"]) == 1
+    assert "--port: at most 65535 is allowed, found 99999" in capsys.readouterr().err
+    monkeypatch.setenv("SUBSTRUCTURES_PORT", "-1")
+    assert main(["serve"]) == 1
+    assert 'SUBSTRUCTURES_PORT: at least 0 is needed, found "-1"' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "found"),
+    [
+        ("empty.yaml", "", "; there is nothing"),
+        ("remark.yaml", "# nothing yet", "; there is nothing"),
+        ("empty.json", "", "; there is nothing"),
+        ("list.yaml", "- a", ', found ["a"]'),
+        ("text.yaml", "hello", ', found "hello"'),
+    ],
+)
+@pytest.mark.parametrize("words", [("derive",), ("simulate", "TREE"), ("submit",), ("jobs", "submit")])
+def test_files_that_hold_no_object(
+    words: tuple[str, ...],
+    name: str,
+    text: str,
+    found: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path, tree = tmp_path / name, tmp_path / "cell.yaml"
+    path.write_text(text)
+    tree.write_bytes(write_yaml(TREE_OF_ITS_OWN))
+    server = [] if words[0] in ("derive", "simulate") else ["--server", "http://127.0.0.1:9"]
+    assert main([*(str(tree) if word == "TREE" else word for word in words), str(path), *server]) == 1
+    assert f'{path}: an object of fields is needed, as in {{"name": "arm"}}{found}' in capsys.readouterr().err
+
+
+def test_requests_in_files_are_told_of_as_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree, request = tmp_path / "cell.yaml", tmp_path / "request.yaml"
+    tree.write_bytes(write_yaml(TREE_OF_ITS_OWN))
+    request.write_text("q: [0]\nspan: [0, 1]\ninputs:\n  tau.arm.p: 1\n")
+    assert main(["simulate", str(tree), str(request)]) == 1
+    told = "/inputs/tau.arm.p: unknown input 'tau.arm.p'; did you mean 'tau.arm.q'? (line 4, column 14)"
+    assert f"{request}#{told}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("address", "advice"),
+    [
+        ("localhost:8000", "begins with http:// or https://: write http://localhost:8000"),
+        ("ftp://localhost", "'ftp://localhost' is no address of a server: write http://HOST:PORT"),
+        ("http://", "'http://' is no address of a server"),
+        ("http://localhost:80x", "'http://localhost:80x' is no address of a server"),
+    ],
+)
+def test_addresses_of_servers(address: str, advice: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(ValueError, match=re.escape(advice)):
+        Client(address)
+    assert main(["list", "--server", address]) == 1
+    assert advice in capsys.readouterr().err
+
+
+def test_jobs_that_cannot_be_removed(filled: TestClient) -> None:
+    told = said(filled.delete("/v1/jobs/abc"))
+    assert "there is no job 'abc'; GET /v1/jobs, or 'substructures jobs list', tells which there are" in told
+    job = {"kind": "export", "items": [{"tree": "cell", "quantity": "metric", "format": "text"}]}
+    number = filled.post("/v1/jobs", json=job).json()["id"]
+    told = said(filled.delete(f"/v1/jobs/{number}"))
+    assert (
+        f"is queued: cancel it first (POST /v1/jobs/{number}/cancel, or 'substructures jobs cancel {number}')" in told
+    )
 
 
 @pytest.mark.parametrize(

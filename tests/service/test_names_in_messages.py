@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+
+from service.cli.main import main
 
 from .conftest import HAND, PENDULUM, TREE
 
@@ -36,7 +39,7 @@ def said(answer: Any) -> str:
         ("trees/cell/export?target=c&quantities=metrik", "no quantity 'metrik'; did you mean 'metric'?"),
         ("trees/cell/metric?bind=arm.l:1 mmm", "'arm.l': the unit 'mmm' is not known; did you mean 'mm'?"),
         ("trees/cell/first_integrals?zero=arm.k", "unknown parameter 'arm.k'; did you mean 'arm.m'?"),
-        ("trees?uses=pendulum@1", "'uses' is the name of a part alone; GET /v1/substructures/pendulum@1/uses tells"),
+        ("trees?uses=pendulum@1", "'uses' is the name of a part alone; GET /v1/substructures/pendulum@1/uses, or "),
     ],
 )
 def test_in_queries(filled: TestClient, path: str, words: str) -> None:
@@ -100,6 +103,14 @@ def test_in_trees(filled: TestClient, change: dict[str, Any], words: str) -> Non
             "did you mean 'kg'?",
         ),
         ("simulations", {"q": [0], "span": [0, 1], "prescribed": {"arm.p": 1}}, "did you mean 'arm.q'?"),
+        ("simulations", {"q": [0], "span": [0, 1], "series": {"e": "am.q"}}, "did you mean 'arm.q'?"),
+        ("equilibria", {"fixed": ["x"]}, "unknown field 'fixed'; there are "),
+        ("evaluations", {"quantities": ["metric"], "q": [0], "float32": "yess"}, "true or false is needed"),
+        (
+            "evaluations",
+            {"quantities": ["reactions"], "q": [0], "joints": 3},
+            "a list is needed, as in [1, 2, 3], found 3",
+        ),
     ],
 )
 def test_in_requests(filled: TestClient, path: str, body: dict[str, Any], words: str) -> None:
@@ -125,7 +136,7 @@ def test_in_requests(filled: TestClient, path: str, body: dict[str, Any], words:
         ("export", TARGET, "unknown target 'cassadi'; there are"),
         ("export", TARGET, "did you mean 'casadi'?"),
         ("derive", {**PENDULUM, "bodies": [{**ROD, "mass": "mm"}]}, "unknown name 'mm'; did you mean 'm'?"),
-        ("compare", {"a": "pendulm", "b": "cell"}, "no substructure 'pendulm'; did you mean 'pendulum'?"),
+        ("compare", {"a": "pendulm", "b": "cell"}, "no substructure or tree 'pendulm'; did you mean 'pendulum'?"),
     ],
 )
 def test_in_jobs(filled: TestClient, kind: str, item: dict[str, Any], words: str) -> None:
@@ -142,3 +153,36 @@ def test_a_part_whose_versions_are_all_withdrawn_is_told_as_such_in_jobs_too(fil
     item = {"a": "slider", "b": "cell"}
     assert why in said(filled.post("/v1/jobs", json={"kind": "compare", "items": [item]}))
     assert why in said(filled.post("/v1/equivalences", json=item))
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"name": "a", "type": "spring", "to": "arm.tp"},
+        {"name": "a", "type": "joint", "coordinate": "arm.q", "force": "distance(world, arm.tp)"},
+    ],
+)
+def test_nothing_else_is_said_of_a_load_whose_end_is_not_known(load: dict[str, Any], filled: TestClient) -> None:
+    answer = filled.post("/v1/trees/cell/loads", json=load)
+    (fault,) = answer.json()["errors"]
+    assert fault["message"] == "'arm' has no port or body 'tp'; it has base, rod, tip; did you mean 'tip'?"
+
+
+def test_names_of_aliases(filled: TestClient) -> None:
+    told = said(filled.put("/v1/substructures/pendulum/aliases/new", json={"version": 7}))
+    assert "there is no substructure 'pendulum@7'; the last version is pendulum@1" in told
+    told = said(filled.put("/v1/substructures/pendulm/aliases/new", json={"version": 1}))
+    assert "there is no substructure 'pendulm'; did you mean 'pendulum'?" in told
+
+
+def test_either_a_part_or_a_tree(filled: TestClient) -> None:
+    for name, meant in (("pendulm", "pendulum"), ("cel", "cell")):
+        told = said(filled.post("/v1/equivalences", json={"a": name, "b": "cell"}))
+        assert f"there is no substructure or tree '{name}'; did you mean '{meant}'?" in told
+
+
+def test_an_analysis_that_is_no_formula(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["analyse", "cell", "simulatons", str(tmp_path / "request.yaml")]) == 1
+    assert "'simulatons' is a formula: it has options, but no request; did you mean 'simulations'?" in (
+        capsys.readouterr().err
+    )

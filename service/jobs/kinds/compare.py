@@ -72,8 +72,7 @@ def _pinned(given: Any, nodes: int, library: Library) -> tuple[ItemDocument, tup
             return pinned, (version.digest, version.program)
         tree = library.tree(given)
         if tree is None:
-            message = f"{library.absent('substructure', given)}; {library.absent('tree', given)}"
-            raise InvalidDocument.at("", "unknown-reference", message)
+            raise InvalidDocument.at("", "unknown-reference", library.absent("substructure or tree", given))
         return pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": nodes}, library, is_stored=True)
     if "instances" in given:
         return pinned_tree({"tree": given, "nodes": nodes}, library)

@@ -41,7 +41,7 @@ class Library(Protocol):
         """The revision of a tree that a reference means."""
 
     def absent(self, kind: str, reference: str) -> str:
-        """Why a reference to a ``substructure`` or a ``tree`` means nothing, and what may help."""
+        """Why a reference to a ``substructure``, ``tree`` or ``substructure or tree`` means nothing, and the remedy."""
 
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not yanked."""

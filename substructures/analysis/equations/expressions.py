@@ -45,6 +45,8 @@ def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | No
         kinds |= {name: Symbol(name, "input", str(given.get("unit", ""))) for name, given in model.inputs.items()}
         kinds |= {s.name: s for s in model.program.symbols if s.kind == "input"}
 
+    scope.more = tuple(kinds)
+
     def lookup(name: str) -> Expr | None:
         """The symbol of a name, declared when it is first used."""
         if name not in kinds:

@@ -25,6 +25,8 @@ STEPS, RESULTS = 12, 6
 MOST = 10_000
 #: a time and the state then
 State = tuple[float, Array]
+#: from where to where
+Way = tuple[State, State]
 #: begins anew from a state: (span, state, integrator)
 From = Callable[[tuple[float, float], Array, IntegratorChoice], IntegratedMotion]
 #: by name: columns of the states, unit, columns whose rounding is in them
@@ -38,7 +40,8 @@ def steps_again(
 
     The difference is relative to the largest number of its group of columns along the motion, and may reach ``limit``.
     """
-    pairs = [] if first.status == "failed" or first.cancelled else _chosen(first)
+    steps, more = ([], []) if first.status == "failed" or first.cancelled else _chosen(first)
+    pairs = sorted([*steps, *more], key=lambda pair: pair[1][0])
     ends = []
     for (t, x), (end, _) in pairs:
         second = again((t, end), x, _careful(choice, end - t))
@@ -51,7 +54,7 @@ def steps_again(
     one, two = np.array([x for _, (_, x) in pairs]), np.array(ends)
     times, along = np.array([end for _, (end, _) in pairs]), np.abs(np.array(first.step_x))
     errors = [_relative(one, two, along, group) for group in groups.values()]
-    ways = f"{len(pairs)} of the {first.steps:,} steps and ways to results"
+    ways = f"{len(steps)} of the {first.steps:,} steps, and {len(pairs) - len(steps)} ways from one to a result"
     about: About = ("steps", "accurate", f"{ways}, done again in shorter ones, end where they ended", "1")
     return (Check.of(about, np.max(errors, axis=0), times, 1.0, limit),)
 
@@ -64,17 +67,18 @@ def _relative(one: Array, two: Array, along: Array, group: tuple[slice, str, sli
     return np.asarray(np.where(error <= noise, 0.0, error / (scale or 1.0)))
 
 
-def _chosen(first: IntegratedMotion) -> list[tuple[State, State]]:
+def _chosen(first: IntegratedMotion) -> tuple[list[Way], list[Way]]:
     """Steps, and ways from a step to a result within the next one, evenly over the motion."""
     steps = list(zip(first.step_t, first.step_x, strict=True))
     results = list(zip(first.t, first.x, strict=True))
     found = [(steps[k], steps[k + 1]) for k in _spread(len(steps) - 1, STEPS)]
+    more = []
     times = np.array(first.step_t)
     for k in _spread(len(results), RESULTS):
         before = int(np.searchsorted(times, results[k][0])) - 1
         if before >= 0:
-            found.append((steps[before], results[k]))
-    return sorted(((a, b) for a, b in found if b[0] > a[0]), key=lambda pair: pair[1][0])
+            more.append((steps[before], results[k]))
+    return [(a, b) for a, b in found if b[0] > a[0]], [(a, b) for a, b in more if b[0] > a[0]]
 
 
 def _spread(count: int, most: int) -> list[int]:
