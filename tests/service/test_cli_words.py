@@ -105,6 +105,17 @@ def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
     assert "out has no definition in it (*.yaml, *.yml, *.json)" in run("catalogue", "import", "out", *store)
 
 
+def test_faults_of_a_part_beside_a_tree_name_its_file_alone(run: Run, folder: Path) -> None:
+    (folder / "pendulum.json").write_text(json.dumps({**PENDULUM, "portz": []}))
+    for words in (["evaluate", "pair.json", "metric"], ["export", "pair.json", "--target", "c"]):
+        assert run(*words, code=1).startswith("substructures: pendulum.json#/portz: unknown field 'portz'")
+    (folder / "pendulum.json").unlink()
+    for words in (["evaluate", "pair.json", "metric"], ["export", "pair.json", "--target", "c"]):
+        assert run(*words, code=1).startswith(
+            "substructures: pair.json#/instances/0/substructure: 'pendulum' is neither"
+        )
+
+
 def test_no_keys_are_told_with_how_one_is_made(run: Run, folder: Path) -> None:
     store = ["--database", f"sqlite:///{folder / 'x.db'}"]
     Database(store[1]).close()
