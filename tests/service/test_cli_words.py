@@ -92,6 +92,18 @@ def test_indices_are_named_and_nothing_is_said_to_be_nothing(run: Run) -> None:
     assert "all other elements are 0\n" in frames
 
 
+@pytest.mark.usefixtures("folder")
+def test_numbers_have_the_names_of_their_axes(run: Run) -> None:
+    words = "kinematics", "momentum", "reactions", "powers", "inertial_parameters", "christoffel", "--q", "0,0.5"
+    told = run("evaluate", "pair.json", *words)
+    rows = dict(re.findall(r"^  (\S+(?: \S+)*?)  +(-?[\d.]+.*)$", told, re.MULTILINE))
+    assert {"arm.tip", "fore.rod", "x", "arm.q", "gravity", "fore.rod.Jxx"} <= rows.keys()
+    assert [float(x) for x in rows["arm.tip"].split()] == [1, 0, 0]
+    assert "  [fore.tip, arm.q, y]  1.87758256" in told
+    assert "  [arm.q, arm.q, fore.q]  " in told
+    assert run("evaluate", "cell.json", "christoffel").startswith("christoffel  all 0\n")
+
+
 def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
     (folder / "out").mkdir()
     export = ["export", "cell.json", "--target", "c", "--out"]
