@@ -9,7 +9,7 @@ from typing import Any
 
 import orjson
 
-from service.refusals import unprocessable
+from service.refusals import Refused, unprocessable
 from service.settings import Limits
 
 
@@ -30,8 +30,13 @@ def read_token(search: object, token: str | None, *kinds: type) -> tuple[Any, ..
     except (ValueError, TypeError, binascii.Error):
         mark, position = "", []
     if mark != _mark(search) or [type(value) for value in position] != list(kinds):
-        raise unprocessable("page-token", "this page_token belongs to no page of this search", "/query/page_token")
+        raise of_no_page()
     return tuple(position)
+
+
+def of_no_page() -> Refused:
+    """What is said of a token that is of no page."""
+    return unprocessable("page-token", "this page_token belongs to no page of this search", "/query/page_token")
 
 
 def is_of(search: object, token: str) -> bool:

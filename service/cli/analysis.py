@@ -216,9 +216,7 @@ def local_source(path: Path) -> Source:
     document = read_document(path)
     with named(path):
         spec = TreeSpec.read(document)
-    parts = parts_beside(spec, path.parent)
-    with named(path):
-        return coupled_source(spec, parts)
+        return coupled_source(spec, parts_beside(spec, path.parent))
 
 
 def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:

@@ -46,8 +46,9 @@ def definition_of(document: Any) -> Definition:
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Put the name of the file before the pointers of its faults, and line and column behind what they say, also where
-    a server that was sent the document tells of them. Raises InvalidDocument, ProblemError.
+    """Put the name of the file before the pointers of its faults, unless these name another one already, and line and
+    column behind what they say, also where a server that was sent the document tells of them. Raises InvalidDocument,
+    ProblemError.
     """
     try:
         yield
@@ -67,7 +68,7 @@ def _placed(path: Path, faults: Sequence[Fault]) -> list[Fault]:
     return [
         replace(
             fault,
-            pointer=f"{path}#{fault.pointer}" if fault.pointer else str(path),
+            pointer=f"{path}#{fault.pointer}" if fault.pointer.startswith("/") else fault.pointer or str(path),
             message=fault.message + _where(fault, known),
         )
         for fault in faults

@@ -21,6 +21,18 @@ from substructures.quantities.evaluation import QUANTITIES
 from substructures.quantities.evaluation import evaluate as evaluated
 from substructures.quantities.states import STATE, wrong_length
 
+#: what the axes of quantities mean by the members of an answer, by how their names begin; all others are coordinates
+_AXES: Mapping[str, tuple[str, ...]] = {
+    "kinematics.position": ("frames", "axes"),
+    "kinematics.rotation": ("frames", "axes", "axes"),
+    "kinematics.": ("frames", "coordinates", "axes"),
+    "momentum.": ("axes",),
+    "reactions.": ("joints", "axes"),
+    "powers": ("loads",),
+    "regressor": ("coordinates", "columns"),
+    "inertial_parameters": ("columns",),
+}
+
 Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
 
 
@@ -62,7 +74,7 @@ def evaluate(
         print_json(found)
     else:
         for name in quantities:
-            _print(name, found[name], found["coordinates"])
+            _print(name, found[name], found)
     tell_warnings(found)
     for failure in found.get("failures", ()):
         print(f"no result: {failure['message']}")
@@ -114,25 +126,38 @@ def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
     return found
 
 
-def _print(name: str, value: Any, labels: Sequence[str]) -> None:
-    """A number; a vector or matrix by coordinate; what has more axes by its elements that are not zero."""
+def _labels(name: str, axes: int, told: Mapping[str, Any]) -> list[Sequence[str]]:
+    """What the indices along the axes of an array are called."""
+    known = {**told, "columns": told.get("columns", {}).get("names", ()), "axes": ("x", "y", "z")}
+    names = next((names for start, names in _AXES.items() if name.startswith(start)), ("coordinates",) * axes)
+    return [known.get(each, ()) for each in (*names, *[""] * axes)[:axes]]
+
+
+def _print(name: str, value: Any, told: Mapping[str, Any]) -> None:
+    """A number; a vector or matrix by the names of its rows; what has more axes by its elements that are not zero."""
     if isinstance(value, dict):
         for inner, each in value.items():
-            _print(f"{name}.{inner}", each, labels)
+            _print(f"{name}.{inner}", each, told)
         return
     numbers = np.asarray(value, dtype=np.float64)
     if not numbers.ndim:
         print(f"{name}  {numbers:.10g}")
         return
+    if numbers.ndim > 2 and not numbers.any():
+        print(f"{name}  all 0")
+        return
     print(name)
+    named = [
+        labels if len(labels) == n else [str(k + 1) for k in range(n)]
+        for labels, n in zip(_labels(name, numbers.ndim, told), numbers.shape, strict=True)
+    ]
     if numbers.ndim > 2:
         for place in np.argwhere(numbers):
-            print(f"  [{', '.join(str(k + 1) for k in place)}]  {numbers[tuple(place)]:.10g}")
+            where = ", ".join(labels[k] for labels, k in zip(named, place, strict=True))
+            print(f"  [{where}]  {numbers[tuple(place)]:.10g}")
         return
-    rows = numbers.reshape(len(numbers), -1)
-    named = labels if len(labels) == len(rows) else [str(k + 1) for k in range(len(rows))]
-    width = max(map(len, named))
-    for label, row in zip(named, rows, strict=True):
+    width = max(map(len, named[0]), default=0)
+    for label, row in zip(named[0], numbers.reshape(len(numbers), -1), strict=True):
         print(f"  {label:<{width}}  {'  '.join(f'{x + 0.0:13.6g}' for x in row)}")
 
 

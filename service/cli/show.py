@@ -18,6 +18,9 @@ from substructures.client import Client, ProblemError
 from substructures.client.connection import step
 from substructures.printers import FORMS
 
+#: formulas of trees whose first index is that of a frame
+OF_FRAMES = ("position", "rotation", "U", "Omega")
+
 
 @with_server
 def show(
@@ -43,6 +46,8 @@ def show(
         path, found = _found(client, name, tree)
         if quantity:
             inner = "" if path.startswith("/v1/trees") else "formulas/"
+            if quantity in OF_FRAMES and "frames" in found and format == "text" and not json:
+                print(f"# frames: {', '.join(f'{k} {frame}' for k, frame in enumerate(found['frames'], 1))}")
             style = {"format": "json" if json else format, "form": form, "bind": bind}
             print(client.request("GET", f"{path}/{inner}{step(quantity)}", params=style).text.rstrip("\n"))
             return 0

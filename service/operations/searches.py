@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
 from service.database.connections import Connection
-from service.paging import is_of, read_token, write_token
+from service.paging import is_of, of_no_page, read_token, write_token
 from service.queries import part_search, tree_search
 from service.queries.catalogue import Version
 from service.queries.part_search import CatalogueSearch
-from service.queries.search import RELEVANCE, SORTS, Search
+from service.queries.search import RELEVANCE, SORTS, Search, number_of
 from service.queries.tree_search import TreeSearch
 from service.queries.trees import Tree
 from service.queries.words import corrected
@@ -88,8 +88,16 @@ def _found(
 def _page(
     connection: Connection, viewer: Viewer, wanted: Wanted, size: int, token: str | None, read: Read[Wanted, Found]
 ) -> Page[Found]:
-    kinds = (int, int) if wanted.is_by_words else (int if wanted.sort.lstrip("-") == "dof" else str, str)
-    after = read_token(wanted, token, *kinds)
+    is_number = wanted.is_by_words or wanted.sort.lstrip("-") == "dof"
+    after = read_token(wanted, token, int if is_number else str, str)
+    if after is not None and wanted.is_by_words:
+        number = number_of(connection, viewer, wanted.shelf, after[1])
+        if number is None:
+            raise of_no_page()
+        after = after[0], number
     found = read(connection, viewer, wanted, after, size + 1)
-    following = write_token(wanted, *found[size - 1][1]) if len(found) > size else None
+    following = None
+    if len(found) > size:
+        last, (value, _) = found[size - 1]
+        following = write_token(wanted, value, last.name)  # numbers would tell how many names others have
     return Page([each for each, _ in found[:size]], following)

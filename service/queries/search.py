@@ -208,6 +208,14 @@ def _ranks(search: Search) -> tuple[Condition, ...]:
     return (exact, begins, in_all) if any(len(word) >= TRIGRAM for word in search.words) else (exact, begins)
 
 
+def number_of(connection: Connection, viewer: Viewer, shelf: Shelf, name: str) -> int | None:
+    """The number of a name that the viewer sees."""
+    table = shelf.table
+    query = select(table.c.number).where(table.c.name == name, visible(table))
+    found: int | None = connection.execute(query, seen_by(viewer)).scalar()
+    return found
+
+
 def in_order(found: dict[str, Any], rows: Sequence[tuple[str, Position]]) -> list[tuple[Any, Position]]:
     """What was read of a page, with the positions; a name that is gone meanwhile is left out."""
     return [(found[name], value) for name, value in rows if name in found]

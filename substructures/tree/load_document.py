@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, RootModel
+from pydantic import ConfigDict, Field, RootModel, TypeAdapter, ValidationError, WithJsonSchema, model_validator
+from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart
 from substructures.documents.fields import BY_TYPE, Name, Number, NumberVector
@@ -15,6 +17,32 @@ COORDINATE = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
 #: a frame of a tree
 AT = r"^(world|[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63})$"
 FrameOfTree = Annotated[str, Field(pattern=AT)]
+_FRAME: dict[str, Any] = {"type": "string", "pattern": AT}
+_POINT: dict[str, Any] = {"type": "array", "minItems": 3, "maxItems": 3, "items": {}}
+_WITH_POINT = {"type": "object", "properties": {"frame": _FRAME, "at": _POINT}, "required": ["frame"]}
+#: an end of a load, also as an object with a point of the frame, which is read as the field for that point
+End = Annotated[
+    FrameOfTree, WithJsonSchema({"anyOf": [_FRAME, {**_WITH_POINT, "additionalProperties": False}]}, mode="validation")
+]
+
+
+_END = "instance.port, instance.body or world"
+
+
+def _fault(code: str, below: str, message: str) -> PydanticCustomError:
+    return PydanticCustomError(code, "{message}", {"message": message, "below": below})
+
+
+_VECTOR: TypeAdapter[NumberVector] = TypeAdapter(NumberVector)
+
+
+def _point(given: Any, below: str) -> Any:
+    """A point as it was given. Raises PydanticCustomError."""
+    try:
+        _VECTOR.validate_python(given)
+    except ValidationError:
+        raise _fault("point-expected", below, "three numbers or expressions are needed") from None
+    return given
 
 
 class _OfTree(DocumentPart):
@@ -24,12 +52,38 @@ class _OfTree(DocumentPart):
 
 
 class _Between(_OfTree):
-    from_: FrameOfTree = Field("world", alias="from", description="instance.port, instance.body or world")
-    to: FrameOfTree = Field(description="instance.port, instance.body or world")
+    from_: End = Field("world", alias="from", description=_END)
+    to: End = Field(description=_END)
+
+    #: the fields for the points of ends that have some
+    points: ClassVar[Mapping[str, str]] = {}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_points(cls, data: Any) -> Any:
+        """``"from": {"frame": "a.tip", "at": [0, 0, 1]}`` as ``"from": "a.tip", "from_at": [0, 0, 1]``."""
+        ends = [name for name in ("from", "to") if isinstance(data, Mapping) and isinstance(data.get(name), Mapping)]
+        found = dict(data) if ends else data
+        for end in ends:
+            frame, field = data[end], cls.points.get(end)
+            for name in frame:
+                if name not in ("frame", "at"):
+                    raise _fault("unknown-field", f"/{end}/{name}", f"unknown field '{name[:80]}'")
+            if "frame" not in frame:
+                raise _fault("frame-missing", f"/{end}", "'frame' is needed")
+            if "at" in frame and (field is None or field in data):
+                why = "this load acts at no point of that frame" if field is None else f"it is given in '{field}', too"
+                raise _fault("no-point", f"/{end}/at", why)
+            found[end] = frame["frame"]
+            if "at" in frame:
+                found[field] = _point(frame["at"], f"/{end}/at")
+        return found
 
 
 class TreeSpring(_Between):
     """A spring and damper between a point of one frame and a point of another: force k (l - length) + c l'."""
+
+    points: ClassVar[Mapping[str, str]] = {"from": "from_at", "to": "to_at"}
 
     type: Literal["spring"]
     from_at: NumberVector = Field(NONE, description="m; the point in the frame 'from'")
@@ -56,6 +110,8 @@ class Bushing(_Between):
 
 class TreeForce(_Between):
     """A force on ``to`` at a point; the opposite force acts on ``from`` at the same place."""
+
+    points: ClassVar[Mapping[str, str]] = {"to": "at"}
 
     type: Literal["force"]
     at: NumberVector = Field(NONE, description="m; the point in the frame 'to'")

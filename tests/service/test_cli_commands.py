@@ -70,6 +70,13 @@ def test_list_search_and_show(run: Runner) -> None:
     assert "there is no tree 'pendulun'" in told
 
 
+def test_frames_of_formulas_are_named(run: Runner) -> None:
+    assert run("show", "cell", "position").startswith("# frames: 1 arm.base, 2 arm.rod, 3 arm.tip\n")
+    assert run("show", "cell", "metric").startswith("#")
+    assert "frames" not in run("show", "cell", "metric")
+    json.loads(run("show", "cell", "position", "--json"))
+
+
 def test_pictures_go_to_files(run: Runner, tmp_path: Path) -> None:
     run("show", "cell", "--svg", str(tmp_path / "cell.svg"))
     assert (tmp_path / "cell.svg").read_text().startswith("<svg")

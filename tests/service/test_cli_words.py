@@ -92,6 +92,18 @@ def test_indices_are_named_and_nothing_is_said_to_be_nothing(run: Run) -> None:
     assert "all other elements are 0\n" in frames
 
 
+@pytest.mark.usefixtures("folder")
+def test_numbers_have_the_names_of_their_axes(run: Run) -> None:
+    words = "kinematics", "momentum", "reactions", "powers", "inertial_parameters", "christoffel", "--q", "0,0.5"
+    told = run("evaluate", "pair.json", *words)
+    rows = dict(re.findall(r"^  (\S+(?: \S+)*?)  +(-?[\d.]+.*)$", told, re.MULTILINE))
+    assert {"arm.tip", "fore.rod", "x", "arm.q", "gravity", "fore.rod.Jxx"} <= rows.keys()
+    assert [float(x) for x in rows["arm.tip"].split()] == [1, 0, 0]
+    assert "  [fore.tip, arm.q, y]  1.87758256" in told
+    assert "  [arm.q, arm.q, fore.q]  " in told
+    assert run("evaluate", "cell.json", "christoffel").startswith("christoffel  all 0\n")
+
+
 def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
     (folder / "out").mkdir()
     export = ["export", "cell.json", "--target", "c", "--out"]
@@ -103,6 +115,17 @@ def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
         "catalogue", "export", "cell.json", *store, code=1
     )
     assert "out has no definition in it (*.yaml, *.yml, *.json)" in run("catalogue", "import", "out", *store)
+
+
+def test_faults_of_a_part_beside_a_tree_name_its_file_alone(run: Run, folder: Path) -> None:
+    (folder / "pendulum.json").write_text(json.dumps({**PENDULUM, "portz": []}))
+    for words in (["evaluate", "pair.json", "metric"], ["export", "pair.json", "--target", "c"]):
+        assert run(*words, code=1).startswith("substructures: pendulum.json#/portz: unknown field 'portz'")
+    (folder / "pendulum.json").unlink()
+    for words in (["evaluate", "pair.json", "metric"], ["export", "pair.json", "--target", "c"]):
+        assert run(*words, code=1).startswith(
+            "substructures: pair.json#/instances/0/substructure: 'pendulum' is neither"
+        )
 
 
 def test_no_keys_are_told_with_how_one_is_made(run: Run, folder: Path) -> None:

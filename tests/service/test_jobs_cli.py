@@ -18,11 +18,13 @@ import numpy as np
 import pytest
 
 from service.cli.main import main
-from service.cli.progress import Bar, text
+from service.cli.progress import Bar, outcome, summary, text
 from service.jobs.kinds import KINDS
 from service.server import background
 from service.settings import Settings
 from substructures.client import Client, ProblemError
+from substructures.client.jobs import Job
+from substructures.client.progress import line as bar_line
 from substructures.formats import arrow
 
 from .conftest import HAND, PENDULUM, TREE
@@ -273,6 +275,30 @@ def test_bar() -> None:
         bar.end({**job, "state": "failed"})
         assert stream.getvalue().endswith("\n")
         assert "failed" in stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("state", "counts", "code", "line", "words"),
+    [
+        ("succeeded", (4, 0, 0), 0, "4 of 4", "4 succeeded of 4"),
+        ("succeeded", (4, 0, 2), 6, "4 of 4, 2 skipped", "4 succeeded of 4; 2 skipped"),
+        ("succeeded", (4, 1, 2), 3, "4 of 4, 1 failed, 2 skipped", "3 succeeded, 1 failed of 4; 2 skipped"),
+        ("failed", (4, 4, 0), 4, "4 of 4, 4 failed", "0 succeeded, 4 failed of 4"),
+        ("cancelled", (3, 1, 1), 5, "3 of 4, 1 failed, 1 cancelled, 1 skipped",
+         "2 succeeded, 1 failed, 1 cancelled of 4; 1 skipped"),
+    ],
+)  # fmt: skip
+def test_what_became_of_items(state: str, counts: tuple[int, int, int], code: int, line: str, words: str) -> None:
+    """In the exit code, the last line of both bars, the summary, and the words of a job of the client."""
+    progress = {**dict(zip(("done", "failed", "skipped"), counts, strict=True)), "total": 4, "fraction": 1.0}
+    progress |= {"rate": None, "eta_seconds": None}
+    job = {"id": "1", "kind": "export", "label": "", "state": state, "progress": progress}
+    assert (outcome(job), summary(job)) == (code, f"export: {words}")
+    assert text(job).endswith(f"{state}  {line}")
+    assert bar_line(job).endswith(f"{state}  {line}")
+    assert str(Job(job, Client("http://127.0.0.1:9"))) == f"Job 1: export, {state}, {line}"
+    del progress["skipped"]  # as servers tell that count none
+    assert "skipped" not in text(job) + summary(job)
 
 
 def test_who_stops_to_wait_is_told_how_to_go_on(

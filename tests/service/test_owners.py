@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import shutil
 from collections.abc import Callable, Iterator
@@ -289,6 +290,75 @@ def test_lists_have_what_one_sees(served: TestClient, world: World) -> None:
         found = served.get(f"{TREE}?{query}", headers=bolt).json()["items"]
         assert [item["name"] for item in found] == expected
     assert [item["name"] for item in served.get(f"{TREE}?uses=hush", headers=acme).json()["items"]] == ["hush-cell"]
+
+
+def put(client: TestClient, headers: Headers, address: str, body: Any, status: int = 201) -> Any:
+    answer = client.post(address, json=body, headers=headers)
+    assert answer.status_code == status, answer.text
+    return answer.json()
+
+
+def test_what_is_private_shows_in_no_list_of_a_public_part(served: TestClient, world: World) -> None:
+    """What acme has of bolt's public part: made from it, built with it, published with it, named as its successor."""
+    acme, reads, bolt = world.keys
+    put(served, bolt, PART, {**PENDULUM, "name": "open", "title": "of bolt"})
+    hidden = {"visibility": "private"}
+    put(served, acme, PART, {**PENDULUM, "name": "hush-made", "title": MARK, "derived_from": "open@1", **hidden})
+    instances = [{"name": "a", "substructure": "open"}]
+    put(served, acme, TREE, {"name": "hush-tree", "gravity": [0, 0, 0], "instances": instances, **hidden})
+    put(served, acme, f"{TREE}/hush-tree/publish", {"name": "hush-built", **hidden})
+    used = f"{PART}/open@1/uses"
+    everything = {("derived", "hush-made"), ("part", "hush-built"), ("tree", "hush-tree")}
+    for headers, expected in ((acme, everything), (reads, everything), (world.admin, everything), (bolt, set())):
+        found = served.get(used, headers=headers).json()
+        assert {(each["kind"], each["name"]) for each in found["items"]} == expected
+        assert served.get(f"{PART}/open/uses", headers=headers).json()["items"] == found["items"]
+    for address in (
+        *(f"{PART}/open{rest}" for rest in ("", "@1", "/versions", "/uses", "@1/uses?page_size=1", "/visibility")),
+        *(f"{TREE}?uses=open", f"{PART}?q=open&facets=true", "/substructures/open@1", "/substructures/open"),
+    ):
+        answer = served.get(address, headers=bolt)
+        assert MARK not in answer.text, address
+        assert "next_page_token" not in answer.text or answer.json()["next_page_token"] is None
+
+
+def test_what_is_public_does_not_name_what_is_private(served: TestClient, world: World) -> None:
+    """A public version that was made from a private one, and one whose successor is private."""
+    acme, reads, bolt = world.keys
+    put(served, acme, PART, {**PENDULUM, "name": "open", "title": "made", "derived_from": "hush@1"})
+    put(served, acme, PART, {**PENDULUM, "name": "old", "title": "old"})
+    put(served, acme, f"{PART}/old@1/yank", {"reason": "", "successor": "hush@1"}, 200)
+    names = {"open@1": "derived_from", "old@1": "successor"}
+    for ref, member in names.items():
+        for headers, is_seen in ((acme, True), (reads, True), (world.admin, True), (bolt, False)):
+            found = served.get(f"{PART}/{ref}", headers=headers).json()
+            assert (found[member] is not None) == is_seen, (ref, member)
+        for address in (f"{PART}/{ref}", f"{PART}/{ref.partition('@')[0]}/versions", f"/substructures/{ref}"):
+            assert MARK not in served.get(address, headers=bolt).text, address
+
+
+def test_tokens_of_pages_do_not_count_what_is_private(served: TestClient, world: World) -> None:
+    """The same search has the same token, however much of others there is that is not seen."""
+    acme, _, bolt = world.keys
+
+    def token(*names: str) -> str:
+        for name in names:
+            put(served, bolt, PART, {**PENDULUM, "name": name, "title": name})
+        found = served.get(f"{PART}?q=pair&page_size=1", headers=bolt).json()
+        assert [each["name"] for each in found["items"]] == ["pair-one"]
+        following = served.get(f"{PART}?q=pair&page_size=1&page_token={found['next_page_token']}", headers=bolt).json()
+        assert [each["name"] for each in following["items"]] == ["pair-two"]
+        return str(found["next_page_token"])
+
+    for k in range(3):
+        put(served, acme, PART, {**PENDULUM, "name": f"hush-{k}", "title": MARK, "visibility": "private"})
+    text = base64.urlsafe_b64decode(token("pair-one", "pair-two") + "==").decode()
+    assert json.loads(text)[1:] == [1, "pair-one"]
+    mark = json.loads(text)[0]
+    for name in ("hush", "nothing"):  # what is not seen is not there
+        forged = base64.urlsafe_b64encode(json.dumps([mark, 1, name]).encode()).decode().rstrip("=")
+        answer = served.get(f"{PART}?q=pair&page_size=1&page_token={forged}", headers=bolt)
+        assert (answer.status_code, answer.json()["code"]) == (422, "page-token")
 
 
 def test_evaluations_at_hand_are_kept_for_their_owner(served: TestClient, world: World) -> None:

@@ -91,6 +91,51 @@ def test_loads_are_stored_shown_and_changed(client: TestClient) -> None:
     assert numbers(client, "pair@5") == [0, 0]
 
 
+def test_ends_as_objects_are_the_same_load(client: TestClient) -> None:
+    """The contract, section 11: a frame with a point of it."""
+    spring = {**SPRING, "from": {"frame": "a.end", "at": [0, 0, 1]}, "to": {"frame": "b.base"}}
+    force = {
+        "name": "f",
+        "type": "force",
+        "from": "a.end",
+        "to": {"frame": "b.end", "at": [0, 1, 0]},
+        "vector": [2, 0, 0],
+    }
+    drive = {**TORQUE, "from": {"frame": "a.bar"}, "to": {"frame": "b.bar"}}
+    plain = [
+        {**SPRING, "from_at": [0, 0, 1], "to": "b.base"},
+        {**force, "to": "b.end", "at": [0, 1, 0]},
+        TORQUE,
+    ]
+    made = client.post("/v1/trees", json={**TREE, "loads": [spring, force, drive]})
+    assert made.status_code == 201, made.text
+    assert made.json()["loads"] == plain
+    same = client.post("/v1/trees", json={**TREE, "loads": plain})
+    assert (same.status_code, same.json()["digest"]) == (200, made.json()["digest"])
+    more = client.post("/v1/trees/pair/loads", json={**spring, "name": "more"})
+    assert more.status_code == 201
+    assert more.json()["loads"][3] == {**plain[0], "name": "more"}
+
+
+@pytest.mark.parametrize(
+    ("load", "change", "pointer", "code"),
+    [
+        (SPRING, {"from": {"frame": "a.end", "at": [0, 0]}}, "/from/at", "point-expected"),
+        (SPRING, {"from": {"at": [0, 0, 0]}}, "/from", "frame-missing"),
+        (SPRING, {"to": {"frame": "b.end", "point": 3}}, "/to/point", "unknown-field"),
+        (SPRING, {"to": {"frame": "b.end", "at": [0, 0, 1]}, "to_at": [0, 0, 1]}, "/to/at", "no-point"),
+        (TORQUE, {"to": {"frame": "b.bar", "at": [0, 0, 1]}}, "/to/at", "no-point"),
+        (SPRING, {"to": {"frame": "nowhere"}}, "/to", None),
+    ],
+)
+def test_ends_that_are_no_frames(client: TestClient, load: Any, change: Any, pointer: str, code: str | None) -> None:
+    client.post("/v1/trees", json=TREE)
+    bad = client.post("/v1/trees/pair/loads", json={**load, "name": "x", **change})
+    (fault,) = bad.json()["errors"]
+    assert (bad.status_code, fault["pointer"]) == (422, pointer)
+    assert code is None or fault["code"] == code
+
+
 def test_faults_have_pointers(client: TestClient) -> None:
     client.post("/v1/trees", json=TREE)
     gone = client.delete("/v1/trees/pair/loads/none")
