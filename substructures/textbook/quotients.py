@@ -69,7 +69,7 @@ class Quotients:
         for force, s, (monomial, number) in found:
             _, common = content_of(dict.fromkeys(force, Fraction(1)))
             inner = self.layout({times(m, common, -1): h for m, h in force.items()})
-            stretched = self.layout.distance(s, {monomial: number})
+            stretched = self.layout.distance(((s, 1),), {monomial: number})
             factors: list[tuple[Factor, int]] = [(inner, 1), (stretched, 1), (self.atoms.exprs[s], -1)]
             terms.append(product(Fraction(1), [*self.atoms.factors(common), *factors]))
         return terms if len(Sum(tuple(terms))) <= len(whole) + len(found) else list(whole.terms)

@@ -390,6 +390,22 @@ LINES = [
     ),
     Line(
         "flyball-governor",
+        "metric[1, 1]",
+        "Is + Iv + mb*((r + l*sin(left))^2 + (r + l*sin(right))^2)",
+        "Is + Iv + mb*(r + l*sin(left))^2 + mb*(r + l*sin(right))^2",
+        STEINER,
+    ),
+    Line(
+        "satellite",
+        "metric[5, 5]",
+        "1/6*mp*wp^2 + mp*lp*r*sin(roll)*(sin(left + roll) - sin(right - roll))"
+        " + 1/3*mp*lp^2*(sin(left + roll)^2 + sin(right - roll)^2) + Iyy*cos(roll)^2 + (Izz + 2*mp*r^2)*sin(roll)^2",
+        "Iyy*cos(roll)^2 + Izz*sin(roll)^2 + mp*((r*sin(roll) + lp*sin(left + roll)/2)^2 + lp^2*sin(left + roll)^2/12"
+        " + wp^2/12) + mp*((r*sin(roll) - lp*sin(right - roll)/2)^2 + lp^2*sin(right - roll)^2/12 + wp^2/12)",
+        STEINER,
+    ),
+    Line(
+        "flyball-governor",
         "forces[2]",
         "tau_right - mb*g*l*sin(right) - a*kl*(hv - lift)*sin(right)*(t1 - ll)/t1",
         "tau_right - mb*g*l*sin(right) - kl*(sqrt(a^2 + (hv - lift)^2 - 2*a*(hv - lift)*cos(right)) - ll)"
