@@ -94,7 +94,7 @@ def test_wide_fractions_wrap() -> None:
     assert max(sum(1 for e in m.iter() if e.text) for m in math_of(page)) < 120
     first, _ = formulas_of(page)
     assert first.startswith("q..1=(1)/((Ic2+m2*lc2^2)*(")
-    assert first.endswith("*q.1^2)")
+    assert first.endswith("*q.1^2))")
 
 
 def test_wide_factors_and_denominators_wrap() -> None:
