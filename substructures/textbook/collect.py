@@ -120,7 +120,8 @@ class Collector:
         """Irreducible factors, squares of binomials, or else term by term."""
         number, parts = factored(polynomial, Fraction(1))
         if sum(n for part, n in parts if len(part) > 1) < 2:
-            return self.squared(polynomial)
+            acting = map(in_order, self._acting(polynomial)) if FEWEST <= len(polynomial) <= MOST else ()
+            return min([self.squared(polynomial), *acting], key=length)
         return Sum((product(number, self.in_order((self.squared(part), n) for part, n in parts)),))
 
     def squared(self, polynomial: Polynomial) -> Sum:

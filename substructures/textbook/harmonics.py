@@ -134,23 +134,34 @@ def _eliminated(polynomial: Mapping[Powers, Fraction]) -> Iterable[dict[Powers, 
 
 
 def _merged(polynomial: Mapping[Powers, Fraction]) -> dict[Powers, Fraction]:
-    """c x - c x c_i^2 = c x s_i^2, and the other way round, one by one."""
+    """c x - c x c_i^2 = c x s_i^2, and the other way round, one by one, or else all: 2 x - x c_1^2 - x c_2^2."""
     result = dict(polynomial)
     for powers in sorted(polynomial, key=lambda p: (sum(map(sum, p)), p)):
-        for i, which in ((i, which) for i in range(len(powers)) for which in (0, 1)):
-            if powers not in result:
-                break
-            both = list(powers[i])
-            both[which] += 2
-            partner = (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
-            if result.get(partner) != -result[powers]:
-                continue
-            both[which], both[1 - which] = powers[i][which], powers[i][1 - which] + 2
-            merged = (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
-            if merged not in result:
-                result[merged] = result.pop(powers)
-                del result[partner]
+        sides = [(i, which) for i in range(len(powers)) for which in (0, 1)]
+        for some in (*([side] for side in sides), sides):
+            _merge(result, powers, some)
     return result
+
+
+def _merge(result: dict[Powers, Fraction], powers: Powers, sides: Iterable[tuple[int, int]]) -> None:
+    """Merge a term with those that have a further square of c_i or s_i, if these are its negative as a whole."""
+    pairs: list[tuple[Powers, Powers]] = []
+    c = result.get(powers, Fraction(0))
+    for i, which in sides:
+        partner, merged = (_squared(powers, i, k) for k in (which, 1 - which))
+        if result.get(partner, 0) * c < 0 and merged not in result:
+            pairs.append((partner, merged))
+    if pairs and sum(result[partner] for partner, _ in pairs) == -c:
+        del result[powers]
+        for partner, merged in pairs:
+            result[merged] = -result.pop(partner)
+
+
+def _squared(powers: Powers, i: int, which: int) -> Powers:
+    """Powers with a further square of c_i (``which`` 0) or s_i (1)."""
+    both = list(powers[i])
+    both[which] += 2
+    return (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
 
 
 def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int) -> dict[Powers, Fraction]:

@@ -19,8 +19,10 @@ from substructures.textbook.collect import Collector, common_number, content, fa
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Harmonics, Mode, Wave, Waves, angle_key, normal, shortest, wave_key
-from substructures.textbook.springs import Square, squares
+from substructures.textbook.springs import Square, completed, squares
 
+#: terms of a sum that may have squares of cosines and sines
+SQUARED = 20
 #: monomial of all atoms -> harmonics of the angles
 Content = Mapping[Monomial, Harmonics]
 #: what moves: powers of moving atoms, and of cosines and sines
@@ -50,23 +52,56 @@ class Layout:
         terms = [*self._divided(rest).terms, *self._squares(springs)]
         return min(form, Sum(tuple(terms)), key=len)
 
-    def _squares(self, springs: Iterable[Square]) -> Iterator[Term]:
-        """Terms of springs, those of the same stiffness as one: 1/2*k*((q1 - l1)^2 + (q2 - l2)^2)."""
+    def _squares(self, springs: Iterable[Square], trigs: Sequence[Trig] = ()) -> Iterator[Term]:
+        """Terms of squares, those of the same stiffness as one: 1/2*k*((q1 - l1)^2 + (q2 - l2)^2)."""
         same: dict[tuple[Fraction, Monomial], list[Term]] = {}
         for number, stiffness, x, rest in springs:
             is_moment = any(self.atoms.ranks[i] == MASS for i, _ in stiffness)
-            inner = self.distance(x, rest, is_moment)
+            inner = self.distance(x, rest, is_moment, trigs)
             same.setdefault((number, stiffness), []).append(Term(Fraction(1), ((inner, 2),)))
         for (number, stiffness), some in same.items():
             yield product(number, [*self.atoms.factors(stiffness), (Sum(tuple(some)), 1)])
 
-    def distance(self, x: int, rest: Polynomial, is_moment: bool = False) -> Sum:
-        """x - rest of springs, l0 + x and l1 - l2 - x of moments of inertia."""
+    def distance(self, x: Monomial, rest: Polynomial, is_moment: bool = False, trigs: Sequence[Trig] = ()) -> Sum:
+        """x - rest of springs, l0 + x and l1 - l2 - x of moments of inertia; ``trigs`` are further atoms."""
         terms = sorted(((m, -c) for m, c in rest.items()), key=lambda item: monomial_key(item[0]))
-        one: tuple[Monomial, Fraction] = ((x, 1),), Fraction(1)
-        written = [*terms, one] if is_moment or terms[0][1] > 0 else [one, *terms]
+        written = [*terms, (x, Fraction(1))] if terms[0][1] > 0 else [(x, Fraction(1)), *terms]
+        written = sorted(written, key=lambda item: monomial_key(item[0])) if is_moment else written
         sign = -1 if written[0][1] < 0 else 1
-        return Sum(tuple(Term(sign * c, tuple(self.atoms.factors(m))) for m, c in written))
+        atoms: list[Factor] = [*self.atoms.exprs, *trigs]
+        return Sum(tuple(Term(sign * c, tuple((atoms[i], n) for i, n in m)) for m, c in written))
+
+    def _with_squares(self, functions: Functions) -> Sum:
+        """The shortest form of functions, with squares of what has cosines and sines: m*(r + l*sin(q))^2."""
+        form = self._best(functions)
+        waves = {w[:2]: None for f in functions.values() for _, some in f for w in some if w[2] == 2}
+        if not waves or sum(map(len, functions.values())) > SQUARED:
+            return form
+        used = {w[:2] for f in functions.values() for _, some in f for w in some}
+        trigs = sorted(used, key=lambda trig: (angle_key(trig[1]), trig[0]))
+        below = len(self.atoms.exprs)
+        place = {trig: below + n for n, trig in enumerate(trigs)}
+        plain = {
+            times(times(constant, moving), tuple((place[op, k], n) for op, k, n in some)): c
+            for constant, function in functions.items()
+            for (moving, some), c in function.items()
+        }
+        places = {(x, times(m, ((x, -2),))) for m in plain for x, n in m if n == 2 and x >= below}
+        found, left = completed(plain, {p for p in places if self._is_geometry(p[1])}, {})
+        if not found:
+            return form
+        rest: Functions = {}
+        for motion_, c in self._motions(left, trigs):
+            constant, moving = self.atoms.split(motion_[0])
+            rest.setdefault(constant, {})[moving, motion_[1]] = c
+        written = [Trig(op, self._angle(k)) for op, k in trigs]
+        other = Sum((*(self._best(rest).terms if rest else ()), *self._squares(found, written)))
+        return min(form, other, key=length)
+
+    def _is_geometry(self, monomial: Monomial) -> bool:
+        """Whether nothing moves, and no mass is squared."""
+        ranks = self.atoms.ranks
+        return all(i < len(ranks) and ranks[i] != MOVING and (n == 1 or ranks[i] != MASS) for i, n in monomial)
 
     def _divided(self, found: Content) -> Sum:
         """Over a common divisor if that is shorter: (a + b)/c for a/c + b/c."""
@@ -104,7 +139,7 @@ class Layout:
             constant, moving = self.atoms.split(monomial)
             for c, waves in _shortest(tuple(sorted(normal(harmonics).items()))):
                 functions.setdefault(constant, {})[moving, waves] = c
-        return self._with_fractions(self._best(functions))
+        return self._with_fractions(self._with_squares(functions))
 
     def _best(self, functions: Functions) -> Sum:
         """The shortest of gathered by motion, by functions, by cosines and sines, and by rates."""

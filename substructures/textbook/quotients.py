@@ -14,11 +14,12 @@ from typing import Any
 from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
-from substructures.textbook.atoms import INPUT, MOVING, Atoms, Monomial, times
+from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, times
 from substructures.textbook.collect import content as content_of
 from substructures.textbook.collect import is_fraction, length
 from substructures.textbook.exponentials import Complex, harmonics_of, power, spread, tangent
 from substructures.textbook.field import Field, to_fmpq
+from substructures.textbook.forces import Grouped, grouped
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, normal, polynomial_of
 from substructures.textbook.layout import Content, Layout
@@ -29,6 +30,7 @@ from substructures.textbook.springs import stretches
 #: terms of a polynomial that is factored
 FACTORED = 400
 _ZERO = Fraction(0)
+Powers = Sequence[tuple[Factor, int]]
 
 
 class Quotients:
@@ -50,8 +52,7 @@ class Quotients:
     def __call__(self, expr: Expr) -> Sum:
         """The textbook form of one of the field's expressions."""
         terms: list[Term] = []
-        for top, bottom in self._parts(*self.field.values[expr]):
-            numerator, denominator = self._contents(top, bottom)
+        for numerator, denominator in self._joined(self._parts(*self.field.values[expr])):
             monomial = _monomial(denominator)
             if monomial is None:
                 terms.append(self._ratio(numerator, denominator))
@@ -59,20 +60,29 @@ class Quotients:
                 terms += self._sum(_divided(numerator, *monomial))
         return Sum(tuple(terms))
 
+    def _joined(self, parts: Sequence[tuple[Any, Any]]) -> list[tuple[Content, Content]]:
+        """Numerators and denominators; two with the same rates are one: (J - A)*q'^2/A for J*q'^2/A - q'^2."""
+        contents = [self._contents(*part) for part in parts]
+        if len(parts) == 2 and _monomial(contents[0][1]) and not _monomial(contents[1][1]):
+            one, other = ({(self._rates_of(m), k) for m, h in top.items() for k in h} for top, _ in contents)
+            if one <= other and all(rates for rates, _ in one):
+                return [self._contents(*self.field.add(*parts))]
+        return contents
+
+    def _rates_of(self, monomial: Monomial) -> Monomial:
+        return tuple((i, n) for i, n in monomial if self.atoms.is_rate(self.atoms.exprs[i]))
+
     def _sum(self, content: Content) -> list[Term]:
-        """A sum, with k*(s - l)/s for k - k*l/s unless that is longer by more than what is said twice."""
-        whole = self.layout(content)
+        """A sum, with k*(s - l)/s for k - k*l/s."""
         found, left = stretches(content, self.atoms)
-        if not found:
-            return list(whole.terms)
-        terms = list(self.layout(left).terms)
+        terms = list(self.layout(left).terms) if left else []
         for force, s, (monomial, number) in found:
             _, common = content_of(dict.fromkeys(force, Fraction(1)))
             inner = self.layout({times(m, common, -1): h for m, h in force.items()})
-            stretched = self.layout.distance(s, {monomial: number})
+            stretched = self.layout.distance(((s, 1),), {monomial: number})
             factors: list[tuple[Factor, int]] = [(inner, 1), (stretched, 1), (self.atoms.exprs[s], -1)]
             terms.append(product(Fraction(1), [*self.atoms.factors(common), *factors]))
-        return terms if len(Sum(tuple(terms))) <= len(whole) + len(found) else list(whole.terms)
+        return terms
 
     def _parts(self, above: Any, below: Any) -> list[tuple[Any, Any]]:
         """Parts with different sums in their denominators, the shortest denominator first.
@@ -138,23 +148,57 @@ class Quotients:
             sign = -1 if form.terms[0].coefficient < 0 else 1
             number *= (sign * scale) ** n
             factors.append((Sum(tuple(t.scaled(Fraction(sign)) for t in form.terms)), n))
-        return product(number, sorted(factors, key=lambda item: (item[1] < 0, *self._key(item))))
+        found = sorted(factors, key=lambda item: (item[1] < 0, *self._key(item)))
+        return product(*self._positive(number, found))
+
+    def _positive(self, number: Fraction, factors: Powers) -> tuple[Fraction, Powers]:
+        """B*(f - y) - A*(e - x) for -(A*(e - x) - B*(f - y)), where inputs act on both."""
+        found = list(factors)
+        for i, (factor, n) in enumerate(factors):
+            terms = factor.terms if isinstance(factor, Sum) and n == 1 else ()
+            if number < 0 and [t.coefficient > 0 for t in terms] == [True, False] and all(map(self._acts, terms)):
+                found[i] = (Sum(tuple(t.scaled(Fraction(-1)) for t in reversed(terms))), 1)
+                number = -number
+        return number, found
+
+    def _acts(self, term: Term) -> bool:
+        """Whether an input occurs in it."""
+        atoms = [x for x in leaves(Sum((term,))) if isinstance(x, Expr)]
+        return any(self.atoms.ranks[self.atoms.place[x]] == INPUT for x in atoms)
 
     def _form(self, poly: Any) -> Sum:
         """The shortest form of an irreducible polynomial: a sum, or a product of sums and a term."""
         key = str(poly)
         if key not in self._forms:
-            content = self._back(poly)
-            forms = [self.layout(content)]
-            if all(is_fraction(_fraction(c)) for c in poly.coeffs()) and not self._rates(poly):
-                forms += self._products(content)
-            self._forms[key] = min(forms, key=length)
+            self._forms[key] = self._shortest(poly)
         return self._forms[key]
+
+    def _shortest(self, poly: Any) -> Sum:
+        is_exact = all(is_fraction(_fraction(c)) for c in poly.coeffs())
+        found = self._grouped(poly) if is_exact and self._rates(poly) else None
+        if found is not None:
+            return self._with_forces(found)
+        content = self._back(poly)
+        forms = [self.layout(content)]
+        if is_exact and not self._rates(poly):
+            forms += self._products(content)
+        return min(forms, key=length)
 
     def _rates(self, poly: Any) -> bool:
         """Whether something besides cosines and sines moves."""
         used = [p for p, n in zip(self.places, poly.degrees(), strict=False) if n > 0]
         return any(self.atoms.ranks[p] == MOVING for p in used)
+
+    def _grouped(self, poly: Any) -> Grouped | None:
+        """The polynomial with forces times what they are multiplied with."""
+        degrees, ranks = list(poly.degrees())[: self.size], [self.atoms.ranks[p] for p in self.places]
+        inputs = [n for n, rank in enumerate(ranks) if rank == INPUT and degrees[n] == 1]
+        masses = [n for n, rank in enumerate(ranks) if rank == MASS and degrees[n]]
+        return grouped(poly, inputs, masses)
+
+    def _with_forces(self, found: Grouped) -> Sum:
+        one = self._product(Fraction(1), [(found.minor, 1), (found.force, 1)])
+        return Sum((one, self._product(*self._factors(self._back(found.rest)))) if len(found.rest) else (one,))
 
     def _products(self, content: Content) -> Iterator[Sum]:
         """The forms that are a product of sums but for one term."""

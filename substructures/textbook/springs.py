@@ -6,7 +6,7 @@ by a length among what is not. Only terms that are there are used, so that nothi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -19,11 +19,11 @@ Content = Mapping[Monomial, Harmonics]
 
 
 class Square(NamedTuple):
-    """number * stiffness * (x - rest)^2 for an atom x."""
+    """number * stiffness * (x - rest)^2 for a product x."""
 
     number: Fraction
     stiffness: Monomial
-    x: int
+    x: Monomial
     rest: Polynomial
 
 
@@ -38,20 +38,47 @@ class Stretch(NamedTuple):
 def squares(found: Content, atoms: Atoms) -> tuple[list[Square], Content]:
     """The squares among the terms without cosines and sines, and all that is left."""
     plain = {m: next(iter(h.values()))[0] for m, h in found.items() if len(h) == 1 and not any(next(iter(h)))}
-    if len(plain) > MOST:
-        return [], found
-    left, result = dict(plain), list[Square]()
-    for x, stiffness in sorted(_squared(plain, atoms)):
-        c = _factor(left, stiffness, atoms.roots.get(x, {((x, 2),): Fraction(1)}))
-        one = times(stiffness, ((x, 1),))
-        linear = {times(m, one, -1): v for m, v in left.items() if (x, 1) in m}
-        rest = {m: -v / (2 * c) for m, v in linear.items() if c and _divides(m)}
-        if 0 < len(rest) <= LONGEST and (new := _without(left, _spread(c, stiffness, x, rest, atoms))) is not None:
-            left = new
-            result.append(Square(c, stiffness, x, rest))
+    result, left = completed(plain, _squared(plain, atoms), atoms.roots) if len(plain) <= MOST else ([], plain)
     zero = next((k for h in found.values() for k in h if not any(k)), ())
     others = {m: h for m, h in found.items() if m not in plain}
     return result, others | {m: {zero: (c, Fraction(0))} for m, c in left.items()}
+
+
+def completed(
+    plain: Polynomial, places: Iterable[tuple[int, Monomial]], roots: Mapping[int, Polynomial]
+) -> tuple[list[Square], Polynomial]:
+    """The squares among terms, and what is left: (a*x - b)^2 for a^2*x^2 - 2*a*b*x + b^2.
+
+    ``places``: x, and what x^2 may be multiplied with; ``roots``: what the squares of some atoms are.
+    """
+    left, result = plain, list[Square]()
+    for x, stiffness in sorted(places):
+        c = _factor(left, stiffness, roots.get(x, {((x, 2),): Fraction(1)}))
+        one = times(stiffness, ((x, 1),))
+        linear = {times(m, one, -1): v for m, v in left.items() if (x, 1) in m}
+        rest = {m: -v / (2 * c) for m, v in linear.items() if c and _divides(m, stiffness)}
+        if not 0 < len(rest) <= LONGEST:
+            continue
+        scale = _below(rest)
+        inner = {times(m, scale): v for m, v in rest.items()}
+        square = Square(c, times(stiffness, scale, -2), times(((x, 1),), scale), inner)
+        new = _without(left, _spread(square, roots))
+        if new is not None:
+            left = new
+            result.append(square)
+    # no 2*x^2 for the 3/2*x^2 that a square has, with 1/2*x^2 beside it
+    is_whole = all(
+        (left.get(m, 0) / c).denominator == 1 for square in result for m, c in _spread(square, roots).items()
+    )
+    return (result, left) if is_whole else ([], plain)
+
+
+def _below(rest: Iterable[Monomial]) -> Monomial:
+    """The least product that makes all of them products of positive powers."""
+    powers: dict[int, int] = {}
+    for i, n in (item for monomial in rest for item in monomial):
+        powers[i] = max(powers.get(i, 0), -n)
+    return tuple(sorted((i, n) for i, n in powers.items() if n))
 
 
 def _squared(plain: Polynomial, atoms: Atoms) -> set[tuple[int, Monomial]]:
@@ -76,19 +103,21 @@ def _factor(left: Polynomial, stiffness: Monomial, square: Polynomial) -> Fracti
     return left.get(times(stiffness, last), Fraction(0)) / square[last]
 
 
-def _divides(monomial: Monomial) -> bool:
-    return all(n > 0 for _, n in monomial)
+def _divides(monomial: Monomial, stiffness: Monomial) -> bool:
+    """Whether all powers are positive, but for those whose squares the stiffness has."""
+    powers = dict(stiffness)
+    return all(n > 0 or powers.get(i, 0) >= -2 * n for i, n in monomial)
 
 
-def _spread(c: Fraction, stiffness: Monomial, x: int, rest: Polynomial, atoms: Atoms) -> Polynomial:
-    """The terms of c * stiffness * (x - rest)^2."""
-    inner: dict[Monomial, Fraction] = {((x, 1),): Fraction(1)} | {m: -v for m, v in rest.items()}
+def _spread(square: Square, roots: Mapping[int, Polynomial]) -> Polynomial:
+    """The terms of a square."""
+    inner: dict[Monomial, Fraction] = {square.x: Fraction(1)} | {m: -v for m, v in square.rest.items()}
     result: dict[Monomial, Fraction] = {}
-    for monomial, v in multiplied(multiplied(inner, inner), {stiffness: c}).items():
-        roots = [i for i, n in monomial if n == 2 and i in atoms.roots]
-        terms: Polynomial = {tuple(item for item in monomial if item[0] not in roots): v}
-        for i in roots:
-            terms = multiplied(terms, atoms.roots[i])
+    for monomial, v in multiplied(multiplied(inner, inner), {square.stiffness: square.number}).items():
+        found = [i for i, n in monomial if n == 2 and i in roots]
+        terms: Polynomial = {tuple(item for item in monomial if item[0] not in found): v}
+        for i in found:
+            terms = multiplied(terms, roots[i])
         for m, w in terms.items():
             result[m] = result.get(m, Fraction(0)) + w
     return result

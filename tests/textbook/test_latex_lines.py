@@ -54,10 +54,9 @@ LINES = {
     ("cart-pendulum", "forward_dynamics"): [
         r"\ddot{q}_{1} &= \frac{l_{0} \tau_{0} + \tau_{1} \cos q_{1} + m_{1} g l_{0} \sin q_{1} \cos q_{1}"
         r" - m_{1} l_{0}^{2} \sin q_{1} \dot{q}_{1}^{2}}{l_{0} (m_{0} + m_{1} \sin^{2} q_{1})}",
-        r"\ddot{q}_{2} &= \frac{1}{m_{1} l_{0}^{2} (m_{0} + m_{1} \sin^{2} q_{1})}"
-        r" \bigl((m_{0} + m_{1}) \tau_{1} + m_{1} l_{0} \tau_{0} \cos q_{1} \\ &\quad"
-        r" + (m_{0} + m_{1}) m_{1} g l_{0} \sin q_{1}"
-        r" - m_{1}^{2} l_{0}^{2} \sin q_{1} \cos q_{1} \dot{q}_{1}^{2}\bigr)",
+        r"\ddot{q}_{2} &= \frac{(m_{0} + m_{1}) (\tau_{1} + m_{1} g l_{0} \sin q_{1})"
+        r" + m_{1} l_{0} \cos q_{1} (\tau_{0} - m_{1} l_{0} \sin q_{1} \dot{q}_{1}^{2})}"
+        r"{m_{1} l_{0}^{2} (m_{0} + m_{1} \sin^{2} q_{1})}",
     ],
     ("cart-pendulum", "energy"): [
         r"E &= m_{1} g l_{0} \cos q_{1} + \frac{1}{2} (m_{0} + m_{1}) \dot{q}_{0}^{2}"
@@ -73,6 +72,23 @@ LINES = {
         r"\Gamma_{112} &= (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2}",
         r"\Gamma_{122} &= -m_{2} L_{1} l_{2} \sin q_{2}",
         r"\Gamma_{abc} &= \Gamma_{acb}, \quad \Gamma_{cba} = -\Gamma_{abc} \quad (b \le a)",
+    ],
+    ("furuta-pendulum", "forward_dynamics"): [
+        r"t_{1} &= (J_{2} + m_{2} l_{2}^{2})"
+        r" \bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} + m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr) \\ &\quad"
+        r" - m_{2}^{2} L_{1}^{2} l_{2}^{2} \cos^{2} q_{2}",
+        r"\ddot{q}_{1} &= \frac{1}{t_{1}} \bigl((J_{2} + m_{2} l_{2}^{2}) \bigl(\tau_{1} - b_{1} \dot{q}_{1}"
+        r" - m_{2} L_{1} l_{2} \sin q_{2} (\cos^{2} q_{2} \dot{q}_{1}^{2} - \dot{q}_{2}^{2}) \\ &\quad"
+        r" - 2 (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1} \dot{q}_{2}\bigr) \\ &\quad"
+        r" - m_{2} L_{1} l_{2} \cos q_{2} (\tau_{2} - m_{2} g l_{2} \sin q_{2} - b_{2} \dot{q}_{2})\bigr)",
+        r"\ddot{q}_{2} &= \frac{1}{t_{1}}"
+        r" \bigl(\bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} + m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr)"
+        r" \bigl(\tau_{2} - m_{2} g l_{2} \sin q_{2} - b_{2} \dot{q}_{2} \\ &\quad"
+        r" + (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1}^{2}\bigr) \\ &\quad"
+        r" - m_{2} L_{1} l_{2} \cos q_{2}"
+        r" \bigl(\tau_{1} - b_{1} \dot{q}_{1}"
+        r" - 2 (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1} \dot{q}_{2} \\ &\quad"
+        r" + m_{2} L_{1} l_{2} \sin q_{2} \dot{q}_{2}^{2}\bigr)\bigr)",
     ],
     ("scara", "metric"): [
         r"g_{11} &= I_{1} + I_{2} + I_{a4} + m_{1} c_{1}^{2} + m_{2} (a_{1}^{2} + c_{2}^{2})"

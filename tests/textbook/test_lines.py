@@ -98,10 +98,9 @@ LINES = [
     Line(
         "acrobot",
         "forward_dynamics[1]",
-        "((Ic2 + m2*lc2^2)*(tau_1 - tau_2) - g*(Ic2*m1*lc1 + Ic2*m2*l1 + m1*m2*lc1*lc2^2)*cos(q1)"
-        " - m2^2*g*l1*lc2^2*sin(q1 + q2)*sin(q2) - m2*l1*lc2*tau_2*cos(q2) + m2*l1*lc2*(Ic2 + m2*lc2^2)*sin(q2)*(q1'"
-        " + q2')^2 + m2^2*l1^2*lc2^2*sin(q2)*cos(q2)*q1'^2)/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + m2*l1^2)"
-        " - m2^2*l1^2*lc2^2*cos(q2)^2)",
+        "((Ic2 + m2*lc2^2)*(tau_1 - tau_2 - g*(m1*lc1 + m2*l1)*cos(q1) + m2*l1*lc2*sin(q2)*(q1' + q2')^2)"
+        " - m2*l1*lc2*cos(q2)*(tau_2 - m2*g*lc2*cos(q1 + q2) - m2*l1*lc2*sin(q2)*q1'^2))"
+        "/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + m2*l1^2) - m2^2*l1^2*lc2^2*cos(q2)^2)",
         # Cramer's rule on M q'' + C = Q
         "((Ic2 + m2*lc2^2)*(tau_1 - g*(m1*lc1 + m2*l1)*cos(q1) - m2*g*lc2*cos(q1 + q2) + m2*l1*lc2*sin(q2)*(2*q1'*q2'"
         " + q2'^2)) - (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*(tau_2 - m2*g*lc2*cos(q1 + q2) - m2*l1*lc2*sin(q2)*q1'^2))"
@@ -134,10 +133,9 @@ LINES = [
     Line(
         "furuta-pendulum",
         "forward_dynamics[1]",
-        "((J2 + m2*l2^2)*(tau_1 - b1*q1') - m2*L1*l2*cos(q2)*(tau_2 - b2*q2') + m2^2*L1*g*l2^2*sin(q2)*cos(q2)"
-        " - m2*L1*l2*(J2 + m2*l2^2)*sin(q2)*(cos(q2)^2*q1'^2 - q2'^2) - 2*(J2"
-        " + m2*l2^2)^2*sin(q2)*cos(q2)*q1'*q2')/((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)"
-        " - m2^2*L1^2*l2^2*cos(q2)^2)",
+        "((J2 + m2*l2^2)*(tau_1 - b1*q1' - m2*L1*l2*sin(q2)*(cos(q2)^2*q1'^2 - q2'^2)"
+        " - 2*(J2 + m2*l2^2)*sin(q2)*cos(q2)*q1'*q2') - m2*L1*l2*cos(q2)*(tau_2 - m2*g*l2*sin(q2) - b2*q2'))"
+        "/((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2) - m2^2*L1^2*l2^2*cos(q2)^2)",
         # Cramer's rule on M q'' + C = Q
         "((J2 + m2*l2^2)*(tau_1 - b1*q1' + m2*L1*l2*sin(q2)*q2'^2 - (J2 + m2*l2^2)*sin(2*q2)*q1'*q2')"
         " - m2*L1*l2*cos(q2)*(tau_2 - b2*q2' - m2*g*l2*sin(q2) + 1/2*(J2 + m2*l2^2)*sin(2*q2)*q1'^2))/((J2"
@@ -252,10 +250,9 @@ LINES = [
     Line(
         "scara",
         "forward_dynamics[4]",
-        "tau_4/Ia4 + ((I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)*(tau_2 + tau_4)"
-        " - a1*(m2*c2 + (m3 + m4)*a2)*(tau_1 - tau_2)*cos(q2)"
-        " - a1*(I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)*(m2*c2 + (m3 + m4)*a2)*sin(q2)*q1'^2"
-        " - a1^2*(m2*c2 + (m3 + m4)*a2)^2*sin(q2)*cos(q2)*(q1' + q2')^2)"
+        "tau_4/Ia4 + ((I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2 + a1*(m2*c2 + (m3 + m4)*a2)*cos(q2))"
+        "*(tau_2 + tau_4 - a1*(m2*c2 + (m3 + m4)*a2)*sin(q2)*q1'^2) - a1*(m2*c2 + (m3 + m4)*a2)*cos(q2)"
+        "*(tau_1 + tau_4 + a1*(m2*c2 + (m3 + m4)*a2)*sin(q2)*q2'*(2*q1' + q2')))"
         "/((I2 + m2*c2^2 + (m3 + m4)*a2^2)*(I1 + m1*c1^2 + (m2 + m3 + m4)*a1^2)"
         " - a1^2*(m2*c2 + (m3 + m4)*a2)^2*cos(q2)^2)",
         # q4'' = tau_4/Ia4 + q1'' + q2'', and Cramer's rule on both links with tau_4 on the second
@@ -323,6 +320,72 @@ LINES = [
         "half the derivative of g by roll, pitch and yaw",
     ),
     Line(
+        "acrobot",
+        "forward_dynamics[2]",
+        "((Ic1 + m1*lc1^2 + m2*l1^2 + m2*l1*lc2*cos(q2))*(tau_2 - m2*g*lc2*cos(q1 + q2) - m2*l1*lc2*sin(q2)*q1'^2)"
+        " - (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*(tau_1 - tau_2 - g*(m1*lc1 + m2*l1)*cos(q1)"
+        " + m2*l1*lc2*sin(q2)*(q1' + q2')^2))/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + m2*l1^2)"
+        " - m2^2*l1^2*lc2^2*cos(q2)^2)",
+        # Cramer's rule on M q'' + C = Q
+        "((Ic1 + m1*lc1^2 + Ic2 + m2*lc2^2 + m2*l1^2 + 2*m2*l1*lc2*cos(q2))*(tau_2 - m2*g*lc2*cos(q1 + q2)"
+        " - m2*l1*lc2*sin(q2)*q1'^2) - (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))*(tau_1 - g*(m1*lc1 + m2*l1)*cos(q1)"
+        " - m2*g*lc2*cos(q1 + q2) + m2*l1*lc2*sin(q2)*(2*q1'*q2' + q2'^2)))/((Ic2 + m2*lc2^2)*(Ic1 + m1*lc1^2 + Ic2"
+        " + m2*lc2^2 + m2*l1^2 + 2*m2*l1*lc2*cos(q2)) - (Ic2 + m2*lc2^2 + m2*l1*lc2*cos(q2))^2)",
+        TEDRAKE,
+    ),
+    Line(
+        "cart-pendulum",
+        "forward_dynamics[2]",
+        "((m0 + m1)*(tau_1 + m1*g*l0*sin(q1)) + m1*l0*cos(q1)*(tau_0 - m1*l0*sin(q1)*q1'^2))"
+        "/(m1*l0^2*(m0 + m1*sin(q1)^2))",
+        "1/(l0*(m0 + m1*sin(q1)^2))*((m0 + m1)*tau_1/(m1*l0) + tau_0*cos(q1) - m1*l0*q1'^2*cos(q1)*sin(q1)"
+        " + (m0 + m1)*g*sin(q1))",
+        TEDRAKE + ", from the upright position, and a torque",
+    ),
+    Line(
+        "furuta-pendulum",
+        "forward_dynamics[2]",
+        "((J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)*(tau_2 - m2*g*l2*sin(q2) - b2*q2'"
+        " + (J2 + m2*l2^2)*sin(q2)*cos(q2)*q1'^2) - m2*L1*l2*cos(q2)*(tau_1 - b1*q1'"
+        " - 2*(J2 + m2*l2^2)*sin(q2)*cos(q2)*q1'*q2' + m2*L1*l2*sin(q2)*q2'^2))"
+        "/((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2) - m2^2*L1^2*l2^2*cos(q2)^2)",
+        # Cramer's rule on M q'' + C = Q
+        "((J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)*(tau_2 - b2*q2' - m2*g*l2*sin(q2)"
+        " + 1/2*(J2 + m2*l2^2)*sin(2*q2)*q1'^2) - m2*L1*l2*cos(q2)*(tau_1 - b1*q1' + m2*L1*l2*sin(q2)*q2'^2"
+        " - (J2 + m2*l2^2)*sin(2*q2)*q1'*q2'))/((J2 + m2*l2^2)*(J1 + m1*l1^2 + m2*L1^2 + (J2 + m2*l2^2)*sin(q2)^2)"
+        " - (m2*L1*l2*cos(q2))^2)",
+        FURUTA,
+    ),
+    Line(
+        "pan-tilt",
+        "forward_dynamics[2]",
+        "(tau_tilt + mt*ct*g*cos(tilt) + (Ixt - Iyt - mt*ct^2)*sin(tilt)*cos(tilt)*pan'^2)/(Iyt + mt*ct^2)",
+        "(tau_tilt + mt*g*ct*cos(tilt) - 1/2*(Iyt + mt*ct^2 - Ixt)*sin(2*tilt)*pan'^2)/(Iyt + mt*ct^2)",
+        STEINER + ", half the derivative of that about the axis of pan",
+    ),
+    Line(
+        "stewart-leg",
+        "forward_dynamics[2]",
+        "(tau_beta + g*(mc*cc - mr*(cr - l0 - extension))*cos(alpha)*sin(beta)"
+        " + 2*mr*(cr - l0 - extension)*beta'*extension' + (Iac + Iar - Itc - Itr - mc*cc^2"
+        " - mr*(cr - l0 - extension)^2)*sin(beta)*cos(beta)*alpha'^2)/(Itc + Itr + mc*cc^2 + mr*(cr - l0"
+        " - extension)^2)",
+        # with e = l0 + extension - cr from the joint to the mass centre of the rod
+        "(tau_beta + (mc*cc + mr*(l0 + extension - cr))*g*cos(alpha)*sin(beta) - 2*mr*(l0 + extension - cr)*extension'"
+        "*beta' - ((Itc + mc*cc^2) + (Itr + mr*(l0 + extension - cr)^2) - (Iac + Iar))*cos(beta)*sin(beta)*alpha'^2)"
+        "/((Itc + mc*cc^2) + (Itr + mr*(l0 + extension - cr)^2))",
+        STEINER,
+    ),
+    Line(
+        "quarter-car",
+        "forward_dynamics[2]",
+        "(1/M1 + 1/M2)*(tau_body - K1*body - b1*body') - (tau_wheel + K2*(road - wheel) + b2*(road_rate - wheel'))/M2",
+        # body is the difference of both heights
+        "(tau_body - K1*body - b1*body')/M1 - (tau_wheel - tau_body + K2*(road - wheel) + b2*(road_rate - wheel')"
+        " + K1*body + b1*body')/M2",
+        "two masses, and a spring and a damper for the tyre",
+    ),
+    Line(
         "humanoid-head",
         "forward_dynamics[2]",
         "tau_neck_pitch/(0.024222337776*M*l^2) + 4.25*g*sin(neck_pitch)/(2.9679*l)"
@@ -340,6 +403,22 @@ LINES = [
         "(tau_neck_yaw - 2*0.0694*M*l^2*(0.303^2 + 0.4998^2 - 0.261^2)*sin(neck_pitch)*cos(neck_pitch)"
         "*neck_pitch'*neck_yaw')/(0.0694*M*l^2*((0.303^2 + 0.4998^2)*sin(neck_pitch)^2 + 0.261^2*cos(neck_pitch)^2))",
         DE_LEVA,
+    ),
+    Line(
+        "flyball-governor",
+        "metric[1, 1]",
+        "Is + Iv + mb*((r + l*sin(left))^2 + (r + l*sin(right))^2)",
+        "Is + Iv + mb*(r + l*sin(left))^2 + mb*(r + l*sin(right))^2",
+        STEINER,
+    ),
+    Line(
+        "satellite",
+        "metric[5, 5]",
+        "1/6*mp*wp^2 + mp*lp*r*sin(roll)*(sin(left + roll) - sin(right - roll))"
+        " + 1/3*mp*lp^2*(sin(left + roll)^2 + sin(right - roll)^2) + Iyy*cos(roll)^2 + (Izz + 2*mp*r^2)*sin(roll)^2",
+        "Iyy*cos(roll)^2 + Izz*sin(roll)^2 + mp*((r*sin(roll) + lp*sin(left + roll)/2)^2 + lp^2*sin(left + roll)^2/12"
+        " + wp^2/12) + mp*((r*sin(roll) - lp*sin(right - roll)/2)^2 + lp^2*sin(right - roll)^2/12 + wp^2/12)",
+        STEINER,
     ),
     Line(
         "flyball-governor",

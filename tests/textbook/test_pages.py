@@ -95,7 +95,7 @@ def test_wide_fractions_wrap() -> None:
     determinant, first, second = formulas_of(page)
     assert determinant == "t1=(Ic2+m2*lc2^2)*(Ic1+m1*lc1^2+m2*l1^2)-m2^2*l1^2*lc2^2*cos^2 q2"
     assert first.startswith("q..1=(1)/(t1)*((Ic2+m2*lc2^2)*(")
-    assert first.endswith("*q.1^2)")
+    assert first.endswith("*q.1^2))")
     assert second.startswith("q..2=(1)/(t1)*(")
 
 
