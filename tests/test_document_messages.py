@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
 
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
+from substructures.part.topology import topology
 from substructures.tree.document import TreeSpec
 
 from .bad_documents import GOOD, TREE, Plain, changed
@@ -73,6 +75,19 @@ def test_a_spherical_joint_of_wrong_names_has_one_fault() -> None:
     joint = {"type": "spherical", "coordinate": ["a", "b", "c-d"]}
     told = said(Definition, changed(GOOD, (("bodies", 1, "joint"), joint)))
     assert told == f"/bodies/1/joint/coordinate/2: {NAME}; for example 'c_d', found \"c-d\""
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("spherical", "has 3 coordinate(s), 1 given: give 3, or leave 'coordinate' out"),
+        ("fixed", "has 0 coordinate(s), 1 given: leave 'coordinate' out"),
+    ],
+)
+def test_joints_of_wrong_numbers_of_coordinates_are_told_what_to_do(kind: str, told: str) -> None:
+    joint = {"type": kind, "coordinate": "a"}
+    with pytest.raises(InvalidDocument, match=re.escape(told)):
+        topology(Definition.read(changed(GOOD, (("bodies", 1, "joint"), joint))))
 
 
 def test_places_and_references_are_described() -> None:

@@ -204,7 +204,8 @@ def _coordinates(body: Body, i: int, faults: list[Fault]) -> list[str]:
         return [f"q_{body.name}"] if n == 1 else [f"q_{body.name}_{j + 1}" for j in range(n)]
     names = [given] if isinstance(given, str) else list(given)
     if len(names) != n:
-        message = f"joint type '{body.joint.type}' has {n} coordinate(s), {len(names)} given"
+        advice = f"give {n}, or leave 'coordinate' out" if n else "leave 'coordinate' out"
+        message = f"joint type '{body.joint.type}' has {n} coordinate(s), {len(names)} given: {advice}"
         faults.append(Fault(f"/bodies/{i}/joint/coordinate", "wrong-length", message))
         return [f"q_{body.name}_{j + 1}" for j in range(n)]
     return names
