@@ -8,8 +8,9 @@ follows from the function alone, never from how it was computed:
    angles, of what every monomial of parameters is multiplied by;
 3. :mod:`~substructures.textbook.collect` gathers parameters: masses by what they are multiplied with;
 4. :mod:`~substructures.textbook.layout` puts both together, and :mod:`~substructures.textbook.quotients` factors what
-   is divided, with numbers as they were given (:mod:`~substructures.textbook.scales`), leaves determinants as products
-   but for one term (:mod:`~substructures.textbook.products`), and multiplies forces, not their terms
+   is divided (:mod:`~substructures.textbook.contents`), with numbers as they were given
+   (:mod:`~substructures.textbook.scales`), leaves determinants as products but for one term
+   (:mod:`~substructures.textbook.products`), and multiplies forces, not their terms
    (:mod:`~substructures.textbook.forces`);
 5. :mod:`~substructures.textbook.springs` finds squares of lengths that are stretched, and their forces;
 6. :mod:`~substructures.textbook.tidy` takes common factors out of short sums;

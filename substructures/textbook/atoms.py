@@ -72,6 +72,10 @@ class Atoms:
         """Whether it is a momentum, which is written before cosines and sines."""
         return atom.op == "sym" and self.symbols[str(atom.value)].unit in _MOMENTA
 
+    def acts(self, found: Iterable[object]) -> bool:
+        """Whether an input is among them."""
+        return any(isinstance(x, Expr) and self.ranks[self.place[x]] == INPUT for x in found)
+
     def split(self, monomial: Monomial) -> tuple[Monomial, Monomial]:
         """What is constant, and what moves."""
         at_rest = tuple((i, n) for i, n in monomial if self.ranks[i] != MOVING)

@@ -18,13 +18,11 @@ from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, P
 from substructures.textbook.collect import Collector, common_number, content, factored, is_fraction, length
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
-from substructures.textbook.harmonics import Harmonics, Mode, Wave, Waves, angle_key, normal, shortest, wave_key
-from substructures.textbook.springs import Square, completed, squares
+from substructures.textbook.harmonics import Mode, Wave, Waves, angle_key, normal, shortest, wave_key
+from substructures.textbook.springs import Content, Square, completed, squares
 
 #: terms of a sum that may have squares of cosines and sines
 SQUARED = 20
-#: monomial of all atoms -> harmonics of the angles
-Content = Mapping[Monomial, Harmonics]
 #: what moves: powers of moving atoms, and of cosines and sines
 Motion = tuple[Monomial, tuple[Wave, ...]]
 #: by monomial of what is constant the sum that it is multiplied by

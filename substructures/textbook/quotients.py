@@ -11,25 +11,21 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from flint import Ordering, fmpq_mpoly_ctx
-
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, times
 from substructures.textbook.collect import content as content_of
 from substructures.textbook.collect import is_fraction, length
-from substructures.textbook.exponentials import Complex, harmonics_of, power, spread, tangent
+from substructures.textbook.contents import Ring, divided, fraction, monomial_of
 from substructures.textbook.field import Field, to_fmpq
 from substructures.textbook.forces import Grouped, grouped
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
-from substructures.textbook.harmonics import Mode, normal, polynomial_of
-from substructures.textbook.layout import Content, Layout
+from substructures.textbook.layout import Layout
 from substructures.textbook.products import but_for_one_term
 from substructures.textbook.scales import divisors, primitive
-from substructures.textbook.springs import stretches
+from substructures.textbook.springs import Content, stretches
 
 #: terms of a polynomial that is factored
 FACTORED = 400
-_ZERO = Fraction(0)
 Powers = Sequence[tuple[Factor, int]]
 
 
@@ -45,25 +41,24 @@ class Quotients:
         self.angles = [generators.atoms[i] for i in field.angles]
         self.units = [field.units[i] for i in field.angles]
         self.layout = Layout(atoms, self.angles, self.units)
-        names = [f"g{i}" for i in range(self.size + 2 * len(self.angles))]
-        self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        self.ring = Ring(self.places, len(self.angles))
         self._forms: dict[str, Sum] = {}
 
     def __call__(self, expr: Expr) -> Sum:
         """The textbook form of one of the field's expressions."""
         terms: list[Term] = []
         for numerator, denominator in self._joined(self._parts(*self.field.values[expr])):
-            monomial = _monomial(denominator)
+            monomial = monomial_of(denominator)
             if monomial is None:
                 terms.append(self._ratio(numerator, denominator))
             else:
-                terms += self._sum(_divided(numerator, *monomial))
+                terms += self._sum(divided(numerator, *monomial))
         return Sum(tuple(terms))
 
     def _joined(self, parts: Sequence[tuple[Any, Any]]) -> list[tuple[Content, Content]]:
         """Numerators and denominators; two with the same rates are one: (J - A)*q'^2/A for J*q'^2/A - q'^2."""
         contents = [self._contents(*part) for part in parts]
-        if len(parts) == 2 and _monomial(contents[0][1]) and not _monomial(contents[1][1]):
+        if len(parts) == 2 and monomial_of(contents[0][1]) and not monomial_of(contents[1][1]):
             one, other = ({(self._rates_of(m), k) for m, h in top.items() for k in h} for top, _ in contents)
             if one <= other and all(rates for rates, _ in one):
                 return [self._contents(*self.field.add(*parts))]
@@ -121,7 +116,7 @@ class Quotients:
         """Numerator and denominator in cosines and sines."""
         degrees = [max(a, b) for a, b in zip(above.degrees(), below.degrees(), strict=True)][self.size :]
         halves = [(max(int(n), 0) + 1) // 2 for n in degrees]
-        numerator, denominator = (_content(p, self.size, self.places, halves) for p in (above, below))
+        numerator, denominator = (self.ring.from_tangents(p, halves) for p in (above, below))
         return numerator, denominator
 
     def _ratio(self, numerator: Content, denominator: Content) -> Term:
@@ -131,17 +126,17 @@ class Quotients:
 
     def _factors(self, content: Content) -> tuple[Fraction, list[tuple[Any, int]]]:
         """A number and polynomials without content, irreducible unless they are large, with their powers."""
-        poly, _ = self._fewest(content)
+        poly, _ = self.ring.fewest(content)
         if len(poly) > FACTORED:
-            number = primitive([_fraction(c) for c in poly.coeffs()])
+            number = primitive([fraction(c) for c in poly.coeffs()])
             return number, [(poly / to_fmpq(number), 1)]
         c, parts = poly.factor()
-        return _fraction(c), [(part, int(n)) for part, n in parts]
+        return fraction(c), [(part, int(n)) for part, n in parts]
 
     def _product(self, number: Fraction, parts: Sequence[tuple[Any, int]]) -> Term:
         """A product of powers of polynomials in its order, those below last."""
         parts = _squares(parts)
-        scales = divisors(number, [([_fraction(c) for c in part.coeffs()], n) for part, n in parts])
+        scales = divisors(number, [([fraction(c) for c in part.coeffs()], n) for part, n in parts])
         factors: list[tuple[Factor, int]] = []
         for (part, n), scale in zip(parts, scales, strict=True):
             form = self._form(part / to_fmpq(scale))
@@ -156,15 +151,14 @@ class Quotients:
         found = list(factors)
         for i, (factor, n) in enumerate(factors):
             terms = factor.terms if isinstance(factor, Sum) and n == 1 else ()
-            if number < 0 and [t.coefficient > 0 for t in terms] == [True, False] and all(map(self._acts, terms)):
+            if (
+                number < 0
+                and [t.coefficient > 0 for t in terms] == [True, False]
+                and all(self.atoms.acts(leaves(Sum((t,)))) for t in terms)
+            ):
                 found[i] = (Sum(tuple(t.scaled(Fraction(-1)) for t in reversed(terms))), 1)
                 number = -number
         return number, found
-
-    def _acts(self, term: Term) -> bool:
-        """Whether an input occurs in it."""
-        atoms = [x for x in leaves(Sum((term,))) if isinstance(x, Expr)]
-        return any(self.atoms.ranks[self.atoms.place[x]] == INPUT for x in atoms)
 
     def _form(self, poly: Any) -> Sum:
         """The shortest form of an irreducible polynomial: a sum, or a product of sums and a term."""
@@ -174,11 +168,11 @@ class Quotients:
         return self._forms[key]
 
     def _shortest(self, poly: Any) -> Sum:
-        is_exact = all(is_fraction(_fraction(c)) for c in poly.coeffs())
+        is_exact = all(is_fraction(fraction(c)) for c in poly.coeffs())
         found = self._grouped(poly) if is_exact and self._rates(poly) else None
         if found is not None:
             return self._with_forces(found)
-        content = self._back(poly)
+        content = self.ring.back(poly)
         forms = [self.layout(content)]
         if is_exact and not self._rates(poly):
             forms += self._products(content)
@@ -198,19 +192,19 @@ class Quotients:
 
     def _with_forces(self, found: Grouped) -> Sum:
         one = self._product(Fraction(1), [(found.minor, 1), (found.force, 1)])
-        return Sum((one, self._product(*self._factors(self._back(found.rest)))) if len(found.rest) else (one,))
+        return Sum((one, self._product(*self._factors(self.ring.back(found.rest)))) if len(found.rest) else (one,))
 
     def _products(self, content: Content) -> Iterator[Sum]:
         """The forms that are a product of sums but for one term."""
-        _, sines = self._fewest(content)
+        _, sines = self.ring.fewest(content)
         for i in range(len(self.angles)):
             others = tuple(n for n in sines if n != i)
             cosine = self.size + 2 * i
             for some, square, other in ((others, cosine, cosine + 1), ((*others, i), cosine + 1, cosine)):
-                for number, parts, rest in but_for_one_term(self._polynomial(content, some), square, other):
-                    factors: list[tuple[Factor, int]] = [(self.layout(self._back(part)), n) for part, n in parts]
-                    one = product(_fraction(number), sorted(factors, key=self._key))
-                    yield Sum((one, *self.layout(self._back(rest)).terms))
+                for number, parts, rest in but_for_one_term(self.ring.polynomial(content, some), square, other):
+                    factors: list[tuple[Factor, int]] = [(self.layout(self.ring.back(part)), n) for part, n in parts]
+                    one = product(fraction(number), sorted(factors, key=self._key))
+                    yield Sum((one, *self.layout(self.ring.back(rest)).terms))
 
     def _key(self, item: tuple[Factor, int]) -> tuple[int, int, list[int]]:
         """Total masses, atoms, sums of atoms, inputs, cosines and sines by their angles, sums with them, rates."""
@@ -224,7 +218,7 @@ class Quotients:
             return 5, len(form) if is_sum else 0, places
         if len(atoms) < len(found):
             return (4, len(form), places) if is_sum else (3, 0, self._angle_places(found[0]))
-        if any(self.atoms.ranks[p] == INPUT for p in places):
+        if self.atoms.acts(atoms):
             return 2, len(form) if is_sum else 0, places
         if not is_sum:
             return 0, 0, places[:1]
@@ -236,42 +230,6 @@ class Quotients:
         angle = [self.angles.index(a) for a, _ in trig.angle] if isinstance(trig, Trig) else []
         return [*angle[:1], len(angle), *angle[1:], isinstance(trig, Trig) and trig.op == "cos"]
 
-    def _fewest(self, content: Content) -> tuple[Any, tuple[int, ...]]:
-        """The polynomial in atoms, cosines and sines with the fewest terms, and the angles without cosines squared."""
-        best = self._polynomial(content, ())
-        sines: tuple[int, ...] = ()
-        for i in range(len(self.angles)):
-            other = self._polynomial(content, (*sines, i))
-            if len(other) < len(best):
-                best, sines = other, (*sines, i)
-        return best, sines
-
-    def _polynomial(self, content: Content, sines: Sequence[int]) -> Any:
-        """The polynomial without squares of cosines of the angles ``sines``, and of sines of the others."""
-        place = {p: n for n, p in enumerate(self.places)}
-        found: dict[tuple[int, ...], Any] = {}
-        for monomial, harmonics in content.items():
-            head = [0] * self.size
-            for i, n in monomial:
-                head[place[i]] = n
-            for powers, c in polynomial_of(normal(harmonics), sines).items():
-                key = (*head, *(n for both in powers for n in both))
-                found[key] = found.get(key, _ZERO) + c
-        return self.context.from_dict({k: to_fmpq(c) for k, c in found.items() if c})
-
-    def _back(self, poly: Any) -> Content:
-        """The harmonics of a polynomial in atoms, cosines and sines."""
-        result: dict[Monomial, dict[Mode, Complex]] = {}
-        for raw, c in poly.to_dict().items():
-            exponents = [int(n) for n in raw]
-            monomial = self._monomial(exponents[: self.size])
-            pairs = [exponents[self.size + 2 * i : self.size + 2 * i + 2] for i in range(len(self.angles))]
-            spread(result.setdefault(monomial, {}), [power(a, b) for a, b in pairs], _fraction(c))
-        return {m: harmonics_of(z) for m, z in result.items()}
-
-    def _monomial(self, exponents: Sequence[int]) -> Monomial:
-        return tuple(sorted((p, n) for p, n in zip(self.places, exponents, strict=True) if n))
-
 
 def _squares(parts: Sequence[tuple[Any, int]]) -> list[tuple[Any, int]]:
     """The factors with c^2 - x^2 for (c - x)*(c + x), where x is one term."""
@@ -282,32 +240,3 @@ def _squares(parts: Sequence[tuple[Any, int]]) -> list[tuple[Any, int]]:
             if n == m and twice is not None and len(one - twice / 2) == 1:
                 found = [item for item in found if item[0] not in (one, other)] + [(one * other, n)]
     return found
-
-
-def _content(poly: Any, size: int, places: Sequence[int], halves: Sequence[int]) -> Content:
-    """A polynomial in tangents over the powers ``halves`` of 1 + t^2, as harmonics."""
-    result: dict[Monomial, dict[Mode, Complex]] = {}
-    for raw, c in poly.to_dict().items():
-        exponents = [int(n) for n in raw]
-        monomial = tuple(sorted((p, n) for p, n in zip(places, exponents[:size], strict=True) if n))
-        waves = [tangent(j, e) for j, e in zip(exponents[size:], halves, strict=True)]
-        spread(result.setdefault(monomial, {}), waves, _fraction(c))
-    found = {m: harmonics_of(z) for m, z in result.items()}
-    return {m: h for m, h in found.items() if h}
-
-
-def _monomial(content: Content) -> tuple[Monomial, Fraction] | None:
-    """The monomial and the number that content is, if it is no more."""
-    monomial, waves = next(iter(content.items()))
-    return (monomial, next(iter(waves.values()))[0]) if len(content) == 1 and not any(map(any, waves)) else None
-
-
-def _divided(content: Content, monomial: Monomial, number: Fraction) -> Content:
-    """Content over a number and a monomial."""
-    return {
-        times(m, monomial, -1): {k: (a / number, b / number) for k, (a, b) in h.items()} for m, h in content.items()
-    }
-
-
-def _fraction(c: Any) -> Fraction:
-    return Fraction(int(c.p), int(c.q))

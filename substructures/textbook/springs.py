@@ -15,6 +15,7 @@ from substructures.textbook.harmonics import Harmonics, Mode
 
 #: terms of a sum in which springs are looked for, and of what is taken from a coordinate
 MOST, LONGEST = 60, 4
+#: monomial of all atoms -> harmonics of the angles
 Content = Mapping[Monomial, Harmonics]
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from substructures.expr.graph import Expr
-from substructures.textbook.atoms import INPUT, MOVING, Atoms
+from substructures.textbook.atoms import MOVING, Atoms
 from substructures.textbook.collect import common_number, opened
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 
@@ -47,7 +47,7 @@ class Tidy:
         form = self._momenta_first(form)
         if form.terms[0].coefficient > 0:
             return 1, form
-        acting = next((t for t in form.terms if t.coefficient > 0 and self._acts(t)), None)
+        acting = next((t for t in form.terms if t.coefficient > 0 and self.atoms.acts(leaves(Sum((t,))))), None)
         if acting is not None:
             return 1, Sum((acting, *(t for t in form.terms if t is not acting)))
         return -1, Sum(tuple(t.scaled(Fraction(-1)) for t in form.terms))
@@ -59,9 +59,6 @@ class Tidy:
             return form
         turned = [any(isinstance(x, Trig) for x in some) for some in found]
         return Sum(tuple(t for _, t in sorted(zip(turned, form.terms, strict=True), key=lambda item: item[0])))
-
-    def _acts(self, term: Term) -> bool:
-        return any(isinstance(x, Expr) and self.atoms.ranks[self.atoms.place[x]] == INPUT for x in leaves(Sum((term,))))
 
     def _in_order(self, factors: Powers) -> Powers:
         """Constants, places, momenta, cosines and sines, sums with these, rates."""
