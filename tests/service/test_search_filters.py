@@ -227,6 +227,15 @@ def test_what_is_refused(client: TestClient, what: str, query: str) -> None:
     assert [each["pointer"] for each in answer.json()["errors"]] == [BAD[query]]
 
 
+@pytest.mark.parametrize("what", ["substructures", "trees"])
+def test_joints_may_be_written_small(client: TestClient, what: str) -> None:
+    found = names(client, "joints=R", what)
+    assert found
+    assert names(client, "joints=r", what) == found
+    told = client.get(f"/v1/{what}?joints=RX").json()["detail"]
+    assert 'joints are R (revolute) and P (prismatic) in order, as in RRP, found "RX"' in told
+
+
 @pytest.mark.parametrize(("query", "pointer"), [("port=tip.x", "port/0"), ("port=top&port=%00", "port/1")])
 def test_bad_names_of_ports(client: TestClient, query: str, pointer: str) -> None:
     answer = client.get(f"/v1/substructures?{query}")
@@ -351,12 +360,3 @@ def terms_of(connection: sa.Connection) -> list[Any]:
 def rows_of(connection: sa.Connection, table: sa.Table) -> list[Any]:
     columns = [column for column in table.columns if column.name != "number"]
     return sorted(map(tuple, connection.execute(sa.select(*columns))), key=str)
-
-
-@pytest.mark.parametrize("what", ["substructures", "trees"])
-def test_joints_may_be_written_small(client: TestClient, what: str) -> None:
-    found = names(client, "joints=R", what)
-    assert found
-    assert names(client, "joints=r", what) == found
-    told = client.get(f"/v1/{what}?joints=RX").json()["detail"]
-    assert 'joints are R (revolute) and P (prismatic) in order, as in RRP, found "RX"' in told
