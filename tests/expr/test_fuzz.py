@@ -115,8 +115,8 @@ def printed(texts: list[str], p: Program, source: Texts) -> int:
     graph, outputs = Graph(), {}
     for name in p.outputs:
         for entry in entries(p, name, "text"):
-            # exact numbers may have three times as many digits as the grammar reads
-            if not re.search(r"\d{400}", entry["formula"]):
+            # exact numbers may have three times as many digits and places as the grammar reads
+            if not re.search(r"\d{400}|e-?(3[6-9]\d|[4-9]\d\d|\d{4})", entry["formula"]):
                 outputs[name] = Formulas((), {(): parse(graph, entry["formula"], graph.symbol)})
     return _same(texts, program(graph, outputs, SYMBOLS), source)
 
