@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from http.client import HTTPResponse
 from pathlib import Path
 from secrets import token_hex
@@ -87,7 +88,7 @@ class Caller:
         if _takes_key(method, path):
             headers.setdefault(KEY, token_hex(16))
         is_repeatable = method == "GET" or KEY in headers or _is_computed(method, path)
-        send = lambda: self._once(method, path, headers=headers, **options)  # noqa: E731
+        send = partial(self._once, method, path, headers=headers, **options)
         return (self._retries if retries is None else Retries(retries, self.timeout)).ask(send, is_repeatable)
 
     def _once(self, method: str, path: str, **options: Any) -> httpx2.Response:

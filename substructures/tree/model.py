@@ -173,9 +173,7 @@ def couple(
     entries.require("the tree")
     if admit is not None:
         admit(expected_operations(joints_of))
-    names = [
-        f"{i.name}.{c}" for i, m in zip(assembly.instances, assembly.mounted, strict=True) for c in m.part.coordinates
-    ]
+    names = _coordinate_names(assembly)
     try:
         result = _formulas(spec, assembly, names, not entries.is_large, group)
     except ZeroDivisionError:
@@ -192,7 +190,7 @@ def couple(
         *plausibility.at_defaults,
     ]
     rows = tuple(cut.rows for cut in assembly.cuts)
-    names_of = (tuple(names), joints, _frame_names(assembly))
+    names_of = (names, joints, _frame_names(assembly))
     limited = tuple(names[a] for a in sorted(assembly.limits))
     model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
     try:
@@ -237,6 +235,11 @@ def _require_free_names(spec: TreeSpec) -> None:
     ]
     if faults:
         raise InvalidDocument(faults)
+
+
+def _coordinate_names(assembly: Assembly) -> tuple[str, ...]:
+    pairs = zip(assembly.instances, assembly.mounted, strict=True)
+    return tuple(f"{instance.name}.{coordinate}" for instance, m in pairs for coordinate in m.part.coordinates)
 
 
 def _frame_names(assembly: Assembly) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ import random
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping
+from decimal import Decimal
 from typing import Any
 
 import flint
@@ -110,13 +111,18 @@ def expanded(texts: list[str], p: Program, source: Texts) -> int:
     return _same(texts, program(graph, outputs, SYMBOLS), source)
 
 
+def is_readable(number: str) -> bool:
+    """Whether the grammar reads so many digits and places; exact numbers may have three times as many."""
+    _, digits, exponent = Decimal(number).as_tuple()
+    return len(digits) + abs(int(exponent)) <= 400
+
+
 def printed(texts: list[str], p: Program, source: Texts) -> int:
     """Text is read back as the same function."""
     graph, outputs = Graph(), {}
     for name in p.outputs:
         for entry in entries(p, name, "text"):
-            # exact numbers may have three times as many digits and places as the grammar reads
-            if not re.search(r"\d{400}|e-?(3[6-9]\d|[4-9]\d\d|\d{4})", entry["formula"]):
+            if all(map(is_readable, re.findall(r"\d[\d.]*(?:e-?\d+)?", entry["formula"]))):
                 outputs[name] = Formulas((), {(): parse(graph, entry["formula"], graph.symbol)})
     return _same(texts, program(graph, outputs, SYMBOLS), source)
 
