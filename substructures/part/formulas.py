@@ -133,12 +133,13 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     # E = (turn about e3) (tilt about e1), or one full matrix: what coupling replays instead of E
     factors: dict[str, dict[tuple[int, ...], Scalar]] = {"tilt": {}, "turn": {}, "full": {}}
     for c, link in enumerate(k.links):
+        if not link.rotation.is_planar:
+            factors["full"] |= {(c, i, j): E[c][i][j] for i in range(3) for j in range(3)}
+            continue
         for factor in link.rotation.factors:
             if isinstance(factor, Planar):
                 key = "tilt" if factor.axis == 0 else "turn"
                 factors[key] |= {(c, 0): factor.c, (c, 1): factor.s}
-            else:
-                factors["full"] |= {(c, i, j): factor.e[i][j] for i in range(3) for j in range(3)}
     # U_ca, Omega_ca for a <= c
     own = {(c, a): twist for c in range(n) for a, twist in k.columns[c].items()}
     return {

@@ -173,6 +173,29 @@ def test_a_module_takes_no_more_operations(first: str, second: str) -> None:
     assert module.operations["total"] <= 1.01 * tree.operations["total"]
 
 
+@pytest.mark.parametrize("rpy", [[0, "pi/2", 0], ["pi/2", 0, "pi/2"], [0, "-pi/2", "pi"]], ids=str)
+def test_seats_that_change_places_of_axes(rpy: list[Any]) -> None:
+    """What such a seat makes of a joint has one matrix, whatever factors it has been formed by."""
+    pendulum = derive(Definition.read(catalogue.load("simple-pendulum")))
+    port = pendulum.frames[-1]
+    spec = spec_of(
+        [
+            {"name": "a", "substructure": "simple-pendulum", "placement": {"rpy": rpy}},
+            {"name": "b", "substructure": "simple-pendulum", "at": f"a.{port}", "placement": {"rpy": rpy}},
+        ]
+    )
+    parts = {"a": pendulum, "b": pendulum}
+    require_same(couple(spec, parts), *module_of(spec, parts))
+
+
+def test_the_humanoid_becomes_a_part() -> None:
+    spec = TreeSpec.read(catalogue.load_tree("humanoid"))
+    known = {str(i.substructure): derive(Definition.read(catalogue.load(str(i.substructure)))) for i in spec.instances}
+    parts = {i.name: known[str(i.substructure)] for i in spec.instances}
+    found = published(spec, parts, Publication({"name": "module"}))
+    assert len(published_part(found, parts).coordinates) == 34
+
+
 def test_ports_and_parameters_are_chosen() -> None:
     spec = spec_of([{"name": "a", "substructure": "rod", "parameters": {"l": {"value": 50, "unit": "cm"}}}])
     part, _ = module_of(
