@@ -99,15 +99,16 @@ def test_wide_fractions_wrap() -> None:
     assert second.startswith("q..2=(1)/(t1)*(")
 
 
-def test_wide_factors_and_denominators_wrap() -> None:
+@pytest.mark.parametrize(("power", "divisor"), [("", "t1"), ("^2", "t1^2")])
+def test_wide_factors_and_denominators_wrap(power: str, divisor: str) -> None:
     above, below = (" + ".join(f"{x}{n}*y{n}" for n in range(40)) for x in "ab")
     graph = Graph()
-    formulas = {"f": Formulas((), {(): parse(graph, f"c*({above})/({below})", graph.symbol)})}
+    formulas = {"f": Formulas((), {(): parse(graph, f"c*({above})/({below}){power}", graph.symbol)})}
     found = collect(graph, formulas, {n: Symbol(n, "parameter", "m") for n in graph.symbols})
     terms = [read_back(m) for m in math_of(render(found, "mathml", "textbook"))]
     assert max(map(len, terms)) < 30
     assert "t1=b0*y0" in terms
-    assert "f=(1)/(t1)*c*" in terms
+    assert f"f=(1)/({divisor})*c*" in terms
 
 
 @pytest.mark.parametrize(
