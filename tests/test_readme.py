@@ -116,8 +116,7 @@ def test_python_example(tmp_path: Path) -> None:
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )
-def test_commands_exist(word: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "service.cli.main", *word.split(), "--help"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+def test_commands_exist(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """As a process of its own: ``tests/service/test_cli_start.py``."""
+    assert main([*word.split(), "--help"]) == 0
+    assert f"Usage: substructures {word}" in capsys.readouterr().out
