@@ -26,16 +26,24 @@ from .databases import fresh
 NAMES = ("puma560", "free-body", "parallel-gripper", "camera")
 COLUMNS = ("position", "quantity", "body", "coordinate", "shape", "symmetry", "operations", "output", "entry")
 VIEW = sa.table("formulas", *map(sa.column, ("part", *COLUMNS)))
+#: opens a store once for each line that it reads, in a process that dies before a statement that begins like this line
 KILLED = """
 import os, signal, sys
 import sqlalchemy as sa
+import service.database.migrate
 from service.database.connections import Database
-@sa.event.listens_for(sa.engine.Engine, "before_cursor_execute")
-def kill(connection, cursor, statement, *_):
-    if statement.split()[:3] == sys.argv[2].split():
-        os.kill(os.getpid(), signal.SIGKILL)
-Database(sys.argv[1])
+for line in sys.stdin:
+    @sa.event.listens_for(sa.engine.Engine, "before_cursor_execute")
+    def kill(connection, cursor, statement, *_):
+        if statement.split()[:3] == line.split():
+            os.kill(os.getpid(), signal.SIGKILL)
+    child = os.fork()
+    if not child:
+        Database(sys.argv[1])
+        os._exit(0)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """
+MOMENTS = "UPDATE parts SET", "DROP TABLE formulas", "CREATE VIEW formulas"
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -111,20 +119,23 @@ def test_chosen_formulas(address: str, contents: list[PartContent]) -> None:
     database.close()
 
 
-@pytest.mark.parametrize("moment", ["", "UPDATE parts SET", "DROP TABLE formulas", "CREATE VIEW formulas"])
-def test_an_older_store_is_carried_over_as_a_whole(address: str, moment: str, contents: list[PartContent]) -> None:
+def test_an_older_store_is_carried_over_as_a_whole(address: str, contents: list[PartContent]) -> None:
     """Killed at some moment, it is as it was; then everything is there."""
     old_store(address, contents)
-    if moment:
-        command = [sys.executable, "-c", KILLED, address, moment]
-        assert subprocess.run(command, check=False).returncode == -signal.SIGKILL
-        engine = sa.create_engine(address)
-        with engine.connect() as connection:
-            assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar() == "0007"
-            assert "formulas" in sa.inspect(connection).get_table_names()
-            for content in contents:
-                assert rows_of(connection, content.digest) == expected(content)
-        engine.dispose()
+    command = [sys.executable, "-c", KILLED, address]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as killed:
+        assert killed.stdin is not None
+        assert killed.stdout is not None
+        for moment in MOMENTS:
+            print(moment, file=killed.stdin, flush=True)
+            assert int(killed.stdout.readline()) == -signal.SIGKILL
+            engine = sa.create_engine(address)
+            with engine.connect() as connection:
+                assert connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar() == "0007"
+                assert "formulas" in sa.inspect(connection).get_table_names()
+                for content in contents:
+                    assert rows_of(connection, content.digest) == expected(content)
+            engine.dispose()
     database = Database(address)
     with database.read() as connection:
         assert "formulas" not in sa.inspect(connection).get_table_names()

@@ -6,7 +6,7 @@ import os
 import shutil
 import sqlite3
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
 from pathlib import Path
 from time import sleep
@@ -166,20 +166,28 @@ def test_files_are_private(tmp_path: Path) -> None:
     assert set(files.values()) == {0o600}
 
 
+@pytest.fixture(scope="module")
+def held(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A store that a server in a process of its own holds."""
+    folder = tmp_path_factory.mktemp("held")
+    with running([Server(f"sqlite:///{folder}/x.db", folder / "log")]):
+        yield folder / "x.db"
+
+
 @pytest.mark.parametrize("link", ["symbolic", "hard", "symbolic folder"])
-def test_a_link_is_the_same_store(tmp_path: Path, link: str) -> None:
-    """A server in a process of its own holds the store; whoever calls it by another name is refused."""
-    store = tmp_path / "a" / "x.db"
-    store.parent.mkdir()
+def test_a_link_is_the_same_store(held: Path, tmp_path: Path, link: str) -> None:
+    """Whoever calls it by another name is refused."""
     other = tmp_path / "b" / "x.db"
-    with running([Server(f"sqlite:///{store}", tmp_path / "log")]) as _:
-        if link == "symbolic folder":
-            other.parent.symlink_to(store.parent)
-        else:
-            other.parent.mkdir()
-            (other.symlink_to if link == "symbolic" else other.hardlink_to)(store)
+    if link == "symbolic folder":
+        other.parent.symlink_to(held.parent)
+    else:
+        other.parent.mkdir()
+        (other.symlink_to if link == "symbolic" else other.hardlink_to)(held)
+    try:
         with pytest.raises(DatabaseError, match="another server uses"):
             Database(f"sqlite:///{other}")
+    finally:
+        (other.parent if link == "symbolic folder" else other).unlink()
 
 
 def test_a_claim_ends_with_its_database(tmp_path: Path) -> None:
