@@ -17,6 +17,7 @@ from service.database.tables import metadata
 from service.settings import Settings
 from service.store import Store
 
+from .databases import close
 from .made_once import bare_app_from, upgrade_from
 
 Given, Answer = TypeVar("Given"), TypeVar("Answer")
@@ -71,6 +72,11 @@ def at_once(call: Callable[[Given], Answer], given: Sequence[Given]) -> list[Ans
     """The results of calls that are made at the same time, each in a thread of its own."""
     with ThreadPoolExecutor(len(given)) as pool:
         return list(pool.map(call, given))
+
+
+def pytest_sessionfinish() -> None:
+    """Databases are dropped while other tests run."""
+    close()
 
 
 @pytest.fixture(autouse=True)

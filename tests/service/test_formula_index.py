@@ -48,7 +48,7 @@ MOMENTS = "UPDATE parts SET", "DROP TABLE formulas", "CREATE VIEW formulas"
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def address(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    with fresh(request.param, tmp_path) as found:
+    with fresh(request.param, tmp_path, is_migrated=False) as found:
         yield found
 
 
