@@ -1,4 +1,7 @@
-"""Fixtures: a server on a fresh SQLite file, small definitions, and the number of rows in every table."""
+"""Fixtures: a server on a fresh SQLite file, small definitions, and the number of rows in every table.
+
+Tests that leave each other alone import the fixtures of :mod:`one_store`: one server for all of a file.
+"""
 
 from __future__ import annotations
 
