@@ -1,4 +1,7 @@
-"""Nothing from outside is ever executed: payloads through every string of every document, path and query."""
+"""Nothing from outside is ever executed: payloads through every string of every document, path and query.
+
+Each of 17 payloads takes the place of each of some 90 strings, and what is stored is printed in 8 formats: some 10 s.
+"""
 
 from __future__ import annotations
 
