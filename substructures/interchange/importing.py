@@ -13,6 +13,7 @@ from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
 from substructures.interchange.cut_rows import cut_rows
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
+from substructures.interchange.report import MOST_REMARKS, Report
 from substructures.interchange.robot import Robot
 
 #: most characters of the name of a file that are kept
@@ -70,7 +71,7 @@ def import_file(
     """
     rows = read_rows(data, kind, options.parameters != "none")
     if rows is not None:
-        definition = rows[1] | ({} if name is None else {"name": library_name(name)})
+        definition = _with_losses(rows[1], rows[2]) | ({} if name is None else {"name": library_name(name)})
         tree = cut_rows(definition, cut) if cut else None
         for each in [] if tree is None else tree["instances"]:
             each["definition"] = _told(each["definition"], rows[0], data, file, license_of_file)
@@ -79,12 +80,14 @@ def import_file(
     found, robot = read_robot(data, kind, included)
     if cut:
         made = cut_robot(robot, cut, options, name)
+        first = made.tree["instances"][0]
+        first["definition"] = _with_losses(first["definition"], robot.report)
         for instance in made.tree["instances"]:
             instance["definition"] = _told(instance["definition"], found, data, file, license_of_file)
         main, report = made.tree["instances"][0]["definition"], robot.report
         return Imported(found, main, made.tree, report.plain(), report.checks(), made.names, made.bindings)
     part = as_part(robot, options, name)
-    definition = _told(part.definition, found, data, file, license_of_file)
+    definition = _told(_with_losses(part.definition, robot.report), found, data, file, license_of_file)
     tree, report = _tree(robot, part, definition), robot.report
     return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings)
 
@@ -97,6 +100,12 @@ def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
         raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
     read = import_file(given["file"].encode("utf-8", "replace"), kind=given.get("kind"))
     return read.definition if read.tree is None else read.tree
+
+
+def _with_losses(document: dict[str, Any], report: Report) -> dict[str, Any]:
+    """With what is left out of the file."""
+    left_out = [*document.get("left_out", ()), *report.losses()]
+    return document | ({"left_out": left_out[:MOST_REMARKS]} if left_out else {})
 
 
 def _told(document: dict[str, Any], kind: str, data: bytes, file: str, license_of_file: str) -> dict[str, Any]:

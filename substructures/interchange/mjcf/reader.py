@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from substructures.interchange.known.mjcf import MJCF
+from substructures.interchange.mjcf.actuators import rotor_laws
 from substructures.interchange.mjcf.bodies import Bodies
 from substructures.interchange.mjcf.loops import bindings_of, loops_of
 from substructures.interchange.mjcf.replicate import written_out
@@ -15,11 +17,10 @@ from substructures.interchange.robot import Inertial, Link, Robot, in_order
 from substructures.interchange.xml import Node, read_xml
 
 GRAVITY = "0 0 -9.81"
-_READ = ("compiler", "option", "default", "worldbody", "equality", "include")
+_READ = ("compiler", "option", "default", "worldbody", "equality", "include", "actuator")
 _IGNORED = {
     "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks, and meshes",
-    "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data", "actuator": "actuators: "
-    "every coordinate has the input tau.<coordinate>", "extension": "plugins",
+    "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data",
 }  # fmt: skip
 _MOST_INCLUDES = 100
 
@@ -33,7 +34,10 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         raise refuse(root.place, "not-mjcf", "the root of an MJCF file is <mujoco>")
     root = _with_included(root, {} if included is None else included, [])
     report = Report()
-    bodies = Bodies(Compiler.of(root), Defaults(root), report)
+    MJCF.tell(root, report)
+    defaults = Defaults(root)
+    bodies = Bodies(Compiler.of(root), defaults, report)
+    bodies.armatures, bodies.dampings = rotor_laws(root, defaults, report)
     for node in root.all("worldbody"):
         bodies.world(written_out(node, bodies.compiler))
     if not bodies.links:
@@ -73,9 +77,13 @@ def _gravity(root: Node, report: Report) -> Triple:
         found = node.attributes.get("gravity", " ".join(found)).split()
         for name in ("density", "viscosity"):
             if name in node.attributes and value(node.number(name)):
-                report.warning(node.place, f"forces of a fluid ({name}) are left out")
-        if any(flag.attributes.get("gravity") == "disable" for flag in node.all("flag")):
-            return ORIGIN
+                report.lost(node.place, f"forces of a fluid ({name}) are left out")
+        for flag in node.all("flag"):
+            for name in ("passive", "spring", "damper"):
+                if flag.attributes.get(name) == "disable":
+                    report.lost(flag.place, f"{name}='disable' is not read: springs and dampers of joints act here")
+            if flag.attributes.get("gravity") == "disable":
+                return ORIGIN
     if len(found) != 3:
         raise refuse(place, "wrong-length", "gravity needs 3 numbers")
     return triple(tuple(number_of(x, place, "gravity") for x in found))
@@ -92,18 +100,15 @@ def _tell_of_others(root: Node, report: Report) -> None:
                 _tell_of_tendon(tendon, report)
         elif node.tag == "deformable":
             raise refuse(node.place, "not-read", "deformable bodies have no relative coordinates")
-        else:
-            report.warning(node.place, f"<{node.tag[:40]}> is not known in <mujoco> and ignored")
-    for actuators in root.all("actuator"):
-        for node in actuators.children:
-            if any(value(x) for name in ("armature", "damping") for x in node.numbers(name, None, ())):
-                report.warning(node.place, "armature and damping of actuators are left out: give them to the joint")
+        elif node.tag == "extension":
+            for plugin in node.children:
+                report.lost(plugin.place, "what a plugin does is not known here: its forces are left out")
 
 
 def _tell_of_tendon(node: Node, report: Report) -> None:
     acting = [n for n in ("stiffness", "damping", "armature", "frictionloss") if n in node.attributes]
     if acting:
-        report.warning(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
+        report.lost(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
     else:
         report.ignored(node.place, "a tendon without stiffness and damping has no influence on the equations of motion")
 
