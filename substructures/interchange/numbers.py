@@ -40,6 +40,11 @@ def number_of(text: str, place: Place, name: str) -> Decimal:
     return found if found else ZERO
 
 
+def is_number(text: str) -> bool:
+    """Whether a text is a decimal number, of any length."""
+    return bool(_DECIMAL.fullmatch(text.strip()))
+
+
 def value(x: Number) -> float:
     """The number as a double."""
     if isinstance(x, Decimal):

@@ -39,7 +39,8 @@ MJCF = Vocabulary.read(
                 "mujoco/compiler",
                 """alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict convexhull
                 coordinate discardvisual eulerseq exactmeshinertia fitaabb fusestatic inertiafromgeom
-                inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial settotalmass strippath texturedir usethread""",
+                inertiagrouprange meshdir passthrough savecanonical savecompiled
+                saveinertial settotalmass strippath texturedir usethread""",
             ),
             _line("compiler/lengthrange", "*"),
             _line(
