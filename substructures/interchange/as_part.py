@@ -118,11 +118,11 @@ class _Builder:
         )
 
     def _joint_names(self) -> dict[str, str]:
-        """What the coordinates of every joint of the file are called, in order."""
+        """What the coordinates of every joint of the file that moves are called, in order."""
         found: dict[str, str] = {}
         for link in self._links():
             own = [self.joints.given[motion.name] for motion in link.motions]
-            if link.joint:
+            if link.joint and own:
                 found[f"joint {link.joint}"] = ", ".join(own)
             else:
                 found |= {f"joint {motion.name}": name for motion, name in zip(link.motions, own, strict=True)}

@@ -26,7 +26,7 @@ def mimic_of(
     """A binding by multiplier and offset, told of; none, with a warning, but between two joints of one coordinate."""
     for each in (joint, of):
         if each not in joints:
-            message = f"there is no joint '{each[:60]}'{meant(each, joints)}, and '{joint[:60]}' stays free"
+            message = f"'{joint[:60]}' stays free: there is no joint '{each[:60]}'{meant(each, joints)}"
             report.lost(place, message, "topology")
             return []
     if joint == of or not (joints[joint] and joints[of]):

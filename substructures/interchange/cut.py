@@ -142,7 +142,7 @@ def _closure(
 def _names(instances: Mapping[str, str], parts: Mapping[str, PartOfFile]) -> dict[str, str]:
     """Of all parts, ``instance.name``."""
     return {
-        there: ", ".join(f"{instances[piece]}.{one}" for one in here.split(", ") if one)
+        there: ", ".join(f"{instances[piece]}.{one}" for one in here.split(", "))
         for piece, part in parts.items()
         for there, here in part.names.items()
     }

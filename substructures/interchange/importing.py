@@ -28,7 +28,8 @@ class Imported:
     it was cut, a part for every link that was named, mounted on the others.
 
     ``report``: remarks with place and level; ``checks``: of form, topology and physics, whether there are warnings;
-    ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints.
+    ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints; ``gravity``: of the
+    file, which trees have, and parts have not.
     """
 
     kind: str
@@ -38,6 +39,7 @@ class Imported:
     checks: dict[str, dict[str, Any]]
     names: dict[str, str]
     bindings: list[dict[str, Any]]
+    gravity: list[Any] | None = None
 
     def plain(self) -> dict[str, Any]:
         """As JSON data."""
@@ -48,6 +50,7 @@ class Imported:
             "checks": self.checks,
             "names": self.names,
             "bindings": self.bindings,
+            "gravity": self.gravity,
         }
 
 
@@ -85,11 +88,16 @@ def import_file(
         for instance in made.tree["instances"]:
             instance["definition"] = _told(instance["definition"], found, data, file, license_of_file)
         main, report = made.tree["instances"][0]["definition"], robot.report
-        return Imported(found, main, made.tree, report.plain(), report.checks(), made.names, made.bindings)
+        told = report.plain(), report.checks(), made.names, made.bindings, gravity_of(robot).get("gravity")
+        return Imported(found, main, made.tree, *told)
     part = as_part(robot, options, name)
     definition = _told(_with_losses(part.definition, robot.report), found, data, file, license_of_file)
     tree, report = _tree(robot, part, definition), robot.report
-    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings)
+    gravity = gravity_of(robot).get("gravity")
+    if tree is None and robot.gravity_place is not None:
+        message = f'gravity is that of a tree: give it "gravity": [{", ".join(map(str, gravity or ()))}]'
+        report.warning(robot.gravity_place, message)
+    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings, gravity)
 
 
 def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:

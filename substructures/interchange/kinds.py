@@ -76,7 +76,7 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
-    if data.strip() and not is_xml(data):
+    if data.strip() and b"\0" not in data and not is_xml(data):  # it is text
         raise InvalidDocument.at("", "unknown-format", _NO_XML)
     root = read_xml(data)
     found = _ROOTS.get(root.tag)

@@ -131,7 +131,9 @@ class Loop:
 
 @dataclass(frozen=True)
 class Robot:
-    """A file, read: links with parents before children. ``gravity``: where the file gives it."""
+    """A file, read: links with parents before children. ``gravity``: where the file, or its format, gives it;
+    ``gravity_place``: where the file does.
+    """
 
     name: str
     links: tuple[Link, ...]
@@ -140,6 +142,7 @@ class Robot:
     mimics: tuple[Mimic, ...] = ()
     loops: tuple[Loop, ...] = ()
     gravity: Triple | None = None
+    gravity_place: Place | None = None
 
     def with_links(self, links: Mapping[str, Link]) -> Robot:
         """With some links in place of those of the same name."""

@@ -12,7 +12,7 @@ from substructures.interchange.mjcf.loops import bindings_of, loops_of
 from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
 from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
-from substructures.interchange.report import Report, refuse
+from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Robot, in_order
 from substructures.interchange.xml import Node, read_xml
 
@@ -43,6 +43,7 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     if not bodies.links:
         raise refuse(root.place, "no-links", "the file has no <body>")
     _tell_of_others(root, report)
+    gravity, place = _gravity(root, report)
     links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
     return Robot(
         root.attributes.get("model", ""),
@@ -51,7 +52,8 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         frames=tuple(bodies.frames),
         mimics=bindings_of(root, links, report),
         loops=loops_of(root, links, report),
-        gravity=_gravity(root, report),
+        gravity=gravity,
+        gravity_place=place,
     )
 
 
@@ -70,11 +72,12 @@ def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) 
     return replace(node, children=children)
 
 
-def _gravity(root: Node, report: Report) -> Triple:
-    """The last one that is given."""
-    found, place = GRAVITY.split(), root.place
+def _gravity(root: Node, report: Report) -> tuple[Triple, Place | None]:
+    """The last one that is given, and where; that of the format without any."""
+    found, place = GRAVITY.split(), None
     for node in root.all("option"):
-        found = node.attributes.get("gravity", " ".join(found)).split()
+        if "gravity" in node.attributes:
+            found, place = node.attributes["gravity"].split(), node.place
         for name in ("density", "viscosity"):
             if name in node.attributes and value(node.number(name)):
                 report.lost(node.place, f"forces of a fluid ({name}) are left out")
@@ -83,10 +86,11 @@ def _gravity(root: Node, report: Report) -> Triple:
                 if flag.attributes.get(name) == "disable":
                     report.lost(flag.place, f"{name}='disable' is not read: springs and dampers of joints act here")
             if flag.attributes.get("gravity") == "disable":
-                return ORIGIN
+                return ORIGIN, flag.place
+    here = root.place if place is None else place
     if len(found) != 3:
-        raise refuse(place, "wrong-length", "gravity needs 3 numbers")
-    return triple(tuple(number_of(x, place, "gravity") for x in found))
+        raise refuse(here, "wrong-length", "gravity needs 3 numbers")
+    return triple(tuple(number_of(x, here, "gravity") for x in found)), place
 
 
 def _tell_of_others(root: Node, report: Report) -> None:

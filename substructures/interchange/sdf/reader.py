@@ -9,6 +9,7 @@ so until 1.6, it is given in the frame of the model.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from decimal import Decimal
 
 import numpy as np
@@ -92,7 +93,12 @@ class _Reader:
         name = self.model.attributes.get("name", "")
         known = joints_of(links)
         mimics = tuple(mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known))
-        return Robot(name, links, self.report, frames=frames, mimics=mimics, gravity=_gravity(world))
+        gravity = None if world is None else world.one("gravity")
+        robot = Robot(name, links, self.report, frames=frames, mimics=mimics)
+        if gravity is None:
+            return robot
+        numbers = triple(numbers_in(gravity.text, 3, gravity.place, "gravity"))
+        return replace(robot, gravity=numbers, gravity_place=gravity.place)
 
     def _mimics(self, prefix: str, joint: Node, known: dict[str, bool]) -> Iterator[Mimic]:
         """Bindings of the axes of a joint: q = multiplier (q_leader - reference) + offset."""
@@ -297,8 +303,3 @@ def _text(node: Node, tag: str) -> str:
 def _number(node: Node, tag: str, default: str = "0") -> Number:
     found = node.one(tag)
     return number_of(default if found is None else found.text, node.place if found is None else found.place, tag)
-
-
-def _gravity(world: Node | None) -> Triple | None:
-    found = None if world is None else world.one("gravity")
-    return None if found is None else triple(numbers_in(found.text, 3, found.place, "gravity"))
