@@ -11,6 +11,7 @@ from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Options
 from substructures.interchange.importing import Imported, import_file
+from substructures.tree.published import Publication, published
 
 from .seeds import DH, MJCF, PAR, SDF, TABLE, URDF
 
@@ -181,6 +182,16 @@ def test_a_relation_between_parts_is_told_in_words_by_the_one_that_follows() -> 
     assert "'k' = 1 * 'j'" in told["message"]
     assert found.bindings[0]["coordinate"] == "c.k"
     assert found.bindings[0]["of"] == "robot.j"
+
+
+def test_a_tree_that_becomes_a_part_keeps_what_is_left_out() -> None:
+    part = derive(Definition.read(read(ARM.replace("MORE", '<mimic joint="j" multiplier="2"/>')).definition))
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "r"}]})
+    made = published(spec, {"x": part}, Publication({"name": "whole"})).definition
+    (told,) = made.left_out
+    assert told.relation is not None
+    assert (told.relation.coordinate, told.relation.of, told.relation.multiplier) == ("x_k", "x_j", 2)
+    assert [w["code"] for w in derive(made).certificate["warnings"]] == ["left-out"]
 
 
 @pytest.mark.parametrize("text", [URDF, MJCF, SDF, DH, TABLE, PAR])

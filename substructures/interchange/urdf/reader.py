@@ -38,7 +38,7 @@ from substructures.interchange.xml import Node
 
 X_AXIS: Triple = (ONE, ZERO, ZERO)
 _MOTION: dict[str, MotionType] = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
-_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical")
 WORLD = "world"
 #: elements without influence on the equations of motion
 _SHOWN_ONLY = {
@@ -152,6 +152,8 @@ def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Repor
     motions: tuple[Motion, ...] = ()
     if joint.type == "floating":
         motions = (Motion(joint.name, "free", joint.node.place),)
+    elif joint.type == "spherical":  # of Bullet and MuJoCo
+        motions = (Motion(joint.name, "spherical", joint.node.place),)
     elif joint.type == "planar":
         motions = _planar(joint)
     elif joint.type != "fixed":
