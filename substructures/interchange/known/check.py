@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.errors import listed, meant
-from substructures.interchange.report import Place, Report
+from substructures.interchange.report import MOST_REMARKS, Place, Report
 from substructures.interchange.xml import SHOWN, Node
 
 ANYTHING = "*"
@@ -48,6 +48,8 @@ class Vocabulary:
         found: dict[str, list[Place]] = {}
         for place, message in self._unknown(root):
             found.setdefault(message, []).append(place)
+            if len(found) > MOST_REMARKS:
+                break
         for message, places in found.items():
             more = f" (and in {len(places) - 1} more places)" if places[1:] else ""
             report.warning(places[0], message + more)
