@@ -13,6 +13,8 @@ Level = Literal["ignored", "merged", "warning"]
 #: what a remark is about: the form of the file, how links hang together, what no body can be
 Tier = Literal["schema", "topology", "physics"]
 TIERS: tuple[Tier, ...] = ("schema", "topology", "physics")
+#: characters of a message that a definition keeps
+LONGEST = 2000
 #: so many remarks are listed
 MOST_REMARKS = 1000
 
@@ -79,7 +81,7 @@ class Report:
             if remark.is_loss:
                 found.setdefault(remark.message, []).append(remark.place)
         return [
-            {"message": f"{places[0]}{f' and {len(places) - 1} more' if places[1:] else ''}: {message}"}
+            {"message": f"{places[0]}{f' and {len(places) - 1} more' if places[1:] else ''}: {message}"[:LONGEST]}
             for message, places in found.items()
         ]
 

@@ -15,7 +15,7 @@ from typing import Literal
 
 from substructures.errors import among
 from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, is_zero
-from substructures.interchange.report import Place, Report, refuse
+from substructures.interchange.report import LONGEST, Place, Report, refuse
 
 MotionType = Literal["revolute", "prismatic", "spherical", "free"]
 
@@ -101,7 +101,7 @@ class Mimic:
 
     def left_out(self, names: Mapping[str, str]) -> dict[str, object]:
         """As a field of a definition with the coordinates ``names`` by joints; as words where it has not got both."""
-        told: dict[str, object] = {"message": f"{self.place}: {self.message}"}
+        told: dict[str, object] = {"message": f"{self.place}: {self.message}"[:LONGEST]}
         if {self.joint, self.of} <= names.keys():
             factors = {"multiplier": self.multiplier, "offset": self.offset}
             told["relation"] = {"coordinate": names[self.joint], "of": names[self.of], **factors}

@@ -191,3 +191,6 @@ def test_a_mesh_on_a_body_that_stands_still_is_told_and_kept_from_moving() -> No
     assert any("the mass of a mesh needs its file" in message for message in warnings_of(read(name)))
     with pytest.raises(InvalidDocument, match="line 4: <geom>: the mass of a mesh needs its file"):
         import_file((CASES / name).read_bytes(), Options(base="floating"))
+    scaled = (CASES / name).read_bytes().replace(b"<asset>", b'<compiler settotalmass="3"/><asset>')
+    with pytest.raises(InvalidDocument, match="scaled by settotalmass"):
+        import_file(scaled)

@@ -160,6 +160,12 @@ def test_what_is_left_out_at_several_places_is_kept_once() -> None:
     assert message.startswith("line 2: <dynamics> and 1 more: dry friction")
 
 
+def test_messages_are_not_longer_than_a_definition_may_keep() -> None:
+    long = ARM.replace('name="k"', f'name="{"k" * 9000}"').replace("MORE", '<mimic joint="j"/>')
+    assert [len(message) for message in kept(read(long))] == [2000]
+    Definition.read(read(long).definition)
+
+
 def test_relations_name_coordinates_of_the_part() -> None:
     found = read(ARM.replace("MORE", '<mimic joint="j" multiplier="2"/>')).definition
     assert found["left_out"][0]["relation"] == {"coordinate": "k", "of": "j", "multiplier": 2, "offset": 0}

@@ -121,6 +121,10 @@ def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:
     """All masses and moments scaled to a total mass, where one is asked for."""
     if total <= 0:
         return links
+    for link in links:
+        if link.unweighed is not None:
+            message = "the mass of a mesh needs its file, as all masses are scaled by settotalmass: give an <inertial>"
+            raise refuse(link.unweighed, "mesh-inertia", message)
     factor = total / sum(value(link.inertial.mass) for link in links)
     scaled = []
     for link in links:
