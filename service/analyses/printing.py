@@ -226,7 +226,7 @@ def _base_text(base: BaseParameters, interface: Interface, model: Model, style: 
     units = dict(zip(base.standard, base.units, strict=True))
     called = (
         Symbol(name, "base parameter", units[standard])
-        for name, standard in zip(symbols.outputs, base.names, strict=True)
+        for name, standard in zip(notes, base.names, strict=True)  # a program sorts its outputs
     )
     definitions = Definitions(with_numbers(symbols, model.parameters, model.inputs, style), notes)
     return _rendered(Program(tuple(called), (), {}), style, BASE, interface, limit, definitions)

@@ -17,6 +17,7 @@ from substructures.part.certificate import certify_part, require_no_less, told_a
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
+from substructures.part.left_out import left_out_warnings, require_relations, weightless_warnings
 from substructures.part.loads import read_loads
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
@@ -248,6 +249,7 @@ def _derived(
 
 def _opened(definition: Definition) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
+    require_relations(definition, m.topology.coordinates)
     units = check_units(definition, m.topology)
     units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
@@ -271,6 +273,7 @@ def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float
     # contradictions in what was stored when units were texts; new definitions were refused
     old = [asdict(fault) for fault in units.faults]
     warnings = [*certificate["warnings"], *units.warnings, *old, *unused, *m.scope.notices]
+    warnings += [*left_out_warnings(m.definition), *weightless_warnings(result, m.topology.coordinates)]
     return certificate | {"warnings": warnings, "converted": units.converted}
 
 

@@ -61,7 +61,7 @@ def coordinates(a: Imported, b: Imported) -> dict[str, str]:
     """Names of joints in a to those in b."""
     pairs: dict[str, str] = {}
     for there, ours in a.names.items():
-        if there.startswith("joint "):
+        if there.startswith("joint ") and ours:  # a fixed joint has no coordinate
             prefix = "" if a.tree is None or len(a.tree["instances"]) > 1 else "robot."
             names = [x.removeprefix(prefix) for x in ours.split(", ")]
             pairs |= dict(zip(names, b.names[there].split(", "), strict=True))
