@@ -103,10 +103,10 @@ def test_the_culprit_is_named(pattern: str, new: str, body: str, parameters: set
 
 
 def swinging(mass: float) -> Side:
-    return Side.of_part(derive(Definition.read({"name": "a", "bodies": [{
-        "name": "b", "parent": "base", "mass": mass, "com": [0.3, 0, 0], "inertia": dict.fromkeys(("xx", "yy", "zz"), 0.01),
-        "joint": {"type": "revolute", "coordinate": "q", "theta": "pi/2"},
-    }]})))  # fmt: skip
+    joint = {"type": "revolute", "coordinate": "q", "theta": "pi/2"}
+    body = {"name": "b", "parent": "base", "mass": mass, "com": [0.3, 0, 0], "joint": joint}
+    body["inertia"] = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
+    return Side.of_part(derive(Definition.read({"name": "a", "bodies": [body]})))
 
 
 @pytest.mark.parametrize("mass", [2, 1.000001])

@@ -22,7 +22,7 @@ from service.settings import Settings
 from service.store import Store
 from service.viewer import ANYBODY
 
-from .analysis_trees import BAR, SLED, TREES
+from .analysis_trees import TREES
 from .conftest import make_client
 from .test_jobs_cover import REQUESTS
 
@@ -37,13 +37,12 @@ NUMBERS: dict[str, Callable[[float], Any]] = {
     "numpy.float32": np.float32,
     "numpy.int64": lambda x: np.int64(x) if x == int(x) else np.float64(x),
 }
-HEAVY = {"parameters": {"m": {"value": 1, "unit": "kg"}}}
-PARTS = {"bar": BAR, "sled": SLED}
+HEAVY = {"parameters": {"m": {"value": 1, "unit": "kg"}, "share": {"value": 1}}}
 
 
 def with_mass(part: Mapping[str, Any]) -> dict[str, Any]:
-    """The part with its mass as a parameter."""
-    return {**part, **HEAVY, "bodies": [{**body, "mass": "m"} for body in part["bodies"]]}
+    """The part with a mass that a parameter which is given and one which is not are factors of."""
+    return {**part, **HEAVY, "bodies": [{**body, "mass": "m*share"} for body in part["bodies"]]}
 
 
 def with_parameters(tree: dict[str, Any]) -> dict[str, Any]:
@@ -106,10 +105,27 @@ def test_numbers_of_every_type(client: TestClient, store: Store, analysis: str, 
         source = source_of(store, found, store.model(connection, found))
     answers = []
     for number in (float, NUMBERS[kind]):
-        result = ANALYSES[analysis].compute(source, converted(request, number), lambda share: None)
+        result = ANALYSES[analysis].compute(source, converted(request, number), lambda _: None)
         answers.append(json.loads(written(result, JSON, source.model)))
     assert answers[1].keys() == answers[0].keys()
     assert flat(answers[1]) == pytest.approx(flat(answers[0]), rel=1e-6, abs=1e-6)
+
+
+def test_an_inertia_with_one_of_two_parameters_overridden(client: TestClient) -> None:
+    parameters = {"l": {"value": 0.5, "unit": "m"}, "m2": {"value": 1, "unit": "kg"}}
+    bar = {
+        "name": "b",
+        "parent": "base",
+        "joint": {"type": "revolute", "coordinate": "q", "theta": "pi/2"},
+        "mass": "m2",
+        "com": ["l/2", 0, 0],
+        "inertia": {"zz": "m2*l^2/12", "yy": "m2*l^2/12"},
+    }
+    arm = {"name": "arm", "definition": {"name": "bar", "parameters": parameters, "bodies": [bar]}}
+    assert client.post("/v1/trees", json={"name": "over", "gravity": [0, 0, "-9.81"], "instances": [arm]}).is_success
+    answer = client.post("/v1/trees/over/linearisations", json={"q": [0.1], "parameters": {"arm.m2": 1.1}})
+    assert answer.status_code == 200
+    assert answer.json()["M"][0][0] == pytest.approx(1.1 * 0.5**2 / 3)
 
 
 def flat(given: Any) -> list[float]:
