@@ -36,7 +36,7 @@ class Field:
         self.generators: Generators = classified(exprs)
         forms = {n: self.generators.forms[n] for n in nodes if is_function(n)}
         units = self.generators.units(f for f in forms.values() if isinstance(f, Angle))
-        self.units = {i: common_unit((Fraction(1), unit)) for i, unit in units.items()}
+        self.units = {i: unit_of([unit]) for i, unit in units.items()}
         self.angles = sorted(self.units, key=lambda i: self.generators.order[i])
         self.plain = self._plain(nodes, forms)
         self.context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(len(self.plain) + len(self.angles))], Ordering.lex)
@@ -194,6 +194,12 @@ class Field:
 def to_fmpq(value: Fraction) -> fmpq:
     """A number for FLINT."""
     return fmpq(value.numerator, value.denominator)
+
+
+def unit_of(multiples: Iterable[Fraction]) -> Fraction:
+    """What multiples of an angle are counted in: cos(2*q) is a polynomial in cos(q), and cos(1.8*q) none."""
+    unit = common_unit(multiples)
+    return Fraction(1) if unit.denominator == 1 else unit
 
 
 def common_unit(multiples: Iterable[Fraction]) -> Fraction:
