@@ -133,7 +133,7 @@ def _plain_number(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str, numbers.Real)):
         raise PydanticCustomError("number-expected", "expected a number or an expression")
     if isinstance(value, numbers.Rational):  # an integer of NumPy, a fraction
-        value = int(value) if value.denominator == 1 else f"{value.numerator}/{value.denominator}"
+        value = int(value.numerator) if value.denominator == 1 else f"{value.numerator}/{value.denominator}"
     if isinstance(value, str) and len(value) > LONGEST:
         raise PydanticCustomError("bad-expression", f"an expression has at most {LONGEST} characters")
     if isinstance(value, numbers.Real) and not isinstance(value, int):

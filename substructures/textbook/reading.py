@@ -24,6 +24,10 @@ from substructures.textbook.harmonics import Mode
 from substructures.textbook.layout import Layout
 from substructures.textbook.quotients import Quotients
 from substructures.textbook.tidy import Tidy
+from substructures.textbook.work import Work
+
+#: of work for every term before it is collected
+UNITS = 250
 
 
 @dataclass(frozen=True)
@@ -136,10 +140,11 @@ def _polynomials(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: L
         raise TooLarge("the textbook form (in terms before they are collected)", size, limits.terms)
     found = {e: expander.expand(e) for e in exprs}
     atoms = ordered((a for f in found.values() for t in f.terms for a, _ in t.powers), symbols)
-    return {e: _laid_out(f, atoms) for e, f in found.items()}
+    work = Work(UNITS * limits.terms)
+    return {e: _laid_out(f, atoms, work) for e, f in found.items()}
 
 
-def _laid_out(found: Expanded, atoms: Atoms) -> Sum:
+def _laid_out(found: Expanded, atoms: Atoms, work: Work) -> Sum:
     multiples: dict[Expr, list[Fraction]] = {}
     for term in found.terms:
         for angle, c in term.angle:
@@ -155,13 +160,13 @@ def _laid_out(found: Expanded, atoms: Atoms) -> Sum:
         a, b = harmonics.get(mode, (Fraction(0), Fraction(0)))
         c = term.coefficient
         harmonics[mode] = (a, b + c) if term.trig == "sin" else (a + c, b)
-    return Tidy(atoms)(Layout(atoms, angles, units)(content))
+    return Tidy(atoms)(Layout(atoms, angles, units, work)(content))
 
 
 def _ratios(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: Limits) -> dict[Expr, Sum]:
     if not exprs:
         return {}
-    field = Field(exprs, limits.work)
+    field = Field(exprs, Work(limits.work))
     atoms = ordered((field.generators.atoms[i] for i in field.plain), symbols)
     quotients, tidy = Quotients(field, atoms), Tidy(atoms)
     return {e: tidy(quotients(e)) for e in exprs}
